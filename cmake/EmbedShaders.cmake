@@ -1,0 +1,39 @@
+# Compiles GLSL with glslc and makes each shader a header with one array of SPIR-V words, so that programs need no files
+# beside them.
+find_program(VITRAIL_GLSLC glslc REQUIRED)
+
+# embed_shader(TARGETS target... NAME name SOURCE file NAMESPACE ns [INCLUDES dir...] [DEFINES def...])
+# gives the targets, all of this folder, `#include "shaders/<name>.h"`, which declares `ns::shaders::<name with . as _>`.
+function(embed_shader)
+  cmake_parse_arguments(arg "" "NAME;SOURCE;NAMESPACE" "TARGETS;INCLUDES;DEFINES" ${ARGN})
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/generated)
+  set(words ${folder}/shaders/${arg_NAME}.inc)
+  set(header ${folder}/shaders/${arg_NAME}.h)
+  string(REPLACE "." "_" symbol ${arg_NAME})
+  get_filename_component(source ${arg_SOURCE} ABSOLUTE)
+  list(TRANSFORM arg_INCLUDES PREPEND -I)
+  list(TRANSFORM arg_DEFINES PREPEND -D)
+  # -mfmt=num: comma-separated words. Vulkan 1.2's SPIR-V: what every supported device takes.
+  add_custom_command(
+    OUTPUT ${words}
+    COMMAND ${VITRAIL_GLSLC} --target-env=vulkan1.2 -O -Werror -mfmt=num -MD -MF ${words}.d ${arg_INCLUDES} ${arg_DEFINES}
+            -o ${words} ${source}
+    DEPENDS ${source}
+    DEPFILE ${words}.d
+    COMMENT "Compiling ${arg_NAME}"
+    VERBATIM)
+  file(CONFIGURE OUTPUT ${header} @ONLY CONTENT [=[
+// Made by cmake/EmbedShaders.cmake.
+#pragma once
+#include <cstdint>
+namespace @arg_NAMESPACE@::shaders {
+inline constexpr std::uint32_t @symbol@[] = {
+#include "@arg_NAME@.inc"
+};
+} // namespace @arg_NAMESPACE@::shaders
+]=])
+  foreach(target ${arg_TARGETS})
+    target_sources(${target} PRIVATE ${words})
+    target_include_directories(${target} PRIVATE ${folder})
+  endforeach()
+endfunction()
