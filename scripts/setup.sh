@@ -1,0 +1,61 @@
+# Functions of ./vitrail and ./test: install what is missing, configure, build. Sourced with $root set.
+
+say() { printf 'vitrail: %s\n' "$*" >&2; }
+
+die() {
+  printf 'vitrail: error: %s\n' "$*" >&2
+  exit 1
+}
+
+# The packages of the given groups in packages.txt.
+packages_of() {
+  local group name
+  while read -r group name; do
+    case " $* " in *" $group "*) printf '%s\n' "$name" ;; esac
+  done < <(grep -v '^#' "$root/packages.txt")
+}
+
+# install_packages GROUP...: installs what is missing with apt, with sudo where this is not root.
+install_packages() {
+  command -v dpkg-query >/dev/null && command -v apt-get >/dev/null ||
+    die "this needs Debian 12, Ubuntu 24.04 or a later one of either; elsewhere install what packages.txt names and run cmake --preset release"
+  local wanted missing name
+  mapfile -t wanted < <(packages_of "$@")
+  missing=()
+  for name in "${wanted[@]}"; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+
+  local as_root=()
+  if [ "$(id -u)" != 0 ]; then
+    as_root=(sudo)
+    [ -t 0 ] || as_root+=(-n) # nobody is there to type a password
+  fi
+  local by_hand="sudo apt-get update && sudo apt-get install --no-install-recommends ${missing[*]}"
+  if [ ${#as_root[@]} -gt 0 ] && ! { command -v sudo >/dev/null && "${as_root[@]}" true 2>/dev/null; }; then
+    die "packages are missing and sudo is not allowed here; as root, run: ${by_hand//sudo /}"
+  fi
+  say "installing ${missing[*]}"
+  local log
+  log=$(mktemp)
+  if ! { "${as_root[@]}" apt-get update && "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+    tail -n 20 "$log" >&2
+    rm -f "$log"
+    die "apt-get failed; mend what it says above, or run: $by_hand"
+  fi
+  rm -f "$log"
+}
+
+# build PRESET: configures where needed and builds; silent unless it fails.
+build() {
+  local folder="$root/build/$1" log
+  mkdir -p "$folder"
+  log="$folder/build.log"
+  : >"$log"
+  if [ ! -f "$folder/build.ninja" ]; then
+    (cd "$root" && cmake --preset "$1") >"$log" 2>&1 || { cat "$log" >&2; die "cmake could not configure preset $1"; }
+  fi
+  (cd "$root" && cmake --build --preset "$1") >>"$log" 2>&1 || { tail -n 60 "$log" >&2; die "the build of preset $1 failed"; }
+}

@@ -1,0 +1,30 @@
+// What the GPU tests share: one device under the validation layer, and the rule that a validation error fails a test.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "../../tool/draw/device.h"
+#include "../../tool/draw/renderer.h"
+
+namespace vitrail::tool::test {
+
+// A test on the GPU. It runs under the Khronos validation layer with synchronization validation; where that layer is
+// missing the test fails.
+class GpuTest : public ::testing::Test {
+ protected:
+  // The process's one device, made by the first call.
+  static Gpu& gpu();
+
+  // Fails the test for every error that the validation layer has reported so far.
+  void TearDown() override;
+};
+
+// Renders once, with a renderer of its own.
+RenderResult renderOnce(Gpu& gpu, const Scene& scene, const RenderOptions& options, std::optional<float> opacity = {},
+                        DrawOrder order = DrawOrder::Forward);
+
+// Options for a picture of a scene as the tool would take it: the scene's first camera where it has one, else framed
+// from the three-quarter view; the scene's background where it has one, else white.
+RenderOptions usualOptions(const Scene& scene, std::uint32_t width, std::uint32_t height);
+
+} // namespace vitrail::tool::test

@@ -1,0 +1,9 @@
+// The smallest host shader there is.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define VITRAIL_SET 0
+#include "vitrail/collect.glsl"
+
+layout(location = 0) flat in vec4 color;
+
+void main() { vitrailCollect(color); }

@@ -1,0 +1,12 @@
+// Puts one point, a fragment of the caller's choosing, on one pixel.
+#version 460
+
+layout(location = 0) in vec3 position; // clip space
+layout(location = 1) in vec4 color;    // linear, straight alpha
+layout(location = 0) flat out vec4 outColor;
+
+void main() {
+  gl_Position = vec4(position, 1.0);
+  gl_PointSize = 1.0;
+  outColor = color;
+}

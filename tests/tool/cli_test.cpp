@@ -1,0 +1,326 @@
+// The program as a user meets it: what it prints, what it leaves on disk, how it ends. The sanitized build of the same
+// program takes every bad option and every bad file.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "png_reader.h"
+#include "process.h"
+
+namespace vitrail::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+const std::string kTool = VITRAIL_TEST_TOOL;
+const std::string kSanitizedTool = VITRAIL_TEST_SANITIZED_TOOL;
+
+ProcessResult vitrail(Words arguments, const ProcessOptions& options = {}) {
+  arguments.insert(arguments.begin(), kTool);
+  return run(arguments, options);
+}
+
+// One line on standard error that says what is wrong, nothing on standard output, nothing on disk.
+void expectRefusal(const std::string& tool, Words arguments, int exitCode, const std::string& reason = "") {
+  std::string command;
+  for (const std::string& argument : arguments) command += " " + argument;
+  SCOPED_TRACE(tool + command);
+  const TemporaryFolder folder;
+  arguments.insert(arguments.begin(), tool);
+  const ProcessResult result = run(arguments, {.folder = folder.path(), .environment = {}, .running = {}});
+  EXPECT_EQ(result.exitCode, exitCode) << result.error;
+  EXPECT_EQ(result.out, "");
+  EXPECT_TRUE(result.error.starts_with("vitrail: error: ")) << result.error;
+  EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+  EXPECT_LT(result.error.size(), 500U) << result.error;
+  EXPECT_NE(result.error.find(reason), std::string::npos) << result.error;
+  EXPECT_EQ(folder.names(), Words{});
+}
+
+std::string readText(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+// A small picture that is quick to draw.
+Words smallRender(const std::string& output) {
+  return {"render", "--scene", "interlocked", "--size", "96x64", "--validate", "-o", output};
+}
+
+TEST(Cli, HelpPagesAndVersion) {
+  for (const Words& arguments :
+       {Words{"--help"}, Words{"render", "--help"}, Words{"info", "--help"}, Words{"scenes", "--help"}, Words{"-h"}}) {
+    const ProcessResult result = vitrail(arguments);
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_NE(result.out.find("Usage:"), std::string::npos);
+    EXPECT_EQ(result.error, "");
+  }
+  EXPECT_TRUE(vitrail({"--version"}).out.starts_with("vitrail "));
+  const ProcessResult nothing = vitrail({});
+  EXPECT_EQ(nothing.exitCode, 2);
+  EXPECT_NE(nothing.error.find("Usage:"), std::string::npos);
+}
+
+// Every option that the parser knows is on the help page.
+TEST(Cli, TheHelpPageNamesEveryOption) {
+  const std::string help = vitrail({"render", "--help"}).out;
+  for (const char* option : {"--scene", "--count", "--seed", "--size", "--camera", "--orbit", "--opacity",
+                             "--background", "--output", "-o", "--json", "--quiet", "--device", "--validate"}) {
+    EXPECT_NE(help.find(option), std::string::npos) << option;
+  }
+}
+
+TEST(Cli, WrongUsageIsOneLineAndExitCode2) {
+  const Words scene = {"render", "--scene", "spheres", "-o", "a.png"};
+  const auto with = [&](const Words& more) {
+    Words all = scene;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  const std::vector<std::pair<Words, std::string>> cases = {
+      {{"paint"}, "paint"},
+      {{"render"}, "nothing to draw"},
+      {{"render", "--scene", "spheres"}, "-o"},
+      {{"render", "a.glb", "--scene", "spheres", "-o", "a.png"}, "exclude"},
+      {{"render", "a.glb", "b.glb", "-o", "a.png"}, "b.glb"},
+      {{"render", "--scene", "sheres", "-o", "a.png"}, "spheres"},
+      {{"render", "a.glb", "--count", "3", "-o", "a.png"}, "--scene"},
+      {{"render", "--scene", "spheres", "-o", "a.jpg"}, ".png"},
+      {with({"--json", "a.png"}), "same file"},
+      {with({"--size", "100"}), "--size"},
+      {with({"--size", "0x10"}), "--size"},
+      {with({"--size", "-5x10"}), "--size"},
+      {with({"--size", "10x10x10"}), "--size"},
+      {with({"--size", "99999999999x10"}), "--size"},
+      {with({"--orbit", "1"}), "--orbit"},
+      {with({"--orbit", "1,nan"}), "--orbit"},
+      {with({"--orbit", "0,91"}), "elevation"},
+      {with({"--orbit", "0,0,0"}), "zoom"},
+      {with({"--orbit", "0,0", "--camera", "0"}), "exclude"},
+      {with({"--camera", "7"}), "--camera"},
+      {with({"--camera", "-1"}), "--camera"},
+      {with({"--opacity", "0"}), "--opacity"},
+      {with({"--opacity", "1.5"}), "--opacity"},
+      {with({"--opacity", "nan"}), "--opacity"},
+      {with({"--opacity", "half"}), "--opacity"},
+      {with({"--background", "red"}), "--background"},
+      {with({"--background", "#12345"}), "--background"},
+      {with({"--background", "#12345g"}), "--background"},
+      {with({"--background", "#-12345"}), "--background"},
+      {with({"--count", "0"}), "count"},
+      {with({"--count", "1e3"}), "--count"},
+      {with({"--count", "4000000000"}), "count"},
+      {with({"--seed", "-1"}), "--seed"},
+      {with({"--nodes", "hdr"}), "--nodes"},
+      {with({"--size"}), "--size"},
+  };
+  for (const auto& [arguments, reason] : cases) {
+    expectRefusal(kTool, arguments, 2, reason);
+    expectRefusal(kSanitizedTool, arguments, 2, reason);
+  }
+}
+
+TEST(Cli, WhatCannotBeDoneIsOneLineAndExitCode1) {
+  for (const std::string& tool : {kTool, kSanitizedTool}) {
+    expectRefusal(tool, {"render", "no-such-file.glb", "-o", "a.png"}, 1, "no-such-file.glb");
+    expectRefusal(tool, {"render", "/", "-o", "a.png"}, 1, "/");
+    expectRefusal(tool, {"render", "/etc/passwd", "-o", "a.png"}, 1, ".gltf");
+    expectRefusal(tool, {"render", "--scene", "spheres", "-o", "nowhere/a.png"}, 1, "nowhere");
+    expectRefusal(tool, {"render", "--scene", "spheres", "-o", "a.png", "--json", "nowhere/a.json"}, 1, "nowhere");
+  }
+  expectRefusal(kTool, {"render", "--scene", "spheres", "-o", "a.png", "--device", "abacus"}, 1, "abacus");
+  expectRefusal(kTool, {"render", "--scene", "spheres", "-o", "a.png", "--device", "99"}, 1, "99");
+  expectRefusal(kTool, {"render", "--scene", "spheres", "-o", "a.png", "--size", "65536x1"}, 1, "--size");
+}
+
+TEST(Cli, EveryBadFileOfTheCorpusIsRefused) {
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(VITRAIL_TEST_CORPUS) / "bad")) {
+    if (!entry.is_regular_file()) continue;
+    expectRefusal(kSanitizedTool, {"render", entry.path().string(), "-o", "a.png"}, 1,
+                  entry.path().filename().string());
+    ++files;
+  }
+  EXPECT_GE(files, 30U);
+}
+
+TEST(Cli, AMachineWithoutADriverIsToldWhatToInstall) {
+  const TemporaryFolder folder;
+  const ProcessResult result =
+      vitrail({"info"}, {.folder = folder.path(),
+                         .environment = {"VK_ICD_FILENAMES=/none.json", "VK_DRIVER_FILES=/none.json"},
+                         .running = {}});
+  EXPECT_EQ(result.exitCode, 1);
+  EXPECT_NE(result.error.find("mesa-vulkan-drivers"), std::string::npos) << result.error;
+}
+
+TEST(Cli, InfoAndScenesListWhatThereIs) {
+  const ProcessResult info = vitrail({"info"});
+  EXPECT_EQ(info.exitCode, 0) << info.error;
+  EXPECT_NE(info.out.find("driver"), std::string::npos);
+  const ProcessResult scenes = vitrail({"scenes"});
+  EXPECT_EQ(scenes.exitCode, 0);
+  for (const char* name : {"spheres", "planes", "interlocked", "mannequins", "hairball", "smoke"}) {
+    EXPECT_NE(scenes.out.find(name), std::string::npos) << name;
+  }
+}
+
+TEST(Cli, APictureAndItsReport) {
+  const TemporaryFolder folder;
+  Words arguments = smallRender("a.png");
+  arguments.insert(arguments.end(), {"--json", "a.json"});
+  const ProcessResult result = vitrail(arguments, {.folder = folder.path(), .environment = {}, .running = {}});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_EQ(folder.names(), (Words{"a.json", "a.png"}));
+  EXPECT_TRUE(result.out.starts_with("a.png: 96x64, ")) << result.out;
+
+  const ReadPng png = readPng(folder.file("a.png"));
+  EXPECT_EQ(png.width, 96U);
+  EXPECT_EQ(png.height, 64U);
+  EXPECT_FALSE(png.hasAlpha);
+  EXPECT_NE(std::count(png.rgba.begin(), png.rgba.end(), 255), static_cast<std::ptrdiff_t>(png.rgba.size()));
+
+  const auto json = nlohmann::json::parse(readText(folder.path() / "a.json"));
+  EXPECT_TRUE(json.at("device").is_string());
+  EXPECT_TRUE(json.at("api").is_string());
+  EXPECT_EQ(json.at("method"), "linked-list");
+  EXPECT_EQ(json.at("width"), 96);
+  EXPECT_EQ(json.at("height"), 64);
+  EXPECT_EQ(json.at("samples"), 1);
+  EXPECT_EQ(json.at("exact"), true);
+  const auto& fragments = json.at("fragments");
+  EXPECT_GT(fragments.at("requested"), 0);
+  EXPECT_EQ(fragments.at("stored"), fragments.at("requested"));
+  EXPECT_EQ(fragments.at("missing"), 0);
+  EXPECT_GT(json.at("layers").at("max"), 1);
+  EXPECT_GT(json.at("layers").at("mean"), 1.0);
+  EXPECT_LE(json.at("layers").at("mean"), json.at("layers").at("max"));
+  EXPECT_GE(json.at("memory").at("nodes_bytes").get<std::uint64_t>(), 12 * fragments.at("stored").get<std::uint64_t>());
+  EXPECT_EQ(json.at("memory").at("heads_bytes"), 96 * 64 * 4);
+  EXPECT_GE(json.at("memory").at("peak_bytes"), json.at("memory").at("nodes_bytes"));
+  for (const char* pass : {"opaque", "clear", "collect", "resolve", "encode"}) {
+    EXPECT_GE(json.at("passes_ms").at(pass).get<double>(), 0.0) << pass;
+  }
+  EXPECT_GT(json.at("frame_ms"), 0.0);
+}
+
+TEST(Cli, TheSamePictureTenTimes) {
+  const TemporaryFolder folder;
+  std::string first;
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_EQ(vitrail(smallRender("a.png"), {.folder = folder.path(), .environment = {}, .running = {}}).exitCode, 0);
+    const std::string bytes = readText(folder.path() / "a.png");
+    if (i == 0) first = bytes;
+    EXPECT_TRUE(bytes == first) << "run " << i;
+  }
+}
+
+TEST(Cli, QuietPrintsNothing) {
+  const TemporaryFolder folder;
+  Words arguments = smallRender("a.png");
+  arguments.push_back("--quiet");
+  const ProcessResult result = vitrail(arguments, {.folder = folder.path(), .environment = {}, .running = {}});
+  EXPECT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_EQ(result.out + result.error, "");
+}
+
+TEST(Cli, ATransparentBackgroundMakesAnAlphaChannel) {
+  const TemporaryFolder folder;
+  Words arguments = smallRender("a.png");
+  arguments.insert(arguments.end(), {"--background", "transparent"});
+  ASSERT_EQ(vitrail(arguments, {.folder = folder.path(), .environment = {}, .running = {}}).exitCode, 0);
+  const ReadPng png = readPng(folder.file("a.png"));
+  EXPECT_TRUE(png.hasAlpha);
+  EXPECT_EQ(png.rgba[3], 0); // the corner shows nothing
+  std::uint8_t most = 0;
+  for (std::size_t i = 3; i < png.rgba.size(); i += 4) most = std::max(most, png.rgba[i]);
+  EXPECT_GT(most, 100);
+}
+
+TEST(Cli, TheBackgroundColourReachesThePictureExactly) {
+  const TemporaryFolder folder;
+  Words arguments = smallRender("a.png");
+  arguments.insert(arguments.end(), {"--background", "#0a80fe"});
+  ASSERT_EQ(vitrail(arguments, {.folder = folder.path(), .environment = {}, .running = {}}).exitCode, 0);
+  const ReadPng png = readPng(folder.file("a.png"));
+  EXPECT_EQ(png.rgba[0], 0x0a);
+  EXPECT_EQ(png.rgba[1], 0x80);
+  EXPECT_EQ(png.rgba[2], 0xfe);
+}
+
+TEST(Cli, AnOldPictureStaysUntilTheNewOneIsThere) {
+  const TemporaryFolder folder;
+  const std::string old = "an older picture";
+  std::ofstream(folder.path() / "a.png") << old;
+  const ProcessOptions here = {.folder = folder.path(), .environment = {}, .running = {}};
+  EXPECT_EQ(vitrail({"render", "no-such-file.glb", "-o", "a.png"}, here).exitCode, 1);
+  EXPECT_EQ(readText(folder.path() / "a.png"), old);
+  EXPECT_EQ(vitrail(smallRender("a.png"), here).exitCode, 0);
+  EXPECT_EQ(readPng(folder.file("a.png")).width, 96U);
+  EXPECT_EQ(folder.names(), Words{"a.png"});
+}
+
+TEST(Cli, ALinkStaysALink) {
+  const TemporaryFolder folder;
+  fs::create_symlink("real.png", folder.path() / "link.png");
+  std::ofstream(folder.path() / "real.png") << "old";
+  ASSERT_EQ(vitrail(smallRender("link.png"), {.folder = folder.path(), .environment = {}, .running = {}}).exitCode, 0);
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "link.png"));
+  EXPECT_EQ(readPng(folder.file("real.png")).width, 96U);
+}
+
+TEST(Cli, AnInterruptedRenderLeavesNothing) {
+  for (const int milliseconds : {20, 150, 600, 1500}) {
+    const TemporaryFolder folder;
+    const auto interrupt = [&](pid_t child) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+      ::kill(child, SIGINT);
+    };
+    const ProcessResult result = vitrail({"render", "--scene", "hairball", "--size", "1920x1080", "-o", "a.png"},
+                                         {.folder = folder.path(), .environment = {}, .running = interrupt});
+    if (result.exitCode == 0) continue; // a machine so fast that it was done
+    EXPECT_EQ(result.exitCode, 128 + SIGINT) << milliseconds;
+    EXPECT_EQ(folder.names(), Words{}) << milliseconds;
+  }
+}
+
+TEST(Cli, AFullDiskLeavesNothing) {
+  const ProcessResult result = vitrail(smallRender("/dev/full"));
+  EXPECT_EQ(result.exitCode, 1);
+  EXPECT_NE(result.error.find("No space left on device"), std::string::npos) << result.error;
+}
+
+TEST(Cli, AMovedProgramNeedsNoFilesBesideIt) {
+  const TemporaryFolder folder;
+  fs::copy_file(kTool, folder.path() / "moved");
+  const ProcessResult result =
+      run({folder.file("moved"), "render", "--scene", "interlocked", "--size", "32x32", "-o", "a.png"},
+          {.folder = folder.path(), .environment = {}, .running = {}});
+  EXPECT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_EQ(readPng(folder.file("a.png")).width, 32U);
+}
+
+// A real model, as Debian's assimp-testmodels ships it.
+TEST(Cli, AnEngineSeenThrough) {
+  const TemporaryFolder folder;
+  const ProcessResult result =
+      vitrail({"render", VITRAIL_TEST_MODELS "/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb", "--opacity",
+               "0.25", "--size", "320x180", "--validate", "-o", "engine.png", "--json", "engine.json"},
+              {.folder = folder.path(), .environment = {}, .running = {}});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const auto json = nlohmann::json::parse(readText(folder.path() / "engine.json"));
+  EXPECT_EQ(json.at("exact"), true);
+  EXPECT_GT(json.at("layers").at("max"), 10);
+}
+
+} // namespace
+} // namespace vitrail::tests

@@ -1,0 +1,227 @@
+// Files that are wrong end as one clear line, whatever is wrong with them.
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "scene/load.h"
+
+namespace vitrail::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path corpus() { return VITRAIL_TEST_CORPUS; }
+
+// The message of the failure; empty where the file loads.
+std::string failureOf(const fs::path& path) {
+  try {
+    loadModel(path);
+    return {};
+  } catch (const LoadError& error) {
+    return error.what();
+  }
+}
+
+// What each file of the corpus is refused with, or the part of it that is ours.
+const std::map<std::string, std::string>& expectedMessages() {
+  static const std::map<std::string, std::string> messages{
+      {"accessor_bufferview_range.gltf", "accessor 0: bufferView is 1, but bufferViews has 1 element"},
+      {"accessor_component_type.gltf", "accessor 0: componentType is 5130, not a component type"},
+      {"accessor_count_2_32.gltf",
+       "accessor 0: 4294967296 elements of 12 bytes at offset 0, 12 bytes apart, reach past the end of buffer view 0, "
+       "which has 36 bytes"},
+      {"accessor_count_fraction.gltf", "accessor 0: count is 2.5, not a whole number"},
+      {"accessor_count_negative.gltf", "accessor 0: count is -3, below zero"},
+      {"accessor_count_string.gltf", "accessor 0: count is not a number"},
+      {"accessor_count_too_many.gltf",
+       "accessor 0: 4 elements of 12 bytes at offset 0, 12 bytes apart, reach past the end of buffer view 0, which has "
+       "36 bytes"},
+      {"accessor_offset_2_53.gltf",
+       "accessor 0: 3 elements of 12 bytes at offset 9007199254740992, 12 bytes apart, reach past the end of buffer "
+       "view 0, which has 36 bytes"},
+      {"accessor_offset_2_64.gltf", "accessor 0: byteOffset is 18446744073709551612, more than 9007199254740992"},
+      {"accessor_type.gltf", "accessor 0: type is \"VEC5\", not an accessor type"},
+      {"attribute_counts.gltf", "mesh 0 primitive 0: has 3 positions, but 2 of NORMAL"},
+      {"bin_first.glb", "the first GLB chunk is not JSON"},
+      {"bin_length.glb", "GLB chunk 1 states 2147483644 bytes, but only 36 are left"},
+      {"bin_short.glb", "buffer 0: byteLength is 360, but it has 36 bytes"},
+      {"buffer_absolute_file.gltf", "buffer 0: /dev/zero: is not relative to the model"},
+      {"buffer_garbage_uri.gltf", "buffer 0: its data URI holds a character that is not base64"},
+      {"buffer_longer_than_data.gltf", "buffer 0: byteLength is 37, but it has 36 bytes"},
+      {"buffer_missing_file.gltf", "buffer 0: not-there.bin: no such file"},
+      {"buffer_remote.gltf", "buffer 0: https://example.org/data.bin is not a local file"},
+      {"bufferview_buffer_range.gltf", "buffer view 0: buffer is 9, but buffers has 1 element"},
+      {"bufferview_length_2_32.gltf",
+       "buffer view 0: 4294967332 bytes at offset 0 reach past the end of buffer 0, which has 36"},
+      {"bufferview_offset_2_53.gltf",
+       "buffer view 0: 36 bytes at offset 9007199254740956 reach past the end of buffer 0, which has 36"},
+      {"bufferview_stride_odd.gltf", "buffer view 0: byteStride is 13, not a multiple of 4 up to 252"},
+      {"bufferview_stride_small.gltf", "accessor 0: its elements have 12 bytes, but the stride of buffer view 0 is 8"},
+      {"camera_flat.gltf", "camera 0: yfov is not between 0 and pi"},
+      {"empty.gltf", "is empty"},
+      {"extension_required.gltf",
+       "it requires the extension KHR_draco_mesh_compression, which Vitrail does not implement"},
+      {"face_before_start.obj", "it cannot be read: "},
+      {"face_index_negative.ply", "face 0: names vertex -1, but there are 3"},
+      {"face_index_range.ply", "face 0: names vertex 3, but there are 3"},
+      {"face_list_length.ply", "4294967295 list values are stated, but only 12 bytes are left"},
+      {"face_range.obj", "it cannot be read: "},
+      {"facet_count.stl", "the STL header states 4294967295 facets, but the file has room for 1"},
+      {"four_corners.stl", "line 7: a loop has more than 3 vertices"},
+      {"header_only.glb", "the GLB file ends after 12 bytes, in its header"},
+      {"header_short.stl", "the file ends after 60 bytes, in the STL header"},
+      {"header_unfinished.ply", "the PLY header does not end"},
+      {"image_garbage.gltf", "image 0: is neither PNG nor JPEG"},
+      {"image_huge.gltf", "image 0: the image states 16000 x 16000 pixels, but its file has only 72 bytes"},
+      {"image_over_limit.gltf", "image 0: the image has 100000 x 2 pixels, but a side may have 1 to 16384"},
+      {"image_truncated.gltf", "image 0: the image cannot be decoded: "},
+      {"index_floats.gltf", "accessor 1: is used as indices, but does not hold unsigned integers"},
+      {"index_range.gltf", "mesh 0 primitive 0: index 2 is 3, but there are 3 vertices"},
+      {"index_restart.gltf", "mesh 0 primitive 0: index 2 is 65535, but there are 3 vertices"},
+      {"index_vectors.gltf", "accessor 1: is used as indices, but does not hold unsigned integers"},
+      {"joint_matrices.gltf", "skin 0: has 2 joints, but 1 inverse bind matrices"},
+      {"joint_range.gltf", "mesh 0 primitive 0: vertex 0 follows joint 2, but the skin has 2 joints"},
+      {"json_1e999.gltf", "the JSON is not valid: "},
+      {"json_array.gltf", "the JSON is not an object, so it is not glTF"},
+      {"json_length.glb", "GLB chunk 0 states 4294967280 bytes, but only 388 are left"},
+      {"json_nan.gltf", "the JSON is not valid: "},
+      {"json_nested.gltf", "the JSON is nested more than 100 levels deep"},
+      {"json_truncated.gltf", "the JSON is not valid: "},
+      {"material_factor_range.gltf",
+       "material 0: pbrMetallicRoughness.metallicFactor is 1e+39, which a 32-bit float cannot hold"},
+      {"material_factor_type.gltf", "material 0: pbrMetallicRoughness.baseColorFactor has 3 numbers where 4 belong"},
+      {"material_range.gltf", "mesh 0: primitives[0].material is 0, but materials has 0 elements"},
+      {"material_texture_range.gltf",
+       "material 0: pbrMetallicRoughness.baseColorTexture.index is 1, but textures has 1 element"},
+      {"mesh_mode.gltf", "mesh 0 primitive 0: mode is 7, which is none"},
+      {"mesh_points_only.gltf", "the file holds no triangles"},
+      {"no_asset.gltf", "the JSON has no asset, so it is not glTF"},
+      {"no_bin.glb", "buffer 0: has no uri, and the file has no binary chunk for it"},
+      {"no_facets.stl", "the file holds no triangles"},
+      {"no_format.ply", "the PLY header states no format"},
+      {"node_child_range.gltf", "node 0: children[0] is 5, but nodes has 1 element"},
+      {"node_cycle.gltf", "node 1 is its own ancestor, or below a node that is"},
+      {"node_far_away.gltf", "the model reaches to 1e+30, farther than 1e+15"},
+      {"node_matrix_short.gltf", "node 0: matrix has 15 numbers where 16 belong"},
+      {"node_mesh_range.gltf", "node 0: mesh is 1, but meshes has 1 element"},
+      {"node_rotation_zero.gltf", "node 0: rotation is zero, not a quaternion"},
+      {"node_two_parents.gltf", "node 2 is a child of node 0 and of node 1, but may have one parent only"},
+      {"not_a_number.stl", "line 6: one is not a finite number"},
+      {"not_finite.stl", "facet 0: a corner is not finite"},
+      {"not_ply.ply", "the file does not begin with \"ply\""},
+      {"nothing.obj", "it cannot be read: "},
+      {"points_only.obj", "the file holds no triangles"},
+      {"points_only.ply", "the file holds no triangles"},
+      {"position_1e999.obj", "mesh 0 \"defaultobject\": vertex 1 is not finite"},
+      {"position_infinite.gltf", "mesh 0 primitive 0: position 2 of accessor 0 is not finite"},
+      {"position_nan.gltf", "mesh 0 primitive 0: position 1 of accessor 0 is not finite"},
+      {"position_nan.obj", "mesh 0 \"defaultobject\": vertex 1 is not finite"},
+      {"positions_equal.gltf", "the file holds no triangles"},
+      {"scene_range.gltf", "scene is 1, but scenes has 1 element"},
+      {"scene_string.gltf", "scene is not a number"},
+      {"sparse_component_type.gltf", "accessor 0: sparse.indices have component type 5126, not an unsigned one"},
+      {"sparse_count.gltf", "accessor 0: sparse.count is 4, more than the 3 elements that there are"},
+      {"sparse_index_range.gltf", "accessor 0: sparse index 0 is 3, but there are 3 elements"},
+      {"sparse_values_short.gltf",
+       "accessor 0: sparse.values: 2 elements of 12 bytes at offset 0, 12 bytes apart, reach past the end of buffer "
+       "view 2, which has 12 bytes"},
+      {"texture_no_image.gltf", "material 0: texture 0 has no image that can be read"},
+      {"truncated.glb", "the GLB file is cut off: it states 408 bytes and has 400"},
+      {"truncated.obj", "the file holds no triangles"},
+      {"truncated_binary.stl", "the STL header states 2 facets, but the file has room for 1"},
+      {"truncated_text.stl", "line 5: the file ends inside a loop"},
+      {"two_corners.stl", "line 6: a loop ends without 3 vertices"},
+      {"type_unknown.ply", "line 4: \"real\" is not a PLY type"},
+      {"unknown.fbx", "has the unknown extension .fbx; .gltf, .glb, .obj, .ply and .stl can be read"},
+      {"version_1.glb", "it is GLB version 1, but only version 2 can be read"},
+      {"version_1.gltf", "it is glTF 1.0, but only glTF 2.0 can be read"},
+      {"vertex_1e999.ply", "vertex 1: \"1e999\" is not a finite number"},
+      {"vertex_count_2_64.ply", "18446744073709551615 vertices are too many"},
+      {"vertex_count_large.ply", "4000000000 elements named vertex are stated, but only 36 bytes are left"},
+      {"vertex_count_negative.ply", "line 3: \"-3\" is not a count of elements"},
+      {"vertex_nan.ply", "vertex 1: \"nan\" is not a finite number"},
+      {"vertex_no_z.ply", "the PLY vertices have no x, y and z"},
+      {"vertex_truncated.ply", "3 elements named vertex are stated, but only 32 bytes are left"},
+      {"zero_filled_count.gltf", "accessor 0: counts 2147483648 elements without a buffer view, more than 1000000"},
+  };
+  return messages;
+}
+
+TEST(LoadBadFiles, EachIsRefusedWithOneLineThatSaysWhatIsWrong) {
+  std::set<std::string> seen;
+  for (const fs::directory_entry& entry : fs::directory_iterator(corpus() / "bad")) {
+    const std::string name = entry.path().filename();
+    SCOPED_TRACE(name);
+    seen.insert(name);
+    const std::string message = failureOf(entry.path());
+    const auto expected = expectedMessages().find(name);
+    ASSERT_NE(expected, expectedMessages().end()) << "the file has no entry in this test; it says: " << message;
+    EXPECT_NE(message.find(expected->second), std::string::npos) << "it says: " << message;
+    EXPECT_FALSE(message.empty());
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    EXPECT_LT(message.size(), 300U);
+  }
+  EXPECT_EQ(seen.size(), expectedMessages().size()) << "a file of this test is gone";
+}
+
+TEST(LoadBadFiles, WhatIsNoFileIsRefused) {
+  EXPECT_EQ(failureOf(corpus() / "not-there.glb"), "no such file");
+  EXPECT_EQ(failureOf(corpus()), "is a directory, not a model file");
+  EXPECT_EQ(failureOf("/dev/zero"), "is not a regular file");
+  EXPECT_EQ(failureOf(corpus() / "make_corpus.py"),
+            "has the unknown extension .py; .gltf, .glb, .obj, .ply and .stl can be read");
+}
+
+// Every prefix of a good file either loads or is refused: none crashes.
+TEST(LoadBadFiles, CutOffFilesAreHandledAtEveryByte) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(corpus() / "good")) {
+    const std::string extension = entry.path().extension();
+    std::vector<std::byte> file(fs::file_size(entry.path()));
+    FILE* stream = std::fopen(entry.path().c_str(), "rb");
+    ASSERT_NE(stream, nullptr);
+    ASSERT_EQ(std::fread(file.data(), 1, file.size(), stream), file.size());
+    std::fclose(stream);
+    const std::size_t step = std::max<std::size_t>(file.size() / 200, 1);
+    for (std::size_t size = 0; size < file.size(); size += step) {
+      const std::span<const std::byte> part = std::span(file).first(size);
+      try {
+        if (extension == ".gltf" || extension == ".glb") loadGltf(part, {});
+        if (extension == ".obj") loadObj(part, {});
+        if (extension == ".ply") loadPly(part, {});
+        if (extension == ".stl") loadStl(part);
+      } catch (const LoadError& error) {
+        EXPECT_NE(std::string(error.what()), "") << entry.path() << " cut to " << size;
+      }
+    }
+  }
+}
+
+// assimp's own test models hold odd and broken files of many writers.
+TEST(LoadBadFiles, AssimpsTestModelsLoadOrAreRefused) {
+  const fs::path folder = "/usr/share/assimp/models";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not installed";
+  std::size_t loaded = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    std::string extension = entry.path().extension();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (!std::set<std::string>{".gltf", ".glb", ".obj", ".ply", ".stl"}.contains(extension)) continue;
+    try {
+      const Scene scene = loadModel(entry.path());
+      EXPECT_FALSE(scene.draws.empty()) << entry.path();
+      ++loaded;
+    } catch (const LoadError& error) {
+      EXPECT_NE(std::string(error.what()), "") << entry.path();
+    }
+  }
+  EXPECT_GT(loaded, 50U);
+}
+
+} // namespace
+} // namespace vitrail::tool

@@ -1,0 +1,175 @@
+// The values that OBJ, PLY and STL files load to.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "scene/load.h"
+#include "scene/polygon.h"
+
+namespace vitrail::tool {
+namespace {
+
+Scene loadGood(const std::string& name) {
+  return loadModel(std::filesystem::path(VITRAIL_TEST_CORPUS) / "good" / name);
+}
+
+void expectNear(const glm::vec3& actual, const glm::vec3& expected, float tolerance = 1e-5F) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(actual[c], expected[c], tolerance) << "component " << c;
+}
+
+glm::vec3 areaVector(const Mesh& mesh, std::size_t triangle) {
+  const auto corner = [&](std::size_t c) { return mesh.vertices[mesh.indices[3 * triangle + c]].position; };
+  return glm::cross(corner(1) - corner(0), corner(2) - corner(0)) * 0.5F;
+}
+
+float area(const Mesh& mesh) {
+  float sum = 0.0F;
+  for (std::size_t i = 0; i < mesh.indices.size() / 3; ++i) sum += glm::length(areaVector(mesh, i));
+  return sum;
+}
+
+constexpr float linearHalf = 0.21404114F; // 0.5 on the sRGB curve, in linear light
+
+TEST(LoadPly, ColorsNamedByOneLetterAreSrgbAndTheirAlphaBlends) {
+  const Scene scene = loadGood("colors.ply");
+  const Mesh& mesh = scene.meshes.at(0);
+  ASSERT_EQ(mesh.vertices.size(), 4U);
+  EXPECT_EQ(mesh.indices.size(), 6U) << "the quad becomes two triangles";
+  expectNear(glm::vec3(mesh.vertices[0].color), {1.0F, linearHalf, 0.0F});
+  EXPECT_EQ(mesh.vertices[0].color.a, 1.0F);
+  EXPECT_NEAR(mesh.vertices[1].color.a, 0.2F, 1e-6F);
+  expectNear(mesh.vertices[2].normal, {0.0F, 0.0F, 1.0F});
+  const Material& material = scene.materials.at(0);
+  EXPECT_EQ(material.alphaMode, AlphaMode::Blend);
+  EXPECT_TRUE(material.doubleSided);
+  EXPECT_EQ(material.metallic, 0.0F);
+  EXPECT_EQ(material.roughness, 0.5F);
+  EXPECT_EQ(material.baseColor, glm::vec4(1.0F));
+}
+
+TEST(LoadPly, BigEndianStripsTurnToTheirNormals) {
+  const Scene scene = loadGood("strips_big_endian.ply");
+  const Mesh& mesh = scene.meshes.at(0);
+  ASSERT_EQ(mesh.indices.size(), 9U) << "two triangles before the restart, one after it";
+  expectNear(mesh.vertices[3].position, {1.0F, 1.0F, 0.0F});
+  expectNear(glm::vec3(mesh.vertices[0].color), {1.0F, 0.50288649F, 0.0F});
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(areaVector(mesh, i).z, 0.0F);
+  EXPECT_EQ(scene.materials.at(0).alphaMode, AlphaMode::Opaque);
+}
+
+TEST(LoadPly, ConcavePolygonsAreFilledOnce) {
+  const Scene scene = loadGood("concave.ply");
+  EXPECT_NEAR(area(scene.meshes.at(0)), 10.0F, 1e-4F);
+  expectNear(glm::vec3(scene.materials.at(0).baseColor), glm::vec3(0.8F));
+}
+
+TEST(LoadStl, TextHasNormalsSmoothedOverFlatEdgesOnly) {
+  const Scene scene = loadGood("text.stl");
+  const Mesh& mesh = scene.meshes.at(0);
+  ASSERT_EQ(mesh.indices.size(), 9U);
+  for (std::size_t i = 0; i < 6; ++i) expectNear(mesh.vertices[mesh.indices[i]].normal, {0.0F, 0.0F, 1.0F});
+  for (std::size_t i = 6; i < 9; ++i) expectNear(mesh.vertices[mesh.indices[i]].normal, {0.0F, -1.0F, 0.0F});
+  expectNear(glm::vec3(scene.materials.at(0).baseColor), glm::vec3(0.8F));
+}
+
+TEST(LoadStl, BinaryFilesMayBeginWithSolid) { EXPECT_EQ(loadGood("solid_binary.stl").meshes.at(0).indices.size(), 3U); }
+
+TEST(LoadStl, MagicsColors) {
+  const Scene scene = loadGood("magics.stl");
+  const std::vector<Vertex>& vertices = scene.meshes.at(0).vertices;
+  ASSERT_EQ(vertices.size(), 6U);
+  for (const Vertex& vertex : vertices) {
+    expectNear(glm::vec3(vertex.color),
+               vertex.position.z < 1.0F ? glm::vec3(1.0F, 0.0F, 0.0F) : glm::vec3(0.0F, 1.0F, 0.0F));
+    EXPECT_NEAR(vertex.color.a, 0.2F, 1e-6F);
+  }
+  EXPECT_EQ(scene.materials.at(0).alphaMode, AlphaMode::Blend);
+}
+
+TEST(LoadStl, ViscamColors) {
+  const Scene scene = loadGood("viscam.stl");
+  for (const Vertex& vertex : scene.meshes.at(0).vertices)
+    expectNear(glm::vec3(vertex.color), vertex.position.z < 1.0F ? glm::vec3(0.0F, 0.0F, 1.0F) : glm::vec3(0.8F));
+  EXPECT_EQ(scene.materials.at(0).alphaMode, AlphaMode::Opaque);
+}
+
+const Material& materialNamed(const Scene& scene, const std::string& name) {
+  const auto found = std::ranges::find(scene.materials, name, &Material::name);
+  if (found == scene.materials.end()) throw std::out_of_range(name);
+  return *found;
+}
+
+TEST(LoadObj, MaterialsBecomeTranslucentByFactorAndByTexture) {
+  const Scene scene = loadGood("box.obj");
+  const Material& glass = materialNamed(scene, "glass");
+  EXPECT_EQ(glass.alphaMode, AlphaMode::Blend);
+  EXPECT_TRUE(glass.doubleSided);
+  EXPECT_EQ(glass.metallic, 0.0F);
+  expectNear(glm::vec3(glass.baseColor), {1.0F, linearHalf, 0.0F});
+  EXPECT_EQ(glass.baseColor.a, 0.25F);
+  const Material& cut = materialNamed(scene, "cut\\out");
+  EXPECT_EQ(cut.alphaMode, AlphaMode::Blend) << "its texture has translucent pixels";
+  ASSERT_EQ(cut.baseColorTexture.image, 0);
+  EXPECT_EQ(scene.images.at(0).rgba.at(7), 128);
+  EXPECT_EQ(materialNamed(scene, "fog").baseColor.a, 0.25F) << "Tr is what d lacks to 1";
+}
+
+TEST(LoadObj, FacesTurnToTheirNormals) {
+  const Scene scene = loadGood("box.obj");
+  for (const Draw& draw : scene.draws) {
+    if (scene.materials[draw.material].name != "glass") continue;
+    const Mesh& mesh = scene.meshes[draw.mesh];
+    ASSERT_EQ(mesh.indices.size(), 6U);
+    expectNear(mesh.vertices[0].normal, {0.0F, 0.0F, -1.0F});
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_LT(areaVector(mesh, i).z, 0.0F);
+  }
+}
+
+TEST(LoadObj, TextureCoordinatesGrowDownwards) {
+  const Scene scene = loadGood("box.obj");
+  bool found = false;
+  for (const Mesh& mesh : scene.meshes)
+    for (const Vertex& vertex : mesh.vertices) found = found || vertex.texCoord0 == glm::vec2(1.0F, 0.75F);
+  EXPECT_TRUE(found);
+}
+
+TEST(LoadObj, VertexColors) {
+  const Scene scene = loadGood("vertex_colors.obj");
+  expectNear(glm::vec3(scene.meshes.at(0).vertices.at(0).color), {1.0F, linearHalf, 0.0F});
+  EXPECT_EQ(scene.materials.at(0).baseColor, glm::vec4(1.0F));
+}
+
+TEST(AddPolygon, ConvexAndConcavePolygonsKeepTheirWindingInAnyPlane) {
+  const std::vector<glm::vec2> arrow{{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}};
+  for (int plane = 0; plane < 3; ++plane)
+    for (const bool reversed : {false, true}) {
+      Mesh mesh;
+      std::vector<std::uint32_t> outline;
+      for (const glm::vec2& p : arrow) {
+        Vertex vertex;
+        vertex.position[(plane + 1) % 3] = p.x;
+        vertex.position[(plane + 2) % 3] = p.y;
+        outline.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+        mesh.vertices.push_back(vertex);
+      }
+      if (reversed) std::ranges::reverse(outline);
+      addPolygon(outline, mesh.vertices, mesh.indices);
+      ASSERT_EQ(mesh.indices.size(), 9U);
+      EXPECT_NEAR(area(mesh), 10.0F, 1e-4F);
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_GT(areaVector(mesh, i)[plane] * (reversed ? -1.0F : 1.0F), 0.0F);
+    }
+}
+
+TEST(AddPolygon, FewerThanThreeCornersAreNothing) {
+  const std::vector<Vertex> vertices(2);
+  const std::vector<std::uint32_t> corners{0, 1};
+  std::vector<std::uint32_t> triangles;
+  addPolygon(corners, vertices, triangles);
+  EXPECT_TRUE(triangles.empty());
+}
+
+} // namespace
+} // namespace vitrail::tool

@@ -1,0 +1,369 @@
+// The double-precision reference against values computed by hand.
+#include "../reference/reference.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "../reference/compare.h"
+#include "../reference/rays.h"
+#include "../reference/shading.h"
+#include "../reference/test_scenes.h"
+
+namespace vitrail::tool::reference {
+namespace {
+
+void expectNear(const glm::dvec3& actual, const glm::dvec3& expected, double tolerance) {
+  EXPECT_NEAR(actual.r, expected.r, tolerance);
+  EXPECT_NEAR(actual.g, expected.g, tolerance);
+  EXPECT_NEAR(actual.b, expected.b, tolerance);
+}
+
+void expectPixel(const ReferencePicture& picture, std::size_t index, const std::array<int, 4>& expected) {
+  for (std::size_t c = 0; c < 4; ++c) {
+    EXPECT_EQ(int{picture.picture.rgba[index * 4 + c]}, expected[c]) << "pixel " << index << ", channel " << c;
+  }
+}
+
+ReferenceOptions straightOptions(std::uint32_t width, std::uint32_t height) {
+  ReferenceOptions options;
+  options.width = width;
+  options.height = height;
+  options.view = straightView();
+  return options;
+}
+
+// |x| + |y| + |z| = 1: every point of it is known in closed form.
+Scene octahedron(const glm::mat4& transform) {
+  Scene scene;
+  Mesh mesh;
+  for (const glm::vec3 corner : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, -1, 0),
+                                 glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)}) {
+    Vertex vertex;
+    vertex.position = corner;
+    vertex.normal = corner;
+    mesh.vertices.push_back(vertex);
+  }
+  mesh.indices = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  scene.meshes.push_back(mesh);
+  scene.materials.push_back(unlitMaterial(glm::vec4(1.0F, 1.0F, 1.0F, 0.5F)));
+  Draw draw;
+  draw.transform = transform;
+  scene.draws.push_back(draw);
+  return scene;
+}
+
+TEST(ReferenceShading, SrgbCurve) {
+  EXPECT_NEAR(decodeSrgb(0.5), 0.214041140, 1e-9);
+  EXPECT_NEAR(encodeSrgb(0.5), 0.735356983, 1e-9);
+  EXPECT_NEAR(decodeSrgb(0.02), 0.02 / 12.92, 1e-15);
+  EXPECT_DOUBLE_EQ(encodeSrgb(1.0), 1.0);
+  for (int i = 0; i < 256; ++i) EXPECT_EQ(int{quantize8(encodeSrgb(decodeSrgb(i / 255.0)))}, i);
+  EXPECT_EQ(int{quantize8(2.0)}, 255);
+  EXPECT_EQ(int{quantize8(-1.0)}, 0);
+  EXPECT_EQ(int{quantize8(std::numeric_limits<double>::quiet_NaN())}, 0);
+}
+
+TEST(ReferenceShading, Sky) {
+  expectNear(skyColor({1, 0, 0}), {0.70, 0.78, 0.88}, 1e-12);
+  expectNear(skyColor({0, 1, 0}), {0.18, 0.36, 0.70}, 1e-12);
+  expectNear(skyColor({0, -1, 0}), {0.30, 0.28, 0.26}, 1e-12);
+  expectNear(skyColor({std::sqrt(1.0 - 0.0625), 0.25, 0}), {0.44, 0.57, 0.79}, 1e-12); // half way: sqrt(0.25)
+}
+
+// N = V = L: F = F0, D = 1 / pi and Vis = 1/4, so direct is 2 (0.96 + 0.01) / pi; the hemisphere is at its middle.
+TEST(ReferenceShading, RoughDielectricAtNormalIncidence) {
+  Surface surface;
+  surface.metallic = 0.0;
+  expectNear(shade(surface), {0.6175212 + 0.2808, 0.6175212 + 0.286, 0.6175212 + 0.3016}, 1e-7);
+}
+
+// Roughness 1/2 makes a = 1/4 and D = 16 / pi at the peak: direct is 8 / pi times the base colour.
+TEST(ReferenceShading, MetalAtNormalIncidence) {
+  Surface surface;
+  surface.base = {0.5, 0.25, 1.0};
+  surface.roughness = 0.5;
+  surface.emissive = {0.0, 0.0, 0.125};
+  expectNear(shade(surface), {1.4082395, 0.7053697, 2.9614791}, 1e-7);
+}
+
+// Light 60 degrees off on black: F = 0.04 + 0.96 (1 - cos 30)^5, Vis = 1/3, NL = 1/2, so direct is F / (3 pi).
+TEST(ReferenceShading, ObliqueLight) {
+  Surface surface;
+  surface.base = glm::dvec3(0.0);
+  surface.metallic = 0.0;
+  surface.toLight = {std::sqrt(0.75), 0.0, 0.5};
+  const double direct = 0.0400414365 / (3.0 * std::numbers::pi);
+  expectNear(shade(surface), {direct + 0.0108, direct + 0.011, direct + 0.0116}, 1e-9);
+}
+
+// From below, lit from above: no direct light, and both hemispheres show their ground.
+TEST(ReferenceShading, LightBehind) {
+  Surface surface;
+  surface.normal = {0, -1, 0};
+  surface.toEye = {0, -1, 0};
+  surface.toLight = glm::normalize(glm::dvec3(0.1, 1.0, 0.0));
+  surface.metallic = 0.0;
+  expectNear(shade(surface), {1.04 * 0.18, 1.04 * 0.17, 1.04 * 0.16}, 1e-12);
+}
+
+TEST(ReferenceShading, TextureFilterAndWrap) {
+  Image image;
+  image.width = 2;
+  image.height = 1;
+  image.rgba = {0, 0, 0, 0, 255, 255, 255, 255};
+  TextureSlot slot;
+  slot.image = 0;
+  const auto red = [&](double u) { return sampleColorTexture(image, slot, {u, 0.5}).r; };
+  EXPECT_NEAR(red(0.25), 0.0, 1e-12);
+  EXPECT_NEAR(red(0.5), 0.5, 1e-12);
+  EXPECT_NEAR(red(0.625), 0.75, 1e-12);
+  EXPECT_NEAR(red(0.0), 0.5, 1e-12);
+  EXPECT_NEAR(red(-1.25), 1.0, 1e-12);
+  slot.sampler.wrapU = Wrap::ClampToEdge;
+  EXPECT_NEAR(red(0.0), 0.0, 1e-12);
+  EXPECT_NEAR(red(7.0), 1.0, 1e-12);
+  slot.sampler.wrapU = Wrap::MirroredRepeat;
+  EXPECT_NEAR(red(-0.25), 0.0, 1e-12);
+  EXPECT_NEAR(red(1.25), 1.0, 1e-12);
+  EXPECT_NEAR(red(1.75), 0.0, 1e-12);
+  slot.transform[2] = glm::vec3(0.25F, 0.0F, 1.0F);
+  EXPECT_NEAR(red(0.25), 0.5, 1e-12);
+}
+
+// Rays go exactly through corners and along edges here: still each pierces the surface once on either side.
+TEST(ReferenceRays, ClosedSurfaceIsHitTwice) {
+  for (const float mirror : {1.0F, -1.0F}) {
+    const Scene scene = octahedron(glm::scale(glm::mat4(1.0F), glm::vec3(mirror, 1.0F, 1.0F)));
+    const RayScene rays(scene, straightView());
+    std::vector<RayHit> hits;
+    for (int y = -20; y <= 20; ++y) {
+      for (int x = -20; x <= 20; ++x) {
+        const glm::dvec2 at(x / 16.0, y / 16.0);
+        PictureRay ray;
+        ray.origin = at;
+        rays.allHits(ray, hits);
+        const double height = 1.0 - std::abs(at.x) - std::abs(at.y);
+        if (height == 0.0) continue; // the outline: either answer is right
+        ASSERT_EQ(hits.size(), height > 0.0 ? 2U : 0U) << at.x << ", " << at.y;
+        for (const RayHit& hit : hits) EXPECT_NEAR(hit.depth, hit.front ? 10.0 - height : 10.0 + height, 1e-12);
+      }
+    }
+  }
+}
+
+// The picture's rays through a perspective view: a square at distance 2 with a half side of 1 covers the middle
+// quarter.
+TEST(ReferenceRays, PerspectiveCoverage) {
+  Scene scene;
+  addRectangle(scene, {glm::vec2(-1.0F), glm::vec2(1.0F), -2.0F}, unlitMaterial(glm::vec4(1.0F)));
+  const RayScene rays(scene, wideView());
+  std::vector<RayHit> hits;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      rays.allHits(pictureRay(wideView(), {x + 0.5, y + 0.5}, {64, 32}), hits);
+      const bool inside = x >= 24 && x < 40 && y >= 8 && y < 24;
+      ASSERT_EQ(hits.size(), inside ? 1U : 0U) << x << ", " << y;
+      for (const RayHit& hit : hits) EXPECT_NEAR(hit.depth, 2.0, 1e-12);
+    }
+  }
+}
+
+// Red over green over blue, all half: (1/2, 1/4, 1/4). 8-bit alphas are 128/255.
+TEST(ReferencePictureTest, TwoLayersOverAColor) {
+  Scene scene;
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), -1.0F}, unlitMaterial({0.0F, 1.0F, 0.0F, 0.5F}));
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), 1.0F}, unlitMaterial({1.0F, 0.0F, 0.0F, 0.5F}));
+  ReferenceOptions options = straightOptions(4, 3);
+  options.background.srgb = {0.0F, 0.0F, 1.0F};
+  const Reference reference = renderReference(scene, options);
+  for (std::size_t i = 0; i < 12; ++i) {
+    expectNear(reference.exact.linear[i], {0.5, 0.25, 0.25}, 1e-7);
+    expectNear(reference.rounded.linear[i], {128.0 / 255, 127.0 * 128 / 65025, 127.0 * 127 / 65025}, 1e-12);
+    expectPixel(reference.exact, i, {188, 137, 137, 255});
+    EXPECT_EQ(reference.layers[i], 2U);
+    EXPECT_EQ(int{reference.edge[i]}, 0);
+  }
+}
+
+TEST(ReferencePictureTest, TransparentBackgroundIsStraightAlpha) {
+  Scene scene;
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), -1.0F}, unlitMaterial({0.0F, 1.0F, 0.0F, 0.5F}));
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), 1.0F}, unlitMaterial({1.0F, 0.0F, 0.0F, 0.5F}));
+  ReferenceOptions options = straightOptions(2, 2);
+  options.background.kind = Background::Kind::Transparent;
+  const Reference reference = renderReference(scene, options);
+  EXPECT_TRUE(reference.exact.picture.hasAlpha);
+  expectPixel(reference.exact, 3, {213, 156, 0, 191}); // (2/3, 1/3, 0) on the sRGB curve, 3/4
+}
+
+TEST(ReferencePictureTest, OpaqueSurfacesHideWhatIsBehindThem) {
+  Scene scene;
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), -1.0F}, unlitMaterial({0.0F, 1.0F, 0.0F, 0.5F}));
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(0.0F, 9.0F), 0.0F},
+               unlitMaterial(glm::vec4(1.0F), AlphaMode::Opaque));
+  const std::uint32_t back = addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), 1.0F},
+                                          unlitMaterial({1.0F, 0.0F, 0.0F, 1.0F}, AlphaMode::Opaque));
+  scene.draws[back].transform = glm::rotate(glm::mat4(1.0F), std::numbers::pi_v<float>, glm::vec3(0, 1, 0));
+  scene.draws[back].transform[3].z = 3.0F; // turned round at z = 2: single-sided, so it is not seen
+  ReferenceOptions options = straightOptions(2, 1);
+  options.background.srgb = {0.0F, 0.0F, 0.0F};
+  Reference reference = renderReference(scene, options);
+  expectPixel(reference.exact, 0, {255, 255, 255, 255});
+  expectPixel(reference.exact, 1, {0, 188, 0, 255});
+  EXPECT_EQ(reference.layers[0], 0U);
+  EXPECT_EQ(reference.layers[1], 1U);
+
+  options.opacity = 0.5F; // everything is glass, from both sides
+  reference = renderReference(scene, options);
+  EXPECT_EQ(reference.layers[0], 3U);
+  expectNear(reference.exact.linear[0], {0.5 + 0.25, 0.25 + 0.25 * 0.25, 0.25}, 1e-7);
+}
+
+TEST(ReferencePictureTest, MaskedAndClippedSurfacesAreNotThere) {
+  Scene scene;
+  Material cut = unlitMaterial({1.0F, 0.0F, 0.0F, 0.25F}, AlphaMode::Mask);
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), 2.0F}, cut);
+  cut.alphaCutoff = 0.25F; // not below the cutoff: there, and opaque
+  cut.baseColor = {0.0F, 1.0F, 0.0F, 0.25F};
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), 1.0F}, cut);
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), 9.5F}, unlitMaterial({1.0F, 1.0F, 1.0F, 0.5F})); // too near
+  const Reference reference = renderReference(scene, straightOptions(1, 1));
+  expectPixel(reference.exact, 0, {0, 255, 0, 255});
+  EXPECT_EQ(reference.layers[0], 0U);
+}
+
+// Alpha below half a step is not stored; the exact picture still has it.
+TEST(ReferencePictureTest, FaintFragmentsAreNotStored) {
+  Scene scene;
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), 0.0F}, unlitMaterial({1.0F, 1.0F, 1.0F, 0.0019F}));
+  ReferenceOptions options = straightOptions(1, 1);
+  options.background.srgb = glm::vec3(0.0F);
+  const Reference reference = renderReference(scene, options);
+  EXPECT_EQ(reference.layers[0], 0U);
+  EXPECT_EQ(reference.rounded.linear[0].r, 0.0);
+  EXPECT_NEAR(reference.exact.linear[0].r, 0.0019, 1e-9);
+}
+
+// A side of a rectangle goes through the centres of pixel column 4; another lies between columns. Its diagonal is
+// inside the surface and marks nothing.
+TEST(ReferencePictureTest, OnlySilhouettesNearAPixelCentreAreEdges) {
+  Scene scene;
+  const float left = 2.0F * 4.5F / 16.0F - 1.0F;
+  addRectangle(scene, {glm::vec2(left, -9.0F), glm::vec2(0.5F, 9.0F), 0.0F}, unlitMaterial({1.0F, 0.0F, 0.0F, 0.5F}));
+  const Reference reference = renderReference(scene, straightOptions(16, 16));
+  for (std::size_t i = 0; i < 256; ++i) {
+    EXPECT_EQ(int{reference.edge[i]}, i % 16 == 4 ? 1 : 0) << i;
+    EXPECT_EQ(reference.layerRanges[i].most, i % 16 >= 4 && i % 16 < 12 ? 1U : 0U) << i;
+    EXPECT_EQ(reference.layerRanges[i].least, i % 16 > 4 && i % 16 < 12 ? 1U : 0U) << i;
+  }
+}
+
+TEST(ReferencePictureTest, EqualDepthsOfDifferentColorsAreEdges) {
+  Scene scene;
+  const Rectangle all{glm::vec2(-9.0F), glm::vec2(9.0F), 0.0F};
+  addRectangle(scene, all, unlitMaterial({1.0F, 0.0F, 0.0F, 0.5F}));
+  addRectangle(scene, all, unlitMaterial({1.0F, 0.0F, 0.0F, 0.5F}));
+  EXPECT_EQ(int{renderReference(scene, straightOptions(1, 1)).edge[0]}, 0);
+  scene.materials[1].baseColor = {0.0F, 0.0F, 1.0F, 0.5F};
+  EXPECT_EQ(int{renderReference(scene, straightOptions(1, 1)).edge[0]}, 1);
+  scene.materials[1].alphaMode = AlphaMode::Opaque; // drawn over it or hidden by it
+  EXPECT_EQ(int{renderReference(scene, straightOptions(1, 1)).edge[0]}, 1);
+}
+
+// A plane that faces the camera through a whole scene: the light is fixed to the camera, so any straight view of a
+// plane shades alike up to the hemisphere. Here N = V = +Z, L = (-0.4, 0.7, 0.6) / sqrt(1.01).
+TEST(ReferencePictureTest, LitPlane) {
+  Scene scene;
+  Material white;
+  white.metallic = 0.0F;
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), 0.0F}, white);
+  const Reference reference = renderReference(scene, straightOptions(1, 1));
+  // NL = 0.5970223, H = (L + V) normalised, VH = NH = sqrt((1 + NL) / 2) = 0.8935945; F = 0.0400131;
+  // D = 1 / pi, Vis = 0.5 / (NL + 1) = 0.3130827.
+  const double direct = 2.0 * 0.5970223 * (0.9599869 + 0.0400131 * 0.3130827) / std::numbers::pi;
+  expectNear(reference.exact.linear[0], {direct + 0.2808, direct + 0.286, direct + 0.3016}, 1e-6);
+}
+
+// The camera looks along -X, so its right is -Z and its backward +X: L = (0.6, 0.7, 0.4) / sqrt(1.01) in the world.
+TEST(ReferencePictureTest, LightTurnsWithTheCamera) {
+  Scene scene;
+  Material white;
+  white.metallic = 0.0F;
+  white.roughness = 0.5F;
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), 0.0F}, white);
+  scene.draws[0].transform = glm::rotate(glm::mat4(1.0F), glm::radians(60.0F), glm::vec3(0, 1, 0));
+  ReferenceOptions options = straightOptions(1, 1);
+  const glm::mat4 turn = glm::rotate(glm::mat4(1.0F), glm::radians(90.0F), glm::vec3(0, 1, 0));
+  options.view.cameraToWorld = turn * options.view.cameraToWorld;
+  Surface surface;
+  surface.normal = {std::sqrt(0.75), 0.0, 0.5};
+  surface.toEye = {1.0, 0.0, 0.0};
+  surface.toLight = glm::normalize(glm::dvec3(0.6, 0.7, 0.4));
+  surface.metallic = 0.0;
+  surface.roughness = 0.5;
+  expectNear(renderReference(scene, options).exact.linear[0], shade(surface), 1e-6);
+}
+
+// The four pixels' centres meet a plane at distance 2 in (-1 or 1, -1 or 1, -2): each has its own V.
+TEST(ReferencePictureTest, PerspectiveViewDirection) {
+  Scene scene;
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), -2.0F}, Material{});
+  ReferenceOptions options = straightOptions(2, 2);
+  options.view = wideView();
+  const Reference reference = renderReference(scene, options);
+  Surface surface;
+  surface.toLight = glm::normalize(glm::dvec3(-0.4, 0.7, 0.6));
+  surface.toEye = glm::normalize(glm::dvec3(1, -1, 2)); // from the top left pixel
+  expectNear(reference.exact.linear[0], shade(surface), 1e-6);
+  surface.toEye = glm::normalize(glm::dvec3(-1, 1, 2)); // from the bottom right one
+  expectNear(reference.exact.linear[3], shade(surface), 1e-6);
+}
+
+TEST(ReferencePictureTest, PerspectiveClipsByViewDepth) {
+  Scene scene;
+  for (const float z : {-0.49F, -0.51F, -2.99F, -3.01F}) {
+    addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), z}, unlitMaterial(glm::vec4(0.5F)));
+  }
+  ReferenceOptions options = straightOptions(2, 2);
+  options.view = wideView();
+  EXPECT_EQ(renderReference(scene, options).layers[0], 3U);
+  options.view.farPlane = 3.0F;
+  EXPECT_EQ(renderReference(scene, options).layers[0], 2U);
+}
+
+TEST(ReferenceCompare, SeparatesEdgesFromTheRest) {
+  Reference reference;
+  reference.edge = {0, 1, 0};
+  reference.layerRanges = {{1, 1}, {2, 5}, {0, 0}};
+  reference.exact.picture = {3, 1, false, std::vector<std::uint8_t>(12, 100)};
+  Picture rendered = reference.exact.picture;
+  rendered.rgba[1] = 102;
+  rendered.rgba[6] = 0;
+  rendered.rgba[8] = 97;
+  const Comparison comparison = compare(rendered, reference.exact, reference, 2);
+  EXPECT_EQ(comparison.away, 3);
+  EXPECT_EQ(comparison.awayX, 2U);
+  EXPECT_EQ(comparison.beyond, 1U);
+  EXPECT_NEAR(comparison.edgeShare, 1.0 / 3.0, 1e-12);
+  EXPECT_NEAR(comparison.edgeOver, 1.0 / 3.0, 1e-12);
+  EXPECT_EQ(layerBounds(reference).fragmentsLeast, 3U);
+  EXPECT_EQ(layerBounds(reference).fragmentsMost, 6U);
+  EXPECT_EQ(layerBounds(reference).deepestMost, 5U);
+  rendered.hasAlpha = true;
+  EXPECT_THROW(compare(rendered, reference.exact, reference, 2), std::invalid_argument);
+}
+
+TEST(ReferencePictureTest, TexturesBeyondItAreRefused) {
+  Scene scene;
+  addRectangle(scene, {}, unlitMaterial(glm::vec4(1.0F)));
+  scene.materials[0].normalTexture.image = 0;
+  EXPECT_THROW(renderReference(scene, straightOptions(1, 1)), std::invalid_argument);
+}
+
+} // namespace
+} // namespace vitrail::tool::reference

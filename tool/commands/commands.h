@@ -1,0 +1,20 @@
+// The commands of the program, one file each: they parse, call and report.
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace vitrail::tool {
+
+// Each adds its subcommand to `app`, and sets `run` to what it does when the user has chosen it.
+void addRenderCommand(CLI::App& app, std::function<void()>& run);
+void addInfoCommand(CLI::App& app, std::function<void()>& run);
+void addScenesCommand(CLI::App& app, std::function<void()>& run);
+
+// Gives a command a help page of its own in place of the generated one.
+inline void setHelpPage(CLI::App& app, std::string page) {
+  app.formatter_fn([page = std::move(page)](const CLI::App*, std::string, CLI::AppFormatMode) { return page; });
+}
+
+} // namespace vitrail::tool

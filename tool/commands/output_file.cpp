@@ -1,0 +1,130 @@
+#include "output_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace vitrail::tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The temporary files that a signal must remove: a picture and its report.
+struct Slot {
+  std::array<char, 4096> path{};
+  std::atomic<bool> used{false};
+};
+std::array<Slot, 4> slots;
+
+void removeTemporaries(int signal) {
+  for (const Slot& slot : slots) {
+    if (slot.used.load()) ::unlink(slot.path.data());
+  }
+  ::signal(signal, SIG_DFL); // and end the way the signal ends a program
+  ::raise(signal);
+}
+
+void watch(const fs::path& path) {
+  static const bool installed = [] {
+    for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
+      struct sigaction old {};
+      struct sigaction action {};
+      action.sa_handler = removeTemporaries;
+      sigaction(signal, nullptr, &old);
+      if (old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr); // nohup stays nohup
+    }
+    return true;
+  }();
+  static_cast<void>(installed);
+  for (Slot& slot : slots) {
+    if (slot.used.load() || path.native().size() >= slot.path.size()) continue;
+    std::memcpy(slot.path.data(), path.c_str(), path.native().size() + 1);
+    slot.used.store(true);
+    return;
+  }
+}
+
+void unwatch(const fs::path& path) {
+  for (Slot& slot : slots) {
+    if (slot.used.load() && path.native() == slot.path.data()) slot.used.store(false);
+  }
+}
+
+[[noreturn]] void fail(const fs::path& path, const char* reason) {
+  throw std::runtime_error(fmt::format("cannot write {}: {}", path.string(), reason));
+}
+
+void writeAll(int file, std::span<const std::byte> content, const fs::path& path) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(file, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      const int reason = errno;
+      ::close(file);
+      fail(path, std::strerror(reason));
+    }
+    content = content.subspan(static_cast<std::size_t>(written));
+  }
+  if (::close(file) != 0) fail(path, std::strerror(errno));
+}
+
+} // namespace
+
+OutputFile::OutputFile(fs::path path) : path_(std::move(path)), target_(path_) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path_, error);
+  if (fs::is_directory(status)) fail(path_, "it is a folder");
+  isSpecial_ = fs::exists(status) && !fs::is_regular_file(status);
+  if (isSpecial_) return;
+  if (fs::exists(status)) target_ = fs::canonical(path_, error); // a link stays a link to the new file
+  if (error && fs::exists(status)) fail(path_, error.message().c_str());
+  if (fs::exists(status) && ::access(target_.c_str(), W_OK) != 0) fail(path_, std::strerror(errno));
+  fs::path folder = target_.parent_path();
+  if (folder.empty()) folder = ".";
+  if (!fs::exists(folder, error)) fail(path_, fmt::format("there is no folder {}", folder.string()).c_str());
+  if (!fs::is_directory(folder, error)) fail(path_, fmt::format("{} is not a folder", folder.string()).c_str());
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(path_, std::strerror(errno));
+}
+
+OutputFile::~OutputFile() {
+  if (temporary_.empty()) return;
+  ::unlink(temporary_.c_str());
+  unwatch(temporary_);
+}
+
+void OutputFile::write(std::span<const std::byte> content) {
+  if (isSpecial_) {
+    special_ = content;
+    return;
+  }
+  const fs::path name = target_.parent_path() / fmt::format(".{}.{}.part", target_.filename().string(), ::getpid());
+  watch(name); // before the file exists: a signal in between finds nothing to remove
+  temporary_ = name;
+  const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) fail(path_, std::strerror(errno));
+  writeAll(file, content, path_);
+}
+
+void OutputFile::commit() {
+  if (isSpecial_) {
+    const int file = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file < 0) fail(path_, std::strerror(errno));
+    writeAll(file, special_, path_);
+    return;
+  }
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(path_, std::strerror(errno));
+  unwatch(temporary_);
+  temporary_.clear();
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,77 @@
+// The Vulkan device that the tool renders on, headless.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <volk.h>
+
+namespace vitrail::tool {
+
+// A device, driver or memory that cannot do what was asked: what() is one line that says what and what to do.
+struct GpuError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// What `vitrail info` shows of a device.
+struct DeviceSummary {
+  std::uint32_t index = 0; // what --device takes
+  std::string name;
+  std::string kind;   // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
+  std::string driver; // name and version, as the driver words them
+  std::uint32_t apiVersion = 0;
+  std::string missing;                  // empty: the tool can render on it; else what it lacks, in words
+  std::uint32_t maxPictureSide = 0;     // pixels (maxImageDimension2D)
+  std::uint64_t maxBindingBytes = 0;    // what one shader can reach of one buffer (maxStorageBufferRange)
+  std::uint64_t maxAllocationBytes = 0; // the largest single allocation (maxMemoryAllocationSize)
+  std::uint64_t memoryBytes = 0;        // the largest device-local heap
+  bool timestamps = false;              // false: passes are not timed
+};
+
+struct GpuOptions {
+  // "" takes the best device (discrete, integrated, virtual, CPU; the first of a kind), "cpu" a CPU driver, a number
+  // the device of that index, anything else a device whose name contains it, in any case.
+  std::string device;
+  // Runs under the Khronos validation layer with synchronization validation; a missing layer is a GpuError.
+  bool validate = false;
+};
+
+// Instance, device and one queue with graphics and compute, made for Vulkan 1.3 with dynamic rendering and
+// synchronization2.
+class Gpu {
+ public:
+  explicit Gpu(const GpuOptions& options);
+  ~Gpu();
+  Gpu(const Gpu&) = delete;
+  Gpu& operator=(const Gpu&) = delete;
+
+  VkInstance instance() const;
+  VkPhysicalDevice physicalDevice() const;
+  VkDevice device() const;
+  VkQueue queue() const;
+  std::uint32_t queueFamily() const;
+  const VkPhysicalDeviceProperties& properties() const;
+  const VkPhysicalDeviceMemoryProperties& memoryProperties() const;
+  // The largest single allocation, in bytes.
+  std::uint64_t maxAllocation() const;
+
+  // The validation layer's errors so far, one text each. Empty where validation is off.
+  std::vector<std::string> validationErrors() const;
+
+  // Accounting of device memory, for FrameReport::peakBytes. Every allocation of the tool is added and subtracted.
+  void memoryAllocated(std::uint64_t bytes);
+  void memoryFreed(std::uint64_t bytes);
+  std::uint64_t peakMemory() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// All Vulkan devices of this machine, in the loader's order. Throws GpuError where there is no Vulkan loader or driver.
+std::vector<DeviceSummary> listDevices();
+
+} // namespace vitrail::tool

@@ -1,0 +1,173 @@
+#include "pipeline.h"
+
+#include <array>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include "../scene/scene.h"
+#include "vk.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+Unique<VkShaderModule> makeModule(Gpu& gpu, std::span<const std::uint32_t> spirv, const std::string& name) {
+  auto info = vkStruct<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+  info.codeSize = spirv.size_bytes();
+  info.pCode = spirv.data();
+  VkShaderModule module = VK_NULL_HANDLE;
+  check(vkCreateShaderModule(gpu.device(), &info, nullptr, &module), fmt::format("vkCreateShaderModule ({})", name));
+  setDebugName(gpu.device(), VK_OBJECT_TYPE_SHADER_MODULE, module, name);
+  return {gpu.device(), module, vkDestroyShaderModule};
+}
+
+VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderModule module) {
+  auto info = vkStruct<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
+  info.stage = stage;
+  info.module = module;
+  info.pName = "main";
+  return info;
+}
+
+constexpr VkVertexInputBindingDescription kVertexBinding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
+constexpr std::array<VkVertexInputAttributeDescription, 6> kVertexAttributes{{
+    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
+    {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
+    {2, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
+    {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texCoord0)},
+    {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texCoord1)},
+    {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, color)},
+}};
+
+VkPipelineVertexInputStateCreateInfo vertexInput(bool surface) {
+  auto info = vkStruct<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
+  if (!surface) return info;
+  info.vertexBindingDescriptionCount = 1;
+  info.pVertexBindingDescriptions = &kVertexBinding;
+  info.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(kVertexAttributes.size());
+  info.pVertexAttributeDescriptions = kVertexAttributes.data();
+  return info;
+}
+
+VkPipelineDynamicStateCreateInfo dynamicState(bool surface) {
+  static constexpr std::array<VkDynamicState, 4> kStates{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                                         VK_DYNAMIC_STATE_FRONT_FACE, VK_DYNAMIC_STATE_CULL_MODE};
+  auto info = vkStruct<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+  info.dynamicStateCount = surface ? 4 : 2;
+  info.pDynamicStates = kStates.data();
+  return info;
+}
+
+VkPipelineDepthStencilStateCreateInfo depthState(VkCompareOp test, bool write) {
+  auto info =
+      vkStruct<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
+  info.depthTestEnable = test != VK_COMPARE_OP_NEVER ? VK_TRUE : VK_FALSE;
+  info.depthCompareOp = test;
+  info.depthWriteEnable = write ? VK_TRUE : VK_FALSE;
+  return info;
+}
+
+VkPipelineRasterizationStateCreateInfo rasterization() {
+  auto info =
+      vkStruct<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
+  info.polygonMode = VK_POLYGON_MODE_FILL;
+  info.cullMode = VK_CULL_MODE_NONE;
+  info.lineWidth = 1.0F;
+  return info;
+}
+
+} // namespace
+
+Unique<VkPipelineLayout> makePipelineLayout(Gpu& gpu, const std::vector<VkDescriptorSetLayout>& sets,
+                                            std::uint32_t computeConstantBytes, const std::string& name) {
+  const VkPushConstantRange constants{VK_SHADER_STAGE_COMPUTE_BIT, 0, computeConstantBytes};
+  auto info = vkStruct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+  info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
+  info.pSetLayouts = sets.data();
+  info.pushConstantRangeCount = computeConstantBytes > 0 ? 1 : 0;
+  info.pPushConstantRanges = &constants;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  check(vkCreatePipelineLayout(gpu.device(), &info, nullptr, &layout),
+        fmt::format("vkCreatePipelineLayout ({})", name));
+  setDebugName(gpu.device(), VK_OBJECT_TYPE_PIPELINE_LAYOUT, layout, name);
+  return {gpu.device(), layout, vkDestroyPipelineLayout};
+}
+
+Unique<VkPipeline> makeComputePipeline(Gpu& gpu, VkPipelineLayout layout, std::span<const std::uint32_t> spirv,
+                                       const std::string& name) {
+  const Unique<VkShaderModule> module = makeModule(gpu, spirv, name);
+  auto info = vkStruct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+  info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module.get());
+  info.layout = layout;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateComputePipelines(gpu.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+        fmt::format("vkCreateComputePipelines ({})", name));
+  setDebugName(gpu.device(), VK_OBJECT_TYPE_PIPELINE, pipeline, name);
+  return {gpu.device(), pipeline, vkDestroyPipeline};
+}
+
+Unique<VkPipeline> makeGraphicsPipeline(Gpu& gpu, const GraphicsPipelineInfo& info) {
+  const Unique<VkShaderModule> vertex = makeModule(gpu, info.vertexShader, info.name + " vertex shader");
+  const Unique<VkShaderModule> fragment = makeModule(gpu, info.fragmentShader, info.name + " fragment shader");
+  const VkSpecializationMapEntry entry{0, 0, sizeof(info.features)};
+  const VkSpecializationInfo specialization{1, &entry, sizeof(info.features), &info.features};
+  std::array<VkPipelineShaderStageCreateInfo, 2> stages{stageInfo(VK_SHADER_STAGE_VERTEX_BIT, vertex.get()),
+                                                        stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment.get())};
+  if (info.surface) stages[0].pSpecializationInfo = stages[1].pSpecializationInfo = &specialization;
+
+  const auto vertices = vertexInput(info.surface);
+  auto assembly =
+      vkStruct<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
+  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  auto viewport = vkStruct<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+  viewport.viewportCount = 1;
+  viewport.scissorCount = 1;
+  const auto raster = rasterization();
+  auto multisample =
+      vkStruct<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
+  multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+  const auto depth = depthState(info.depthTest, info.depthWrite);
+  VkPipelineColorBlendAttachmentState attachment{};
+  attachment.colorWriteMask =
+      VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+  const std::uint32_t colors = info.colorFormat != VK_FORMAT_UNDEFINED ? 1 : 0;
+  auto blend = vkStruct<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
+  blend.attachmentCount = colors;
+  blend.pAttachments = &attachment;
+  const auto dynamic = dynamicState(info.surface);
+  auto rendering = vkStruct<VkPipelineRenderingCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
+  rendering.colorAttachmentCount = colors;
+  rendering.pColorAttachmentFormats = &info.colorFormat;
+  rendering.depthAttachmentFormat = VK_FORMAT_D32_SFLOAT;
+
+  auto create = vkStruct<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+  create.pNext = &rendering;
+  create.stageCount = static_cast<std::uint32_t>(stages.size());
+  create.pStages = stages.data();
+  create.pVertexInputState = &vertices;
+  create.pInputAssemblyState = &assembly;
+  create.pViewportState = &viewport;
+  create.pRasterizationState = &raster;
+  create.pMultisampleState = &multisample;
+  create.pDepthStencilState = &depth;
+  create.pColorBlendState = &blend;
+  create.pDynamicState = &dynamic;
+  create.layout = info.layout;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateGraphicsPipelines(gpu.device(), VK_NULL_HANDLE, 1, &create, nullptr, &pipeline),
+        fmt::format("vkCreateGraphicsPipelines ({})", info.name));
+  setDebugName(gpu.device(), VK_OBJECT_TYPE_PIPELINE, pipeline, info.name);
+  return {gpu.device(), pipeline, vkDestroyPipeline};
+}
+
+VkPipeline SurfacePipelines::get(std::uint32_t features) {
+  const auto found = pipelines_.find(features);
+  if (found != pipelines_.end()) return found->second.get();
+  GraphicsPipelineInfo info = base_;
+  info.features = features;
+  info.name = fmt::format("{} (features {:#x})", base_.name, features);
+  return pipelines_.emplace(features, makeGraphicsPipeline(gpu_, info)).first->second.get();
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,75 @@
+// The tool's host renderer: a small forward renderer that plays the part of an engine which embeds Vitrail.
+// It draws opaque and alpha-masked geometry, lets a transparency method collect and resolve the rest, and encodes the
+// picture as 8-bit sRGB. docs/shading.md states what it computes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../image/picture.h"
+#include "../scene/camera.h"
+#include "../scene/scene.h"
+#include "device.h"
+#include "draw_order.h"
+
+namespace vitrail::tool {
+
+struct RenderOptions {
+  std::uint32_t width = 1280;
+  std::uint32_t height = 720;
+  View view;
+  Background background;
+  // Fixes the node pool and renders once, whether or not it overflows. Default: the pool is made as large as the frame
+  // needs, and the frame is rendered again where the first guess was too small.
+  std::optional<std::uint32_t> nodeCapacity;
+};
+
+// What `--json` reports about a frame.
+struct FrameReport {
+  std::string device;
+  std::string api;    // "Vulkan 1.3"
+  std::string method; // "linked-list"
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint32_t samples = 1;
+  bool exact = false;
+  std::uint64_t fragmentsRequested = 0;
+  std::uint64_t fragmentsStored = 0;
+  std::uint64_t fragmentsMissing = 0;
+  std::uint32_t layersMax = 0;
+  double layersMean = 0.0; // over pixels that hold at least one fragment; 0 where there are none
+  std::uint64_t nodesBytes = 0;
+  std::uint64_t headsBytes = 0;
+  std::uint64_t peakBytes = 0; // the most device memory that the tool and the library held at once
+  // GPU time, in order: opaque, clear, collect, resolve, encode. Empty, and frameMs 0, on devices without timestamps.
+  std::vector<std::pair<std::string, double>> passesMs;
+  double frameMs = 0.0; // GPU time from the first pass's start to the last one's end
+};
+
+struct RenderResult {
+  Picture picture;
+  FrameReport report;
+};
+
+// Holds one scene on the GPU. The Gpu outlives it; the scene need not.
+class Renderer {
+ public:
+  // With `opacity`, every material is blended with that factor (X-ray view).
+  Renderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity = {}, DrawOrder order = DrawOrder::Forward);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  // Renders one picture and waits for it. Throws GpuError (device.h).
+  RenderResult render(const RenderOptions& options);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace vitrail::tool

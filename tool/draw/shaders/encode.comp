@@ -1,0 +1,35 @@
+// The finished picture: linear premultiplied colour to 8-bit sRGB with straight alpha (IEC 61966-2-1).
+#version 460
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0, rgba16f) uniform readonly image2D colorImage;
+layout(set = 0, binding = 1, std430) writeonly buffer PixelBlock { uint pixels[]; }; // one band of rows
+
+layout(push_constant) uniform Band {
+  uint width;
+  uint height;   // of the picture
+  uint firstRow; // of the band
+  uint rows;
+};
+
+// Clamps to [0, 1]; a NaN fails the comparison and becomes 0.
+float saturate(float v) { return v > 0.0 ? min(v, 1.0) : 0.0; }
+
+float encode(float linear) {
+  float v = saturate(linear);
+  return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
+}
+
+uint quantize(float v) { return uint(v * 255.0 + 0.5); }
+
+void main() {
+  uvec2 local = gl_GlobalInvocationID.xy;
+  uvec2 pixel = uvec2(local.x, firstRow + local.y);
+  if (pixel.x >= width || local.y >= rows || pixel.y >= height) return;
+  vec4 color = imageLoad(colorImage, ivec2(pixel));
+  float alpha = saturate(color.a);
+  vec3 straight = alpha > 0.0 ? color.rgb / alpha : vec3(0.0);
+  pixels[local.y * width + pixel.x] = quantize(encode(straight.r)) | quantize(encode(straight.g)) << 8 |
+                                      quantize(encode(straight.b)) << 16 | quantize(alpha) << 24;
+}

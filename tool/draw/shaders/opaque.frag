@@ -1,0 +1,13 @@
+// Opaque and alpha-masked surfaces: linear, premultiplied colour.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "surface.glsl"
+
+layout(location = 0) out vec4 outColor;
+
+const float LARGEST_HALF = 65504.0;
+
+void main() {
+  // An infinite colour would turn into NaN where a transparent surface covers it.
+  outColor = vec4(min(shadeSurface().rgb, LARGEST_HALF), 1.0);
+}

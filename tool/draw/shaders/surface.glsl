@@ -1,0 +1,119 @@
+// Shades a surface as docs/shading.md states. Included by the fragment shaders of the opaque and the transparent pass.
+#ifndef VITRAIL_TOOL_SURFACE_GLSL
+#define VITRAIL_TOOL_SURFACE_GLSL
+
+#include "shared.h"
+
+layout(constant_id = 0) const uint kFeatures = 0u;
+
+layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameData frame; };
+layout(set = 0, binding = 2, std430) readonly buffer MaterialBlock { MaterialData materials[]; };
+layout(set = 1, binding = 0) uniform sampler2D baseColorTexture;
+layout(set = 1, binding = 1) uniform sampler2D metallicRoughnessTexture;
+layout(set = 1, binding = 2) uniform sampler2D normalTexture;
+layout(set = 1, binding = 3) uniform sampler2D occlusionTexture;
+layout(set = 1, binding = 4) uniform sampler2D emissiveTexture;
+
+layout(location = 0) in vec3 inPosition;
+layout(location = 1) in vec3 inNormal;
+layout(location = 2) in vec4 inTangent;
+layout(location = 3) in vec4 inColor;
+layout(location = 4) flat in uint inMaterial;
+layout(location = 5) in vec2 inTexCoords[SLOT_COUNT];
+
+const float PI = 3.14159265358979;
+
+bool has(uint feature) { return (kFeatures & feature) != 0u; }
+bool hasTexture(uint slot) { return has(1u << slot); }
+
+// Unit length; `fallback` for a vector without a direction.
+vec3 direction(vec3 v, vec3 fallback) {
+  float squared = dot(v, v);
+  return squared > 0.0 ? v * inversesqrt(squared) : fallback;
+}
+
+vec3 viewDirection() {
+  vec3 backward = frame.cameraToWorld[2].xyz;
+  return frame.eye.w > 0.5 ? backward : direction(frame.eye.xyz - inPosition, backward);
+}
+
+// The shading normal on the side that is seen. `sampled` is the normal map's texel.
+vec3 surfaceNormal(vec3 sampled, vec3 fallback) {
+  vec3 normal = direction(inNormal, fallback);
+  if (hasTexture(SLOT_NORMAL)) {
+    vec3 axis = abs(normal.x) < 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    vec3 tangent = direction(inTangent.xyz - normal * dot(normal, inTangent.xyz), normalize(cross(axis, normal)));
+    vec3 bitangent = cross(normal, tangent) * (inTangent.w < 0.0 ? -1.0 : 1.0);
+    vec3 n = sampled * 2.0 - 1.0;
+    n.xy *= materials[inMaterial].normalScale;
+    normal = direction(tangent * n.x + bitangent * n.y + normal * n.z, normal);
+  }
+  return gl_FrontFacing ? normal : -normal;
+}
+
+vec3 hemisphere(vec3 d) { return mix(vec3(0.18, 0.17, 0.16), vec3(0.36, 0.38, 0.42), 0.5 + 0.5 * d.y); }
+
+// GGX distribution. 1 - NH^2 is taken from the cross product: near the highlight's centre the difference cancels.
+float distribution(vec3 n, vec3 h, float a2) {
+  float nh = dot(n, h);
+  vec3 side = cross(n, h);
+  float f = nh > 0.0 ? nh * nh * a2 + dot(side, side) : 1.0;
+  return a2 / (PI * f * f);
+}
+
+// Height-correlated Smith visibility.
+float visibility(float nl, float nv, float a2) {
+  return 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
+}
+
+vec3 lit(vec3 base, float metallic, float roughness, float occlusion, vec3 n, vec3 v) {
+  vec3 l = frame.toLight.xyz;
+  vec3 h = direction(l + v, n);
+  float nv = max(dot(n, v), 0.0001);
+  float nl = max(dot(n, l), 0.0);
+  float a2 = roughness * roughness * roughness * roughness;
+  vec3 f0 = mix(vec3(0.04), base, metallic);
+  vec3 diffuse = (1.0 - metallic) * base;
+
+  vec3 direct = vec3(0.0);
+  if (nl > 0.0) {
+    vec3 fresnel = f0 + (1.0 - f0) * pow(max(1.0 - max(dot(v, h), 0.0), 0.0), 5.0);
+    vec3 specular = fresnel * distribution(n, h, a2) * visibility(nl, nv, a2);
+    direct = 2.0 * nl * ((1.0 - fresnel) * diffuse / PI + specular);
+  }
+  vec3 reflected = 2.0 * dot(n, v) * n - v;
+  vec3 ambientFresnel = f0 + (max(vec3(1.0 - roughness), f0) - f0) * pow(max(1.0 - nv, 0.0), 5.0);
+  return direct + occlusion * (hemisphere(n) * diffuse + hemisphere(reflected) * ambientFresnel);
+}
+
+// Linear colour and straight alpha. Discards what the mask cuts away, after every texture has been sampled:
+// what kFeatures decides is uniform, so the derivatives are defined.
+vec4 shadeSurface() {
+  MaterialData material = materials[inMaterial];
+  vec4 base = material.baseColor;
+  vec3 metallicRoughness = vec3(1.0);
+  vec3 normalSample = vec3(0.5, 0.5, 1.0);
+  float occlusionSample = 1.0;
+  vec3 emissive = material.emissive.rgb;
+  if (has(FEATURE_VERTEX_COLOR)) base *= inColor;
+  if (hasTexture(SLOT_BASE_COLOR)) base *= texture(baseColorTexture, inTexCoords[SLOT_BASE_COLOR]);
+  if (hasTexture(SLOT_METALLIC_ROUGHNESS)) {
+    metallicRoughness = texture(metallicRoughnessTexture, inTexCoords[SLOT_METALLIC_ROUGHNESS]).rgb;
+  }
+  if (hasTexture(SLOT_NORMAL)) normalSample = texture(normalTexture, inTexCoords[SLOT_NORMAL]).rgb;
+  if (hasTexture(SLOT_OCCLUSION)) occlusionSample = texture(occlusionTexture, inTexCoords[SLOT_OCCLUSION]).r;
+  if (hasTexture(SLOT_EMISSIVE)) emissive *= texture(emissiveTexture, inTexCoords[SLOT_EMISSIVE]).rgb;
+
+  if (has(FEATURE_MASK) && base.a < material.alphaCutoff) discard;
+  float alpha = material.opacity * mix(1.0, base.a, material.alphaFromBase);
+  if (has(FEATURE_UNLIT)) return vec4(base.rgb, alpha);
+
+  vec3 v = viewDirection();
+  vec3 n = surfaceNormal(normalSample, v);
+  float roughness = clamp(material.roughness * metallicRoughness.g, 0.045, 1.0);
+  float metallic = clamp(material.metallic * metallicRoughness.b, 0.0, 1.0);
+  float occlusion = 1.0 + material.occlusionStrength * (occlusionSample - 1.0);
+  return vec4(lit(base.rgb, metallic, roughness, occlusion, n, v) + emissive, alpha);
+}
+
+#endif

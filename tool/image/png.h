@@ -1,0 +1,15 @@
+// Pictures as PNG files in memory.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "picture.h"
+
+namespace vitrail::tool {
+
+// Encodes an 8-bit sRGB PNG: RGB, or RGBA with straight alpha where the picture has alpha. The same picture gives the
+// same bytes. Throws std::runtime_error with libpng's reason.
+std::vector<std::byte> encodePng(const Picture& picture);
+
+} // namespace vitrail::tool

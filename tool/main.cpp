@@ -1,0 +1,76 @@
+// The program `vitrail`: parses the command line, runs one command, reports a failure once.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <new>
+
+#include "commands/commands.h"
+#include "commands/errors.h"
+
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+constexpr const char* kHelp =
+    R"(Vitrail draws transparent models exactly: every pixel's surfaces are blended in depth order.
+
+Usage:
+  vitrail render MODEL -o picture.png     draw a glTF, OBJ, PLY or STL model
+  vitrail render --scene NAME -o pic.png  draw a built-in scene
+  vitrail scenes                          list the built-in scenes
+  vitrail info                            list the Vulkan devices and what they can do for Vitrail
+
+  vitrail COMMAND --help                  all about one command
+  vitrail --version
+
+Exit codes: 0 done, 1 could not be done, 2 wrong usage.
+)";
+
+int report(int code, const char* reason) {
+  fmt::print(stderr, "vitrail: error: {}\n", reason);
+  return code;
+}
+
+int runProgram(int argc, char** argv) {
+  CLI::App app;
+  vitrail::tool::setHelpPage(app, kHelp);
+  app.set_version_flag("--version", "vitrail " VITRAIL_VERSION);
+  app.require_subcommand(0, 1);
+  std::function<void()> run;
+  vitrail::tool::addRenderCommand(app, run);
+  vitrail::tool::addInfoCommand(app, run);
+  vitrail::tool::addScenesCommand(app, run);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success); // --help, --version
+  } catch (const CLI::ParseError& error) {
+    return report(kUsage, fmt::format("{} (see vitrail {}--help)", error.what(),
+                                      app.get_subcommands().empty() ? "" : app.get_subcommands()[0]->get_name() + " ")
+                              .c_str());
+  }
+  if (!run) {
+    fmt::print(stderr, "{}", kHelp);
+    return kUsage;
+  }
+  run();
+  return kDone;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return runProgram(argc, argv);
+  } catch (const vitrail::tool::UsageError& error) {
+    return report(kUsage, error.what());
+  } catch (const std::bad_alloc&) {
+    return report(kFailed, "out of memory");
+  } catch (const std::exception& error) {
+    return report(kFailed, error.what());
+  }
+}

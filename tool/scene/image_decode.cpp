@@ -1,0 +1,136 @@
+// Decodes image files with stb_image, after checking what it would allocate.
+#include "image_decode.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "load.h"
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_FAILURE_USERMSG
+#define STBI_NO_STDIO
+#define STBI_ONLY_BMP
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_PNG
+#define STBI_ONLY_TGA
+#include <stb/stb_image.h>
+
+namespace vitrail::tool {
+namespace {
+
+constexpr int longestSide = 16384;
+constexpr std::array<std::uint8_t, 8> pngSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+constexpr std::array<std::uint8_t, 3> jpegSignature{0xff, 0xd8, 0xff};
+
+template <std::size_t Size>
+bool startsWith(std::span<const std::byte> file, const std::array<std::uint8_t, Size>& signature) {
+  return file.size() >= Size && std::equal(signature.begin(), signature.end(), file.begin(),
+                                           [](std::uint8_t a, std::byte b) { return std::byte{a} == b; });
+}
+
+// A header can state any size; the decoder would allocate it before it misses the data. No compression that it reads
+// packs more than this: PNG's deflate reaches 1032 bytes for one, and a byte holds up to 8 pixels; in JPEG a block of
+// 64 pixels takes a bit at least.
+bool plausible(std::uint64_t pixels, std::span<const std::byte> file) {
+  const std::uint64_t pixelsPerByte = startsWith(file, pngSignature) ? 1032 * 8 : 1024;
+  return pixels / pixelsPerByte <= file.size();
+}
+
+// PNG files state their bit depth, which narrows the bound.
+bool plausiblePng(std::span<const std::byte> file, std::uint64_t pixels) {
+  constexpr std::size_t bitDepthOffset = 24;
+  constexpr std::size_t colorTypeOffset = 25;
+  if (file.size() <= colorTypeOffset) return false;
+  const auto depth = std::to_integer<std::uint64_t>(file[bitDepthOffset]);
+  const auto colorType = std::to_integer<unsigned>(file[colorTypeOffset]);
+  const std::uint64_t channels = colorType == 2 ? 3 : colorType == 4 ? 2 : colorType == 6 ? 4 : 1;
+  return pixels * depth * channels / 8 / 1032 <= file.size();
+}
+
+// Whether all Huffman tables of a JPEG fit their 256 symbols. Some versions of stb_image write past the end of a table
+// that states more. Looks at every marker that the decoder can come to: in compressed data an 0xff that begins none is
+// followed by zero or a restart marker.
+bool hasSoundHuffmanTables(std::span<const std::byte> file) {
+  const auto at = [file](std::size_t offset) {
+    return offset < file.size() ? std::to_integer<std::size_t>(file[offset]) : 0;
+  };
+  constexpr std::size_t defineTables = 0xc4;
+  for (std::size_t i = 0; i + 1 < file.size();) {
+    const std::size_t marker = at(i + 1);
+    const bool segment = at(i) == 0xff && marker >= 0xc0 && marker != 0xff && (marker < 0xd0 || marker > 0xd9);
+    if (!segment) {
+      ++i;
+      continue;
+    }
+    const std::size_t length = at(i + 2) * 256 + at(i + 3);
+    if (marker == defineTables) {
+      // Each table has a byte of number and class, 16 counts of codes by length, and as many symbols.
+      for (std::size_t table = i + 4; table < i + 2 + length && table < file.size();) {
+        std::size_t symbols = 0;
+        for (std::size_t count = 1; count <= 16; ++count) symbols += at(table + count);
+        if (symbols > 256) return false;
+        table += 17 + symbols;
+      }
+    }
+    i += 2 + length;
+  }
+  return true;
+}
+
+struct FreePixels {
+  void operator()(void* pixels) const { stbi_image_free(pixels); }
+};
+
+std::uint8_t roundedTo8Bits(std::uint16_t value) {
+  return static_cast<std::uint8_t>((static_cast<std::uint32_t>(value) * 255U + 32767U) / 65535U);
+}
+
+} // namespace
+
+bool isPngOrJpeg(std::span<const std::byte> file) {
+  return startsWith(file, pngSignature) || startsWith(file, jpegSignature);
+}
+
+Image decodeImage(std::span<const std::byte> file) {
+  if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw LoadError("the image file is larger than 2 GiB");
+  if (startsWith(file, jpegSignature) && !hasSoundHuffmanTables(file))
+    throw LoadError("the image cannot be decoded: a Huffman table of the JPEG has too many symbols");
+  const auto* bytes = reinterpret_cast<const stbi_uc*>(file.data());
+  const int size = static_cast<int>(file.size());
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  const auto fail = [] { throw LoadError(fmt::format("the image cannot be decoded: {}", stbi_failure_reason())); };
+  if (stbi_info_from_memory(bytes, size, &width, &height, &channels) == 0) fail();
+  if (width < 1 || height < 1 || width > longestSide || height > longestSide)
+    throw LoadError(
+        fmt::format("the image has {} x {} pixels, but a side may have 1 to {}", width, height, longestSide));
+  const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  if (!plausible(pixels, file) || (startsWith(file, pngSignature) && !plausiblePng(file, pixels)))
+    throw LoadError(
+        fmt::format("the image states {} x {} pixels, but its file has only {} bytes", width, height, size));
+
+  Image image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+  const std::size_t valueCount = static_cast<std::size_t>(pixels) * 4;
+  if (stbi_is_16_bit_from_memory(bytes, size) != 0) {
+    const std::unique_ptr<stbi_us, FreePixels> data(
+        stbi_load_16_from_memory(bytes, size, &width, &height, &channels, 4));
+    if (!data) fail();
+    image.rgba.resize(valueCount);
+    std::transform(data.get(), data.get() + valueCount, image.rgba.begin(), roundedTo8Bits);
+  } else {
+    const std::unique_ptr<stbi_uc, FreePixels> data(stbi_load_from_memory(bytes, size, &width, &height, &channels, 4));
+    if (!data) fail();
+    image.rgba.assign(data.get(), data.get() + valueCount);
+  }
+  return image;
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,62 @@
+// Opens model files: picks the reader by the file's extension.
+#include "load.h"
+
+#include <algorithm>
+#include <cctype>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "message.h"
+#include "read_file.h"
+
+namespace vitrail::tool {
+namespace {
+
+constexpr const char* knownExtensions = ".gltf, .glb, .obj, .ply and .stl";
+
+// ".GLB" becomes "glb".
+std::string extensionOf(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// The folder of external files. Never empty, since an empty one would refuse them.
+std::filesystem::path folderOf(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+} // namespace
+
+Scene loadModel(const std::filesystem::path& path) {
+  const std::string extension = extensionOf(path);
+  try {
+    // A missing file is the more helpful thing to say about a mistyped name.
+    const std::vector<std::byte> file = readFile(path);
+    Scene scene;
+    if (extension == "gltf" || extension == "glb")
+      scene = loadGltf(file, folderOf(path));
+    else if (extension == "obj")
+      scene = loadObj(file, folderOf(path));
+    else if (extension == "ply")
+      scene = loadPly(file, folderOf(path));
+    else if (extension == "stl")
+      scene = loadStl(file);
+    else if (extension.empty())
+      throw LoadError(fmt::format("has no extension; {} can be read", knownExtensions));
+    else
+      throw LoadError(
+          fmt::format("has the unknown extension .{}; {} can be read", oneLine(extension), knownExtensions));
+    scene.name = path.stem().string();
+    return scene;
+  } catch (const std::bad_alloc&) {
+    throw LoadError("there is not enough memory to load it");
+  }
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,34 @@
+// Opens model files. Every failure is a LoadError whose text says what is wrong with which file.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include "scene.h"
+
+namespace vitrail::tool {
+
+// A file that cannot be used: what() is one line without a file name in front, as in
+// "accessor 3 reads 96 bytes past the end of buffer view 2".
+struct LoadError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Loads a model by its file's content and extension: .gltf, .glb, .obj, .ply, .stl (any case).
+// Throws LoadError; a file without any triangle is an error.
+Scene loadModel(const std::filesystem::path& path);
+
+// The glTF part, also reachable from memory for fuzzing: `base` is the folder for external buffers and images; when it
+// is empty external files are refused.
+Scene loadGltf(std::span<const std::byte> file, const std::filesystem::path& base);
+
+// The other formats, likewise. `base` is the folder for an OBJ's .mtl and for textures; when it is empty none are read.
+// Missing ones leave a plain material.
+Scene loadObj(std::span<const std::byte> file, const std::filesystem::path& base);
+Scene loadPly(std::span<const std::byte> file, const std::filesystem::path& base);
+Scene loadStl(std::span<const std::byte> file);
+
+} // namespace vitrail::tool

@@ -1,0 +1,282 @@
+// Makes meshes that keep the promises of scene.h.
+#include "mesh_build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "load.h"
+
+namespace vitrail::tool {
+namespace {
+
+bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// Twice the area, along the normal. In double precision, where no product of finite floats overflows or vanishes.
+glm::dvec3 areaVector(const Mesh& mesh, std::size_t firstIndex) {
+  const auto corner = [&](std::size_t i) { return glm::dvec3(mesh.vertices[mesh.indices[firstIndex + i]].position); };
+  const glm::dvec3 a = corner(0);
+  return glm::cross(corner(1) - a, corner(2) - a);
+}
+
+// Zero where the vector has no direction.
+glm::vec3 unit(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return length > 0.0 && std::isfinite(length) ? glm::vec3(v / length) : glm::vec3(0.0F);
+}
+
+std::vector<glm::dvec3> sumAreaVectors(const Mesh& mesh) {
+  std::vector<glm::dvec3> sums(mesh.vertices.size(), glm::dvec3(0.0));
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const glm::dvec3 area = areaVector(mesh, i);
+    for (std::size_t c = 0; c < 3; ++c) sums[mesh.indices[i + c]] += area;
+  }
+  return sums;
+}
+
+// The triangles around a vertex can cancel each other out; then any one of them gives the normal.
+void fillMissingNormals(Mesh& mesh) {
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    for (std::size_t c = 0; c < 3; ++c) {
+      glm::vec3& normal = mesh.vertices[mesh.indices[i + c]].normal;
+      if (normal == glm::vec3(0.0F)) normal = unit(areaVector(mesh, i));
+    }
+  for (Vertex& vertex : mesh.vertices)
+    if (vertex.normal == glm::vec3(0.0F)) vertex.normal = {0.0F, 0.0F, 1.0F};
+}
+
+glm::vec3 anyOrthogonal(const glm::vec3& normal) {
+  const glm::vec3 axis = std::abs(normal.x) < 0.5F ? glm::vec3(1.0F, 0.0F, 0.0F) : glm::vec3(0.0F, 1.0F, 0.0F);
+  return glm::normalize(axis - normal * glm::dot(axis, normal));
+}
+
+// The tangent made orthogonal to the normal; any orthogonal direction where too little of it is left.
+glm::vec3 orthogonalTangent(const glm::dvec3& tangent, const glm::vec3& normal) {
+  const glm::dvec3 n(normal);
+  const glm::vec3 direction = unit(tangent);
+  const glm::dvec3 rest = glm::dvec3(direction) - n * glm::dot(glm::dvec3(direction), n);
+  return glm::length(rest) > 1e-4 ? unit(rest) : anyOrthogonal(normal);
+}
+
+glm::vec2 slotCoordinates(const Vertex& vertex, const TextureSlot& slot) {
+  const glm::vec2 uv = slot.texCoord == 0 ? vertex.texCoord0 : vertex.texCoord1;
+  return glm::vec2(slot.transform * glm::vec3(uv, 1.0F));
+}
+
+struct TriangleTangent {
+  glm::dvec3 direction; // along growing u, weighted by area
+  float sign;           // w: -1 where the picture is mirrored
+};
+
+TriangleTangent triangleTangent(const Mesh& mesh, std::size_t firstIndex, const TextureSlot& slot) {
+  const Vertex& a = mesh.vertices[mesh.indices[firstIndex]];
+  const Vertex& b = mesh.vertices[mesh.indices[firstIndex + 1]];
+  const Vertex& c = mesh.vertices[mesh.indices[firstIndex + 2]];
+  const glm::dvec3 edge1 = glm::dvec3(b.position) - glm::dvec3(a.position);
+  const glm::dvec3 edge2 = glm::dvec3(c.position) - glm::dvec3(a.position);
+  const glm::dvec2 uv1 = glm::dvec2(slotCoordinates(b, slot)) - glm::dvec2(slotCoordinates(a, slot));
+  const glm::dvec2 uv2 = glm::dvec2(slotCoordinates(c, slot)) - glm::dvec2(slotCoordinates(a, slot));
+  const double determinant = uv1.x * uv2.y - uv2.x * uv1.y;
+  // v grows down the image, and glTF's bitangent w * cross(normal, tangent) points up it: the picture is unmirrored,
+  // and w is +1, where u and v turn clockwise.
+  const double growth = determinant < 0.0 ? -1.0 : 1.0;
+  const glm::dvec3 direction = glm::dvec3(unit((edge1 * uv2.y - edge2 * uv1.y) * growth));
+  return {direction * glm::length(areaVector(mesh, firstIndex)), determinant > 0.0 ? -1.0F : 1.0F};
+}
+
+} // namespace
+
+std::vector<std::uint32_t> triangleList(std::span<const std::uint32_t> indices, Topology topology) {
+  std::vector<std::uint32_t> list;
+  const auto add = [&list](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    if (a != b && b != c && c != a) list.insert(list.end(), {a, b, c});
+  };
+  if (indices.size() < 3) return list;
+  list.reserve(topology == Topology::Triangles ? indices.size() : (indices.size() - 2) * 3);
+  switch (topology) {
+    case Topology::Triangles:
+      for (std::size_t i = 0; i + 2 < indices.size(); i += 3) add(indices[i], indices[i + 1], indices[i + 2]);
+      break;
+    case Topology::Strip:
+      for (std::size_t i = 0; i + 2 < indices.size(); ++i)
+        add(indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]);
+      break;
+    case Topology::Fan:
+      for (std::size_t i = 1; i + 1 < indices.size(); ++i) add(indices[i], indices[i + 1], indices[0]);
+      break;
+  }
+  return list;
+}
+
+void dropDegenerateTriangles(Mesh& mesh) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    if (areaVector(mesh, i) == glm::dvec3(0.0)) continue;
+    for (std::size_t c = 0; c < 3; ++c) mesh.indices[kept + c] = mesh.indices[i + c];
+    kept += 3;
+  }
+  mesh.indices.resize(kept);
+}
+
+void dropUnusedVertices(Mesh& mesh) {
+  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> newIndex(mesh.vertices.size(), unused);
+  for (const std::uint32_t index : mesh.indices) newIndex[index] = 0;
+  std::uint32_t kept = 0;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (newIndex[i] == unused) continue;
+    mesh.vertices[kept] = mesh.vertices[i];
+    newIndex[i] = kept++;
+  }
+  mesh.vertices.resize(kept);
+  for (std::uint32_t& index : mesh.indices) index = newIndex[index];
+}
+
+void makeFlatNormals(Mesh& mesh) {
+  std::vector<Vertex> vertices;
+  vertices.reserve(mesh.indices.size());
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const glm::vec3 normal = unit(areaVector(mesh, i));
+    for (std::size_t c = 0; c < 3; ++c) {
+      vertices.push_back(mesh.vertices[mesh.indices[i + c]]);
+      vertices.back().normal = normal;
+    }
+  }
+  mesh.vertices = std::move(vertices);
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) mesh.indices[i] = static_cast<std::uint32_t>(i);
+  fillMissingNormals(mesh);
+}
+
+void makeSmoothNormals(Mesh& mesh) {
+  const std::vector<glm::dvec3> sums = sumAreaVectors(mesh);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i].normal = unit(sums[i]);
+  fillMissingNormals(mesh);
+}
+
+void makeCreasedNormals(Mesh& mesh, float crease) {
+  makeFlatNormals(mesh);
+  // Corners at one place are neighbours in this order.
+  const auto place = [&mesh](std::uint32_t corner) {
+    const glm::vec3& p = mesh.vertices[corner].position;
+    return std::tuple(p.x, p.y, p.z);
+  };
+  std::vector<std::uint32_t> order = mesh.indices;
+  std::ranges::sort(order, {}, place);
+
+  const double cosine = std::cos(static_cast<double>(crease));
+  std::vector<glm::vec3> normals(mesh.vertices.size());
+  for (std::size_t begin = 0; begin < order.size();) {
+    std::size_t end = begin + 1;
+    while (end < order.size() && place(order[end]) == place(order[begin])) ++end;
+    // All pairs are compared; where thousands of triangles meet, each keeps the normal of its plane.
+    constexpr std::size_t mostCompared = 256;
+    const bool compared = end - begin <= mostCompared;
+    for (std::size_t i = begin; i < end; ++i) {
+      const glm::vec3& own = mesh.vertices[order[i]].normal;
+      glm::dvec3 sum(0.0);
+      for (std::size_t j = begin; compared && j < end; ++j)
+        if (glm::dot(glm::dvec3(own), glm::dvec3(mesh.vertices[order[j]].normal)) > cosine)
+          sum += areaVector(mesh, order[j] / 3 * 3);
+      const glm::vec3 mean = unit(sum);
+      normals[order[i]] = mean == glm::vec3(0.0F) ? own : mean;
+    }
+    begin = end;
+  }
+  for (std::size_t i = 0; i < normals.size(); ++i) mesh.vertices[i].normal = normals[i];
+}
+
+void turnTrianglesToNormals(Mesh& mesh) {
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    glm::dvec3 normals(0.0);
+    for (std::size_t c = 0; c < 3; ++c) normals += glm::dvec3(mesh.vertices[mesh.indices[i + c]].normal);
+    if (glm::dot(areaVector(mesh, i), normals) < 0.0) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+  }
+}
+
+void repairNormals(Mesh& mesh) {
+  bool complete = true;
+  for (Vertex& vertex : mesh.vertices) {
+    vertex.normal = isFinite(vertex.normal) ? unit(glm::dvec3(vertex.normal)) : glm::vec3(0.0F);
+    complete = complete && vertex.normal != glm::vec3(0.0F);
+  }
+  if (complete) return;
+  const std::vector<glm::dvec3> sums = sumAreaVectors(mesh);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    if (mesh.vertices[i].normal == glm::vec3(0.0F)) mesh.vertices[i].normal = unit(sums[i]);
+  fillMissingNormals(mesh);
+}
+
+void makeTangents(Mesh& mesh, const TextureSlot& slot) {
+  // The first vertices.size() sums are those of triangles that are not mirrored, the others those of mirrored ones.
+  const std::size_t count = mesh.vertices.size();
+  std::vector<glm::dvec3> sums(2 * count, glm::dvec3(0.0));
+  std::vector<std::uint32_t> mirroredCopy(count, 0); // 0: none
+  std::vector<bool> hasPlain(count, false);
+  std::vector<float> signs(mesh.indices.size() / 3);
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const TriangleTangent tangent = triangleTangent(mesh, i, slot);
+    signs[i / 3] = tangent.sign;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t index = mesh.indices[i + c];
+      if (tangent.sign > 0.0F) hasPlain[index] = true;
+      sums[index + (tangent.sign > 0.0F ? 0 : count)] += tangent.direction;
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i)
+    mesh.vertices[i].tangent = glm::vec4(orthogonalTangent(sums[i], mesh.vertices[i].normal), 1.0F);
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    if (signs[i / 3] > 0.0F) continue;
+    std::uint32_t& index = mesh.indices[i];
+    const std::size_t original = index;
+    if (mirroredCopy[original] == 0 && hasPlain[original]) {
+      mirroredCopy[original] = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.push_back(mesh.vertices[original]);
+    }
+    if (mirroredCopy[original] != 0) index = mirroredCopy[original];
+    Vertex& vertex = mesh.vertices[index];
+    vertex.tangent = glm::vec4(orthogonalTangent(sums[original + count], vertex.normal), -1.0F);
+  }
+}
+
+void repairTangents(Mesh& mesh) {
+  for (Vertex& vertex : mesh.vertices) {
+    const glm::vec3 tangent(vertex.tangent);
+    const glm::dvec3 usable = isFinite(tangent) ? glm::dvec3(tangent) : glm::dvec3(0.0);
+    vertex.tangent = glm::vec4(orthogonalTangent(usable, vertex.normal), vertex.tangent.w < 0.0F ? -1.0F : 1.0F);
+  }
+}
+
+void requireDrawable(const Scene& scene) {
+  // The squares of lengths up to here are still well inside the range of a 32-bit float.
+  constexpr double farthest = 1e15;
+  std::vector<Bounds> boxes(scene.meshes.size());
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    const std::vector<Vertex>& vertices = scene.meshes[i].vertices;
+    if (vertices.empty()) continue;
+    boxes[i] = {vertices[0].position, vertices[0].position};
+    for (const Vertex& vertex : vertices) {
+      boxes[i].min = glm::min(boxes[i].min, vertex.position);
+      boxes[i].max = glm::max(boxes[i].max, vertex.position);
+    }
+  }
+  bool anyTriangle = false;
+  for (const Draw& draw : scene.draws) {
+    anyTriangle = anyTriangle || !scene.meshes[draw.mesh].indices.empty();
+    const Bounds& box = boxes[draw.mesh];
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec4 local((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
+                             (corner & 4) != 0 ? box.max.z : box.min.z, 1.0);
+      const glm::dvec4 world = glm::dmat4(draw.transform) * local;
+      for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(world[axis]) <= farthest))
+          throw LoadError(fmt::format("the model reaches to {:.3g}, farther than {:.0e}", world[axis], farthest));
+    }
+  }
+  if (!anyTriangle) throw LoadError("the file holds no triangles");
+}
+
+} // namespace vitrail::tool

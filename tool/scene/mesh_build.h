@@ -1,0 +1,56 @@
+// Makes meshes that keep the promises of scene.h out of what files hold: triangle lists without degenerate triangles,
+// unit normals and tangents, no unused vertices. And checks that a loaded scene can be drawn.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "scene.h"
+
+namespace vitrail::tool {
+
+enum class Topology { Triangles, Strip, Fan };
+
+// The triangle list of an index sequence. Triangles of a strip keep the winding of its first one. Indices that do not
+// fill a last triangle are dropped, as GPUs do; so are triangles that name a vertex twice.
+std::vector<std::uint32_t> triangleList(std::span<const std::uint32_t> indices, Topology topology);
+
+// Removes the triangles that have no area, in place. Every index is below vertices.size().
+void dropDegenerateTriangles(Mesh& mesh);
+
+// Removes the vertices that no triangle uses.
+void dropUnusedVertices(Mesh& mesh);
+
+// Gives each triangle three vertices of its own, with the normal of its plane.
+void makeFlatNormals(Mesh& mesh);
+
+// Normals that are the mean of the planes around each vertex, weighted by area.
+void makeSmoothNormals(Mesh& mesh);
+
+// Gives each triangle three vertices of its own. The normal of each is the mean, weighted by area, of the triangles
+// that have a corner at the same place and are inclined to its own by less than `crease`, in radians.
+void makeCreasedNormals(Mesh& mesh, float crease);
+
+// Turns the triangles whose plane faces away from their vertices' normals.
+void turnTrianglesToNormals(Mesh& mesh);
+
+// Scales all normals to unit length. One that is zero or not finite becomes the mean normal of its triangles.
+void repairNormals(Mesh& mesh);
+
+// Tangents along growing u of a texture slot, orthogonal to the normals, as the mean over the triangles around each
+// vertex. Where vertices are shared between mirrored and unmirrored triangles they are split. Method: Lengyel,
+// "Foundations of Game Engine Development" vol. 2, section 7.5.
+void makeTangents(Mesh& mesh, const TextureSlot& slot);
+
+// Makes the given tangents unit length and orthogonal to the normals, and their w +1 or -1. One that cannot be used is
+// replaced by any direction orthogonal to the normal.
+void repairTangents(Mesh& mesh);
+
+// Throws LoadError where a scene holds no triangle or reaches beyond what 32-bit floats can draw.
+void requireDrawable(const Scene& scene);
+
+} // namespace vitrail::tool

@@ -1,0 +1,53 @@
+// Questions about a whole scene.
+#include "scene.h"
+
+#include <limits>
+
+namespace vitrail::tool {
+namespace {
+
+// The positions that a mesh's triangles use: a file may hold others, and they are not part of the picture.
+std::vector<glm::vec3> usedPositions(const Mesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const std::uint32_t index : mesh.indices) used[index] = true;
+  std::vector<glm::vec3> positions;
+  positions.reserve(mesh.vertices.size());
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i]) positions.push_back(mesh.vertices[i].position);
+  }
+  return positions;
+}
+
+} // namespace
+
+void visitPositions(const Scene& scene, const std::function<void(std::span<const glm::vec3>)>& visit) {
+  std::vector<std::vector<glm::vec3>> positions(scene.meshes.size());
+  std::vector<glm::vec3> placed;
+  for (const Draw& draw : scene.draws) {
+    std::vector<glm::vec3>& used = positions[draw.mesh];
+    if (used.empty()) used = usedPositions(scene.meshes[draw.mesh]);
+    placed.resize(used.size());
+    for (std::size_t i = 0; i < used.size(); ++i) placed[i] = glm::vec3(draw.transform * glm::vec4(used[i], 1.0F));
+    visit(placed);
+  }
+}
+
+Bounds worldBounds(const Scene& scene) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  Bounds bounds{glm::vec3(infinity), glm::vec3(-infinity)};
+  visitPositions(scene, [&bounds](std::span<const glm::vec3> positions) {
+    for (const glm::vec3& position : positions) {
+      bounds.min = glm::min(bounds.min, position);
+      bounds.max = glm::max(bounds.max, position);
+    }
+  });
+  return bounds.min.x <= bounds.max.x ? bounds : Bounds{};
+}
+
+std::uint64_t triangleCount(const Scene& scene) {
+  std::uint64_t count = 0;
+  for (const Draw& draw : scene.draws) count += scene.meshes[draw.mesh].indices.size() / 3;
+  return count;
+}
+
+} // namespace vitrail::tool

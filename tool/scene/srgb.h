@@ -1,0 +1,11 @@
+// The sRGB curve of IEC 61966-2-1, from encoded to linear.
+#pragma once
+
+#include <glm/glm.hpp>
+
+namespace vitrail::tool {
+
+// Channels outside [0, 1] are clamped; a NaN becomes 0.
+glm::vec3 linearFromSrgb(const glm::vec3& srgb);
+
+} // namespace vitrail::tool
