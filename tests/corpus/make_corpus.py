@@ -2,8 +2,11 @@
 """Writes the model files that the loading tests read: good/ and bad/ beside this script.
 
 The files are kept in the repository; run this again only to change them. Its output is the same every time.
+With `--seeds FOLDER` it writes that folder instead: the same files as seeds for tests/fuzz/load_fuzz.cpp, which takes
+the reader from a first byte.
 """
 
+import argparse
 import base64
 import copy
 import json
@@ -618,7 +621,21 @@ def write_bad():
     (BAD / "unknown.fbx").write_text("Kaydara FBX Binary\n")
 
 
+def write_seeds(folder):
+    readers = {".gltf": 0, ".glb": 0, ".obj": 1, ".ply": 2, ".stl": 3, ".png": 4}
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in sorted([*GOOD.iterdir(), *BAD.iterdir()]):
+        if path.suffix in readers:
+            (folder / f"{path.parent.name}-{path.name}").write_bytes(bytes([readers[path.suffix]]) + path.read_bytes())
+
+
 def main():
+    parser = argparse.ArgumentParser(description="Writes the model files that the loading tests read.")
+    parser.add_argument("--seeds", type=pathlib.Path, metavar="FOLDER", help="write seeds for the fuzzer instead")
+    seeds = parser.parse_args().seeds
+    if seeds:
+        write_seeds(seeds)
+        return
     GOOD.mkdir(exist_ok=True)
     BAD.mkdir(exist_ok=True)
     write_good_shapes()

@@ -51,10 +51,6 @@ void checkScene(const Scene& scene) {
 
 } // namespace
 
-// assimp leaks where it refuses an OBJ. That is nothing that a program of one model a run could notice.
-// NOLINTNEXTLINE(bugprone-reserved-identifier): the sanitizer's name
-extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto file = std::as_bytes(std::span(data + 1, size - 1));

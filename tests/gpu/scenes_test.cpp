@@ -99,7 +99,7 @@ TEST_F(ScenesTest, SmokeWithoutMipmaps) {
   expectCounts(result.report, reference);
 }
 
-// The reference knows no mipmaps, and the puffs are drawn at down to a tenth of their textures' size: at the foot of
+// The reference knows no mipmaps, and the puffs are drawn at down to an eighth of their textures' size: at the foot of
 // the plume, where they are smallest, the pictures differ.
 TEST_F(ScenesTest, Smoke) {
   const Scene scene = makeBuiltinScene("smoke", {});

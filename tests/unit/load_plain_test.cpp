@@ -136,6 +136,15 @@ TEST(LoadObj, TextureCoordinatesGrowDownwards) {
   EXPECT_TRUE(found);
 }
 
+TEST(LoadObj, LinesGoOnAfterABackslashAndNegativeIndicesCountBackwards) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 \\\n 1 0\nf -3 -2 \\\r\n -1\nv 9 9 9\n";
+  const Scene scene = loadObj(std::as_bytes(std::span(text)), {});
+  const Mesh& mesh = scene.meshes.at(0);
+  ASSERT_EQ(mesh.vertices.size(), 3U);
+  expectNear(mesh.vertices[2].position, {0.0F, 1.0F, 0.0F});
+  expectNear(mesh.vertices[0].normal, {0.0F, 0.0F, 1.0F});
+}
+
 TEST(LoadObj, VertexColors) {
   const Scene scene = loadGood("vertex_colors.obj");
   expectNear(glm::vec3(scene.meshes.at(0).vertices.at(0).color), {1.0F, linearHalf, 0.0F});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <set>
 #include <span>
@@ -16,9 +17,8 @@ namespace {
 
 constexpr Access kVertexFetch{VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT, VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT};
 constexpr Access kIndexFetch{VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, VK_ACCESS_2_INDEX_READ_BIT};
-constexpr Access kVertexShaderRead{VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT};
 constexpr Access kShaderRead{VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-                             VK_ACCESS_2_SHADER_STORAGE_READ_BIT};
+                             VK_ACCESS_2_UNIFORM_READ_BIT};
 
 // The middle of a scene that is far away compared with its size, else 0: most scenes keep their own numbers.
 glm::dvec3 farMiddle(const Scene& scene) {
@@ -58,7 +58,6 @@ shaders::DrawData makeDrawData(const Draw& draw, const glm::dvec3& origin) {
   data.normal0 = glm::vec4(normals[0], sign);
   data.normal1 = glm::vec4(normals[1], 0.0);
   data.normal2 = glm::vec4(normals[2], 0.0);
-  data.material = draw.material;
   return data;
 }
 
@@ -105,13 +104,18 @@ std::vector<std::uint32_t> usedMaterials(const Scene& scene) {
   return {used.begin(), used.end()};
 }
 
-GpuBuffer storageBuffer(Gpu& gpu, std::uint64_t size, const char* name) {
-  const std::uint64_t limit = gpu.properties().limits.maxStorageBufferRange;
-  if (size > limit) {
-    throw GpuError(fmt::format("the model's {} take {} MiB; {} can bind at most {} MiB", name, size >> 20U,
-                               gpu.properties().deviceName, limit >> 20U));
-  }
-  return {gpu, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryKind::Device, name};
+// Uploads structures as one uniform buffer in which each starts at a multiple of kUniformStride.
+template <typename Data>
+GpuBuffer uploadUniforms(Gpu& gpu, Uploader& uploader, const std::vector<Data>& data, const char* name) {
+  static_assert(sizeof(Data) <= kUniformStride);
+  checkCount(data.size(), std::numeric_limits<std::uint32_t>::max() / kUniformStride, name);
+  std::vector<std::byte> bytes(data.size() * kUniformStride);
+  for (std::size_t i = 0; i < data.size(); ++i) std::memcpy(&bytes[i * kUniformStride], &data[i], sizeof(Data));
+  // One at least, so that a scene without any has something to bind.
+  GpuBuffer buffer(gpu, std::max<std::size_t>(bytes.size(), kUniformStride),
+                   VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryKind::Device, name);
+  uploader.toBuffer(bytes, buffer, 0, kShaderRead);
+  return buffer;
 }
 
 } // namespace
@@ -185,18 +189,14 @@ void GpuScene::uploadMaterials(Uploader& uploader, const Scene& scene, std::opti
   std::vector<shaders::MaterialData> data;
   data.reserve(scene.materials.size());
   for (const Material& material : scene.materials) data.push_back(makeMaterialData(material, opacity));
-  const auto bytes = std::as_bytes(std::span(data));
-  materials_ = storageBuffer(gpu_, bytes.size(), "materials");
-  uploader.toBuffer(bytes, materials_, 0, kShaderRead);
+  materials_ = uploadUniforms(gpu_, uploader, data, "materials");
 }
 
 void GpuScene::uploadDraws(Uploader& uploader, const Scene& scene) {
   std::vector<shaders::DrawData> data;
   data.reserve(scene.draws.size());
   for (const Draw& draw : scene.draws) data.push_back(makeDrawData(draw, origin_));
-  const auto bytes = std::as_bytes(std::span(data));
-  drawData_ = storageBuffer(gpu_, bytes.size(), "draws");
-  uploader.toBuffer(bytes, drawData_, 0, kVertexShaderRead);
+  drawData_ = uploadUniforms(gpu_, uploader, data, "draws");
 }
 
 void GpuScene::listDraws(const Scene& scene, const std::vector<MeshRange>& ranges, bool allTransparent,
@@ -207,7 +207,8 @@ void GpuScene::listDraws(const Scene& scene, const std::vector<MeshRange>& range
     const MeshRange& range = ranges[source.mesh];
     const bool transparent = isTransparent(material, allTransparent);
     GpuDraw draw;
-    draw.index = i;
+    draw.dataOffset = i * kUniformStride;
+    draw.materialOffset = source.material * kUniformStride;
     draw.firstIndex = static_cast<std::uint32_t>(transparent ? range.firstTransparentIndex : range.firstOpaqueIndex);
     draw.indexCount = static_cast<std::uint32_t>(scene.meshes[source.mesh].indices.size());
     draw.vertexOffset = static_cast<std::int32_t>(range.firstVertex);

@@ -14,9 +14,13 @@
 
 namespace vitrail::tool {
 
+// The largest alignment of a uniform buffer's offset that a device may ask for.
+constexpr std::uint32_t kUniformStride = 256;
+
 // One indexed draw of the pooled buffers.
 struct GpuDraw {
-  std::uint32_t index = 0; // into the draw data: its instance index
+  std::uint32_t dataOffset = 0;     // bytes into drawData()
+  std::uint32_t materialOffset = 0; // bytes into materials()
   std::uint32_t firstIndex = 0;
   std::uint32_t indexCount = 0;
   std::int32_t vertexOffset = 0;
@@ -35,8 +39,8 @@ class GpuScene {
   const std::vector<GpuDraw>& transparentDraws() const { return transparent_; }
   const GpuBuffer& vertices() const { return vertices_; }   // of Vertex
   const GpuBuffer& indices() const { return indices_; }     // 32-bit
-  const GpuBuffer& drawData() const { return drawData_; }   // of shaders::DrawData
-  const GpuBuffer& materials() const { return materials_; } // of shaders::MaterialData
+  const GpuBuffer& drawData() const { return drawData_; }   // of shaders::DrawData, kUniformStride apart
+  const GpuBuffer& materials() const { return materials_; } // of shaders::MaterialData, kUniformStride apart
   // The point of the world that is the GPU's (0, 0, 0): near the scene, so that a model far from the world's own origin
   // keeps its precision in 32-bit floats. Views are moved with it.
   const glm::dvec3& origin() const { return origin_; }

@@ -1,6 +1,7 @@
 #include "renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -73,28 +74,26 @@ GraphicsPipelineInfo skyPipeline(VkPipelineLayout layout) {
   return info;
 }
 
-// Draws surfaces in the present rendering scope. Sets 0 and 2 are bound by the caller.
+// Draws surfaces in the present rendering scope. `frame` is set 0; set 2 is bound by the caller.
 void cmdDrawSurfaces(VkCommandBuffer commands, const GpuScene& scene, const std::vector<GpuDraw>& draws,
-                     VkPipelineLayout layout, SurfacePipelines& pipelines) {
+                     VkPipelineLayout layout, VkDescriptorSet frame, SurfacePipelines& pipelines) {
   if (draws.empty()) return;
   const VkBuffer vertices = scene.vertices().get();
   const VkDeviceSize offset = 0;
   vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &offset);
   vkCmdBindIndexBuffer(commands, scene.indices().get(), 0, VK_INDEX_TYPE_UINT32);
   VkPipeline pipeline = VK_NULL_HANDLE;
-  VkDescriptorSet textures = VK_NULL_HANDLE;
   for (const GpuDraw& draw : draws) {
     if (VkPipeline wanted = pipelines.get(draw.features); wanted != pipeline) {
       pipeline = wanted;
       vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     }
-    if (draw.textures != textures) {
-      textures = draw.textures;
-      vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 1, 1, &textures, 0, nullptr);
-    }
+    const std::array<VkDescriptorSet, 2> sets{frame, draw.textures};
+    const std::array<std::uint32_t, 2> offsets{draw.dataOffset, draw.materialOffset};
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 2, sets.data(), 2, offsets.data());
     vkCmdSetFrontFace(commands, draw.frontFace);
     vkCmdSetCullMode(commands, draw.cullMode);
-    vkCmdDrawIndexed(commands, draw.indexCount, 1, draw.firstIndex, draw.vertexOffset, draw.index);
+    vkCmdDrawIndexed(commands, draw.indexCount, 1, draw.firstIndex, draw.vertexOffset, 0);
   }
 }
 
@@ -135,8 +134,8 @@ Renderer::Impl::Impl(Gpu& device, const Scene& source, std::optional<float> opac
                   "frame data"),
       frameSet(gpu,
                {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT},
-                {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_VERTEX_BIT},
-                {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT}},
+                {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT},
+                {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT}},
                "frame"),
       opaqueLayout(makePipelineLayout(gpu, {frameSet.layout(), scene.textureLayout()}, 0, "opaque")),
       collectLayout(
@@ -147,8 +146,8 @@ Renderer::Impl::Impl(Gpu& device, const Scene& source, std::optional<float> opac
       encode(gpu),
       timers(gpu, kPasses) {
   frameSet.writeBuffer(0, frameBuffer.get(), frameBuffer.size());
-  frameSet.writeBuffer(1, scene.drawData().get(), scene.drawData().size());
-  frameSet.writeBuffer(2, scene.materials().get(), scene.materials().size());
+  frameSet.writeBuffer(1, scene.drawData().get(), sizeof(shaders::DrawData));
+  frameSet.writeBuffer(2, scene.materials().get(), sizeof(shaders::MaterialData));
   // All that the scene needs, now: no frame waits for a pipeline.
   for (const GpuDraw& draw : scene.opaqueDraws()) opaquePipelines.get(draw.features);
   for (const GpuDraw& draw : scene.transparentDraws()) collectPipelines.get(draw.features);
@@ -174,24 +173,24 @@ void Renderer::Impl::prepare(const RenderOptions& options) {
 
 void Renderer::Impl::cmdOpaque(VkCommandBuffer commands, const Background& background) {
   images.cmdBeginOpaque(commands, clearColor(background));
-  const VkDescriptorSet set = frameSet.set();
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, opaqueLayout.get(), 0, 1, &set, 0, nullptr);
   if (background.kind == Background::Kind::Sky) {
+    const VkDescriptorSet set = frameSet.set();
+    const std::array<std::uint32_t, 2> offsets{}; // of no draw: the sky reads the frame data alone
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, opaqueLayout.get(), 0, 1, &set, 2,
+                            offsets.data());
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, sky.get());
     vkCmdDraw(commands, 3, 1, 0, 0);
   }
-  cmdDrawSurfaces(commands, scene, scene.opaqueDraws(), opaqueLayout.get(), opaquePipelines);
+  cmdDrawSurfaces(commands, scene, scene.opaqueDraws(), opaqueLayout.get(), frameSet.set(), opaquePipelines);
   vkCmdEndRendering(commands);
 }
 
 void Renderer::Impl::cmdCollect(VkCommandBuffer commands) {
   images.cmdBeginCollect(commands);
-  const VkDescriptorSet frameData = frameSet.set();
   const VkDescriptorSet lists = method.collectSet();
   const VkPipelineLayout layout = collectLayout.get();
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &frameData, 0, nullptr);
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1, &lists, 0, nullptr);
-  cmdDrawSurfaces(commands, scene, scene.transparentDraws(), layout, collectPipelines);
+  cmdDrawSurfaces(commands, scene, scene.transparentDraws(), layout, frameSet.set(), collectPipelines);
   vkCmdEndRendering(commands);
 }
 

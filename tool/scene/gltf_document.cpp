@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bytes.h"
 #include "gltf_check.h"
 #include "gltf_uri.h"
 #include "load.h"
@@ -22,12 +23,6 @@ struct Container {
   std::string_view json;
   std::optional<std::span<const std::byte>> binary; // GLB's BIN chunk
 };
-
-std::uint32_t littleEndian(std::span<const std::byte> bytes, std::size_t offset) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 4; i-- > 0;) value = (value << 8U) | std::to_integer<std::uint32_t>(bytes[offset + i]);
-  return value;
-}
 
 std::string_view asText(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "bytes.h"
 #include "load.h"
 #include "mesh_build.h"
 #include "plain_model.h"
@@ -23,12 +24,6 @@ namespace {
 constexpr std::size_t headerBytes = 80;
 constexpr std::size_t facetsBegin = headerBytes + 4;
 constexpr std::size_t facetBytes = 50; // normal, 3 corners, 16 spare bits
-
-std::uint32_t littleEndian(std::span<const std::byte> bytes, std::size_t offset, std::size_t size) {
-  std::uint32_t value = 0;
-  for (std::size_t i = size; i-- > 0;) value = (value << 8U) | std::to_integer<std::uint32_t>(bytes[offset + i]);
-  return value;
-}
 
 void addCorner(Mesh& mesh, const glm::vec3& position, const glm::vec4& color) {
   for (int c = 0; c < 3; ++c)

@@ -34,16 +34,12 @@ struct FrameData {
   vec4 ray;     // a pixel at (x, y) looks along (x * ray.x - ray.z, ray.w - y * ray.y, -1) in camera axes
 };
 
-// One draw, by its instance index (std430).
+// One draw (std140).
 struct DrawData {
   mat4 model;
   vec4 normal0; // columns of the normal matrix; normal0.w: -1 where the transform mirrors, else 1
   vec4 normal1;
   vec4 normal2;
-  uint material;
-  uint unused0;
-  uint unused1;
-  uint unused2;
 };
 
 // Where a texture slot samples: (u, v, 1) times two rows, row0.w: which texture coordinates, 0 or 1.
@@ -52,7 +48,7 @@ struct SlotData {
   vec4 row1;
 };
 
-// One material (std430).
+// One material (std140).
 struct MaterialData {
   vec4 baseColor;
   vec4 emissive; // rgb
@@ -69,7 +65,7 @@ struct MaterialData {
 
 #ifdef __cplusplus
 static_assert(sizeof(FrameData) == 176);
-static_assert(sizeof(DrawData) == 128);
+static_assert(sizeof(DrawData) == 112);
 static_assert(sizeof(SlotData) == 32);
 static_assert(sizeof(MaterialData) == 224);
 } // namespace vitrail::tool::shaders

@@ -7,7 +7,7 @@
 layout(constant_id = 0) const uint kFeatures = 0u;
 
 layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameData frame; };
-layout(set = 0, binding = 2, std430) readonly buffer MaterialBlock { MaterialData materials[]; };
+layout(set = 0, binding = 2, std140) uniform MaterialBlock { MaterialData material; };
 layout(set = 1, binding = 0) uniform sampler2D baseColorTexture;
 layout(set = 1, binding = 1) uniform sampler2D metallicRoughnessTexture;
 layout(set = 1, binding = 2) uniform sampler2D normalTexture;
@@ -18,8 +18,7 @@ layout(location = 0) in vec3 inPosition;
 layout(location = 1) in vec3 inNormal;
 layout(location = 2) in vec4 inTangent;
 layout(location = 3) in vec4 inColor;
-layout(location = 4) flat in uint inMaterial;
-layout(location = 5) in vec2 inTexCoords[SLOT_COUNT];
+layout(location = 4) in vec2 inTexCoords[SLOT_COUNT];
 
 const float PI = 3.14159265358979;
 
@@ -45,7 +44,7 @@ vec3 surfaceNormal(vec3 sampled, vec3 fallback) {
     vec3 tangent = direction(inTangent.xyz - normal * dot(normal, inTangent.xyz), normalize(cross(axis, normal)));
     vec3 bitangent = cross(normal, tangent) * (inTangent.w < 0.0 ? -1.0 : 1.0);
     vec3 n = sampled * 2.0 - 1.0;
-    n.xy *= materials[inMaterial].normalScale;
+    n.xy *= material.normalScale;
     normal = direction(tangent * n.x + bitangent * n.y + normal * n.z, normal);
   }
   return gl_FrontFacing ? normal : -normal;
@@ -66,6 +65,12 @@ float visibility(float nl, float nv, float a2) {
   return 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
 }
 
+// Schlick's weight, (1 - c)^5.
+float grazing(float c) {
+  float x = max(1.0 - c, 0.0);
+  return x * x * x * x * x;
+}
+
 vec3 lit(vec3 base, float metallic, float roughness, float occlusion, vec3 n, vec3 v) {
   vec3 l = frame.toLight.xyz;
   vec3 h = direction(l + v, n);
@@ -77,19 +82,18 @@ vec3 lit(vec3 base, float metallic, float roughness, float occlusion, vec3 n, ve
 
   vec3 direct = vec3(0.0);
   if (nl > 0.0) {
-    vec3 fresnel = f0 + (1.0 - f0) * pow(max(1.0 - max(dot(v, h), 0.0), 0.0), 5.0);
+    vec3 fresnel = f0 + (1.0 - f0) * grazing(max(dot(v, h), 0.0));
     vec3 specular = fresnel * distribution(n, h, a2) * visibility(nl, nv, a2);
     direct = 2.0 * nl * ((1.0 - fresnel) * diffuse / PI + specular);
   }
   vec3 reflected = 2.0 * dot(n, v) * n - v;
-  vec3 ambientFresnel = f0 + (max(vec3(1.0 - roughness), f0) - f0) * pow(max(1.0 - nv, 0.0), 5.0);
+  vec3 ambientFresnel = f0 + (max(vec3(1.0 - roughness), f0) - f0) * grazing(nv);
   return direct + occlusion * (hemisphere(n) * diffuse + hemisphere(reflected) * ambientFresnel);
 }
 
 // Linear colour and straight alpha. Discards what the mask cuts away, after every texture has been sampled:
 // what kFeatures decides is uniform, so the derivatives are defined.
 vec4 shadeSurface() {
-  MaterialData material = materials[inMaterial];
   vec4 base = material.baseColor;
   vec3 metallicRoughness = vec3(1.0);
   vec3 normalSample = vec3(0.5, 0.5, 1.0);

@@ -6,8 +6,8 @@
 layout(constant_id = 0) const uint kFeatures = 0u;
 
 layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameData frame; };
-layout(set = 0, binding = 1, std430) readonly buffer DrawBlock { DrawData draws[]; };
-layout(set = 0, binding = 2, std430) readonly buffer MaterialBlock { MaterialData materials[]; };
+layout(set = 0, binding = 1, std140) uniform DrawBlock { DrawData draw; };
+layout(set = 0, binding = 2, std140) uniform MaterialBlock { MaterialData material; };
 
 layout(location = 0) in vec3 inPosition;
 layout(location = 1) in vec3 inNormal;
@@ -20,23 +20,21 @@ layout(location = 0) out vec3 outPosition;
 layout(location = 1) out vec3 outNormal;
 layout(location = 2) out vec4 outTangent;
 layout(location = 3) out vec4 outColor;
-layout(location = 4) flat out uint outMaterial;
-layout(location = 5) out vec2 outTexCoords[SLOT_COUNT];
+layout(location = 4) out vec2 outTexCoords[SLOT_COUNT];
 
 // Both passes must give one vertex the same bits, or transparent decals on opaque surfaces would flicker.
 invariant gl_Position;
 
-// Here and not in the fragment shader, so that what is sampled with is interpolated and nothing else: some drivers load
-// nothing from buffers for the helper invocations that derivatives are taken from.
-vec2 slotCoordinates(uint material, uint slot) {
+// Here and not in the fragment shader: what textures are sampled with is then interpolated and nothing else, and its
+// derivatives do not rest on what a driver loads for helper invocations.
+vec2 slotCoordinates(uint slot) {
   if ((kFeatures & 1u << slot) == 0u) return vec2(0.0);
-  SlotData data = materials[material].slots[slot];
+  SlotData data = material.slots[slot];
   vec3 uv1 = vec3(data.row0.w > 0.5 ? inTexCoord1 : inTexCoord0, 1.0);
   return vec2(dot(data.row0.xyz, uv1), dot(data.row1.xyz, uv1));
 }
 
 void main() {
-  DrawData draw = draws[gl_InstanceIndex];
   vec4 position = draw.model * vec4(inPosition, 1.0);
   gl_Position = frame.viewProjection * position;
   outPosition = position.xyz;
@@ -44,6 +42,5 @@ void main() {
   // A mirror turns cross(normal, tangent) round, so the bitangent's sign turns with it.
   outTangent = vec4(mat3(draw.model) * inTangent.xyz, inTangent.w * draw.normal0.w);
   outColor = inColor;
-  outMaterial = draw.material;
-  for (uint slot = 0u; slot < SLOT_COUNT; ++slot) outTexCoords[slot] = slotCoordinates(draw.material, slot);
+  for (uint slot = 0u; slot < SLOT_COUNT; ++slot) outTexCoords[slot] = slotCoordinates(slot);
 }
