@@ -3,12 +3,12 @@
 namespace vitrail {
 
 const char* Dispatch::load(VkInstance instance, VkDevice device, PFN_vkGetInstanceProcAddr getInstanceProcAddr) {
-#define VITRAIL_LOAD_INSTANCE(name)                                                 \
-  name = reinterpret_cast<PFN_vk##name>(getInstanceProcAddr(instance, "vk" #name)); \
-  if (name == nullptr) return "vk" #name;
-#define VITRAIL_LOAD_DEVICE(name)                                               \
-  name = reinterpret_cast<PFN_vk##name>(GetDeviceProcAddr(device, "vk" #name)); \
-  if (name == nullptr) return "vk" #name;
+#define VITRAIL_LOAD_INSTANCE(name)                                                   \
+  (name) = reinterpret_cast<PFN_vk##name>(getInstanceProcAddr(instance, "vk" #name)); \
+  if ((name) == nullptr) return "vk" #name;
+#define VITRAIL_LOAD_DEVICE(name)                                                 \
+  (name) = reinterpret_cast<PFN_vk##name>(GetDeviceProcAddr(device, "vk" #name)); \
+  if ((name) == nullptr) return "vk" #name;
   VITRAIL_INSTANCE_FUNCTIONS(VITRAIL_LOAD_INSTANCE)
   VITRAIL_DEVICE_FUNCTIONS(VITRAIL_LOAD_DEVICE)
 #undef VITRAIL_LOAD_INSTANCE

@@ -506,6 +506,9 @@ def bad_documents():
     yield "image_over_limit", plain(lambda: textured_quad(bytes(larger)))
     yield "image_truncated", plain(lambda: textured_quad(RED_GREEN[:50]))
     yield "image_garbage", plain(lambda: textured_quad(b"no picture at all"))
+    table = bytes([0] + [17] * 16 + [0] * 272)
+    jpeg = b"\xff\xd8\xff\xc4" + struct.pack(">H", 2 + len(table)) + table
+    yield "image_jpeg_table", plain(lambda: textured_quad(jpeg))
     yield "joint_range", plain(skinned(2, 2))
     yield "joint_matrices", plain(skinned(0))
     yield simple("material_range", "meshes", 0, "primitives", 0, "material", 0)

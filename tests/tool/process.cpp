@@ -25,6 +25,7 @@ std::string readAll(const fs::path& path) {
 [[noreturn]] void execute(const std::vector<std::string>& arguments, const ProcessOptions& options, const fs::path& out,
                           const fs::path& error) {
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
   for (const std::string& variable : options.environment) ::putenv(const_cast<char*>(variable.c_str()));

@@ -79,6 +79,8 @@ const std::map<std::string, std::string>& expectedMessages() {
       {"header_unfinished.ply", "the PLY header does not end"},
       {"image_garbage.gltf", "image 0: is neither PNG nor JPEG"},
       {"image_huge.gltf", "image 0: the image states 16000 x 16000 pixels, but its file has only 72 bytes"},
+      {"image_jpeg_table.gltf",
+       "image 0: the image cannot be decoded: a Huffman table of the JPEG has too many symbols"},
       {"image_over_limit.gltf", "image 0: the image has 100000 x 2 pixels, but a side may have 1 to 16384"},
       {"image_truncated.gltf", "image 0: the image cannot be decoded: "},
       {"index_floats.gltf", "accessor 1: is used as indices, but does not hold unsigned integers"},

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -14,7 +16,7 @@ void addScenesCommand(CLI::App& app, std::function<void()>& run);
 
 // Gives a command a help page of its own in place of the generated one.
 inline void setHelpPage(CLI::App& app, std::string page) {
-  app.formatter_fn([page = std::move(page)](const CLI::App*, std::string, CLI::AppFormatMode) { return page; });
+  app.formatter_fn([page = std::move(page)](const CLI::App*, const std::string&, CLI::AppFormatMode) { return page; });
 }
 
 } // namespace vitrail::tool

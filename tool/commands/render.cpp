@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "../draw/renderer.h"
-#include "../image/png.h"
+#include "../image/png_encode.h"
 #include "../scene/builtin.h"
 #include "../scene/load.h"
 #include "commands.h"

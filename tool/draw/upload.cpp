@@ -57,8 +57,7 @@ void cmdFillMipmaps(VkCommandBuffer commands, const GpuImage& image) {
 } // namespace
 
 Uploader::Uploader(Gpu& gpu)
-    : gpu_(gpu),
-      submitter_(gpu),
+    : submitter_(gpu),
       staging_(gpu, kStagingBytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryKind::Upload, "upload buffer") {}
 
 void Uploader::toBuffer(std::span<const std::byte> data, const GpuBuffer& buffer, std::uint64_t offset,

@@ -25,7 +25,6 @@ class Uploader {
   void toImage(std::span<const std::uint8_t> rgba, const GpuImage& image);
 
  private:
-  Gpu& gpu_;
   Submitter submitter_;
   GpuBuffer staging_;
 };

@@ -89,7 +89,7 @@ Component load(const std::byte* from) {
 // One component, as a float or an unsigned integer. Signed integers are never asked for as the latter.
 template <typename Value>
 Value component(const std::byte* from, int type, bool normalized) {
-  const auto scaled = [normalized]<typename Raw>(Raw raw, [[maybe_unused]] float largest) {
+  const auto scaled = [=]<typename Raw>(Raw raw, [[maybe_unused]] float largest) {
     if constexpr (std::is_same_v<Value, float>) {
       if (normalized) return std::max(static_cast<float>(raw) / largest, -1.0F);
     }

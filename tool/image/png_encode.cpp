@@ -1,4 +1,4 @@
-#include "png.h"
+#include "png_encode.h"
 
 #include <png.h>
 
