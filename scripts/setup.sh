@@ -54,8 +54,10 @@ build() {
   mkdir -p "$folder"
   log="$folder/build.log"
   : >"$log"
-  if [ ! -f "$folder/build.ninja" ]; then
+  # CMake does not notice changed presets by itself.
+  if [ ! -f "$folder/build.ninja" ] || [ "$root/CMakePresets.json" -nt "$folder/build.ninja" ]; then
     (cd "$root" && cmake --preset "$1") >"$log" 2>&1 || { cat "$log" >&2; die "cmake could not configure preset $1"; }
+    touch "$folder/build.ninja"
   fi
   (cd "$root" && cmake --build --preset "$1") >>"$log" 2>&1 || { tail -n 60 "$log" >&2; die "the build of preset $1 failed"; }
 }

@@ -12,7 +12,7 @@
  *     (host)  opaque geometry into colour and depth
  *     vitrailCmdBegin       outside a rendering scope: empties the lists
  *     (host)  binds vitrailTargetDescriptorSet() to its own pipelines and draws the transparent geometry with depth
- *             test on, depth writes off, no culling
+ *             test on, depth writes off, no culling, one sample a pixel
  *     vitrailCmdCollected   outside a rendering scope: makes the lists visible to the resolve
  *     vitrailCmdResolve     outside a rendering scope: sorts, blends, writes the colour image
  *   vitrailReadStats       later, whenever the frame has finished: what the frame held, and whether it was exact
@@ -44,8 +44,8 @@ typedef struct VitrailContext_T* VitrailContext;
 typedef struct VitrailTarget_T* VitrailTarget;
 
 typedef enum VitrailLogSeverity {
-  VITRAIL_LOG_WARNING = 0, /* the call succeeded, but not as the host may expect */
-  VITRAIL_LOG_ERROR = 1    /* the call that logs this returns an error */
+  VITRAIL_LOG_ERROR = 1, /* the call that logs this returns an error */
+  VITRAIL_LOG_SEVERITY_MAX_ENUM = 0x7fffffff
 } VitrailLogSeverity;
 
 /* Receives one line, without a newline, that says what is wrong and what to do. Called on the thread of the call that
@@ -79,8 +79,8 @@ typedef enum VitrailNodeFormat {
    *           are clamped to [0, 1]; the error is at most 0.5/255 on the curve.
    *   alpha   8 bits, linear, clamped to [0, 1]; the error is at most 0.5/255.
    *   depth   the full 32-bit float of gl_FragCoord.z, clamped to [0, 1]; no error.
-   * A NaN in colour or alpha is stored as 0, in depth as the value farthest from the viewer. A fragment whose stored
-   * alpha is 0 cannot change the picture: it is neither stored nor counted. */
+   * A NaN in colour or alpha is stored as 0, in depth as the value farthest from the viewer. A fragment whose alpha is
+   * rounded to 0 (below 0.5/255) is neither stored nor counted. */
   VITRAIL_NODE_STANDARD = 0,
   VITRAIL_NODE_FORMAT_MAX_ENUM = 0x7fffffff
 } VitrailNodeFormat;
@@ -144,8 +144,8 @@ typedef struct VitrailMemory {
 void vitrailTargetMemory(VitrailTarget target, VitrailMemory* memory);
 
 /* The layout of the one descriptor set that vitrailCollect() needs, the same for every target of the context: put it
- * into the host's pipeline layouts at the set number that its shaders define as VITRAIL_SET. Stages: fragment. Owned by
- * the context. */
+ * into the host's pipeline layouts at the set number that its shaders define as VITRAIL_SET. The fragment stage sees
+ * one uniform and three storage buffers. Owned by the context. */
 VkDescriptorSetLayout vitrailDescriptorSetLayout(VitrailContext context);
 
 /* The set to bind at VITRAIL_SET while the transparent geometry is drawn into this target. Owned by the target, valid
@@ -189,8 +189,8 @@ typedef struct VitrailStats {
   uint64_t fragmentsMissing;   /* requested - stored */
   uint32_t layersMax;          /* stored fragments of the deepest pixel: the depth complexity if the frame is exact */
   uint32_t coveredPixels;      /* pixels with at least one stored fragment; stored / covered is the mean depth */
-  /* Pixels that the driver did not let the resolve finish. Always 0 on a GPU. Mesa's CPU driver ends every loop of a
-   * shader after 65,535 turns, which is enough for lists of 15,000 fragments. */
+  /* Pixels that the driver did not let the resolve finish. Always 0 on a GPU. Mesa's CPU driver ends a
+   * shader's loops after 65,535 turns in total, which is enough for lists of 15,000 fragments. */
   uint32_t cutPixels;
 } VitrailStats;
 

@@ -1,5 +1,5 @@
-// The structures that shaders and C++ share. This file is both GLSL and C++: it stands once, C++ asserts the sizes below,
-// and a test reads the strides and offsets of the compiled SPIR-V.
+// The structures that shaders and C++ share. This file is both GLSL and C++: it stands once, C++ asserts the sizes
+// below, and a test reads the strides and offsets of the compiled SPIR-V.
 #ifndef VITRAIL_LAYOUT_H
 #define VITRAIL_LAYOUT_H
 
@@ -19,8 +19,8 @@ struct VitrailNode {
 
 // What a frame counts. All zero when the collect pass starts.
 struct VitrailControl {
-  uint stored;        // nodes taken; above the capacity only while fragments that got none are giving them back
-  uint missingLow;    // fragments that found the pool full, 64 bits in two words
+  uint stored;     // nodes taken; above the capacity only while fragments that got none are giving them back
+  uint missingLow; // fragments that found the pool full, 64 bits in two words
   uint missingHigh;
   uint layersMax;     // written by the resolve
   uint coveredPixels; // written by the resolve
@@ -43,10 +43,12 @@ struct VitrailParameters {
 static_assert(sizeof(VitrailNode) == 12);
 static_assert(sizeof(VitrailControl) == 40);
 static_assert(sizeof(VitrailParameters) == 16);
-constexpr uint VITRAIL_END = 0xffffffffu;
+constexpr uint VITRAIL_END = 0xffffffffu; // the index that ends a list
+constexpr uint VITRAIL_BLOCK = 16u;       // fragments that are sorted in registers
 } // namespace vitrail::layout
 #else
 const uint VITRAIL_END = 0xffffffffu;
+const uint VITRAIL_BLOCK = 16u;
 #endif
 
 #endif

@@ -11,8 +11,6 @@
 #include "node.glsl"
 #include "sort.glsl"
 
-const uint VITRAIL_BLOCK = 16u; // fragments that are sorted in registers
-
 struct VitrailResolved {
   vec3 color;          // what the list adds, premultiplied
   float transmittance; // what is left of the light from behind it

@@ -140,7 +140,7 @@ void vitrailBlendNext(inout VitrailResolved result, inout VitrailWalk sorted) {
 }
 
 // A list of any length. `complete` is false where the driver ended a loop before the list was done (Mesa's CPU driver
-// after 65,535 turns).
+// ends a shader's loops after 65,535 turns in total).
 VitrailResolved vitrailResolveLong(uint head, uint nodeCount, bool nearestIsOne) {
   VitrailWalk walk = VitrailWalk(head, 0u, nodeCount, nearestIsOne);
   VitrailMerge merge;

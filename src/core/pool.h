@@ -26,12 +26,11 @@ constexpr std::uint32_t nodesThatFit(std::uint64_t bytes) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(bytes / kNodeBytes, layout::VITRAIL_END - 1));
 }
 
-// Fragments that the resolve sorts in registers: VITRAIL_BLOCK of shaders/vitrail/resolve.glsl.
-inline constexpr std::uint32_t kBlock = 16;
-
-// Bytes of the list of pixels with more fragments than that, of which a pool of `capacity` nodes makes only so many.
+// Bytes of the list of pixels with more fragments than the resolve sorts in registers, of which a pool of `capacity`
+// nodes makes only so many.
 constexpr std::uint64_t longListBytes(std::uint32_t width, std::uint32_t height, std::uint32_t capacity) {
-  return std::max<std::uint64_t>(1, std::min<std::uint64_t>(capacity / (kBlock + 1), std::uint64_t{width} * height)) *
+  return std::max<std::uint64_t>(
+             1, std::min<std::uint64_t>(capacity / (layout::VITRAIL_BLOCK + 1), std::uint64_t{width} * height)) *
          4;
 }
 

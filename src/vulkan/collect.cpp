@@ -1,4 +1,6 @@
 // The recording calls round the host's transparent draws: empty lists before, visible lists after.
+#include <cstddef>
+
 #include "barrier.h"
 #include "core/pool.h"
 
@@ -38,6 +40,8 @@ extern "C" void vitrailCmdBegin(VkCommandBuffer commandBuffer, VitrailTarget tar
 
   vk.CmdFillBuffer(commandBuffer, target->heads.buffer, 0, VK_WHOLE_SIZE, layout::VITRAIL_END);
   vk.CmdFillBuffer(commandBuffer, target->control.buffer, 0, VK_WHOLE_SIZE, 0);
+  vk.CmdFillBuffer(commandBuffer, target->stats.buffer, target->slotOffset(target->frame) + offsetof(StatsSlot, tag),
+                   sizeof(StatsSlot::tag), 0); // the slot's old frame is gone
 
   // Writer: the clear. Readers and writers: vitrailCollect() in fragment shaders, and the resolve, which sees the
   // cleared lists of pixels that no fragment reaches. The nodes of the previous frame, written by its fragment shaders

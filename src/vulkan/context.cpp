@@ -66,7 +66,8 @@ VkResult createSetLayouts(VitrailContext_T& context) {
     bindings[i].descriptorType =
         i == kParametersBinding ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     bindings[i].descriptorCount = 1;
-    bindings[i].stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+    bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
+    if (i != kLongListsBinding) bindings[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
   }
   VkDescriptorSetLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
@@ -125,11 +126,7 @@ VkResult createResolveLayout(VitrailContext_T& context) {
   return VK_SUCCESS;
 }
 
-VkResult build(VitrailContext_T& context, const VitrailContextDesc& desc) {
-  if (const char* missing = context.vk.load(desc.instance, desc.device, desc.getInstanceProcAddr)) {
-    return context.log.fail(VK_ERROR_INITIALIZATION_FAILED,
-                            "the driver has no %s: create instance and device for Vulkan 1.2 or later", missing);
-  }
+VkResult build(VitrailContext_T& context) {
   VkResult result = checkDevice(context);
   if (result != VK_SUCCESS) return result;
   result = createSetLayouts(context);
@@ -198,7 +195,11 @@ extern "C" VkResult vitrailCreateContext(const VitrailContextDesc* desc, Vitrail
   made->device = desc->device;
   made->allocator = desc->allocator;
   made->cache = desc->cache;
-  const VkResult result = vitrail::build(*made, *desc);
+  if (const char* missing = made->vk.load(desc->instance, desc->device, desc->getInstanceProcAddr)) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                    "the driver has no %s: create instance and device for Vulkan 1.2 or later", missing);
+  }
+  const VkResult result = vitrail::build(*made);
   if (result != VK_SUCCESS) {
     vitrailDestroyContext(made.release());
     return result;
@@ -211,7 +212,6 @@ extern "C" void vitrailDestroyContext(VitrailContext context) {
   if (context == nullptr) return;
   const std::unique_ptr<VitrailContext_T> owned(context);
   const vitrail::Dispatch& vk = context->vk;
-  if (vk.DestroyPipeline == nullptr) return; // failed before any object was made
   for (const vitrail::ResolvePipelines& pipelines : context->resolve) {
     vk.DestroyPipeline(context->device, pipelines.shortLists, context->allocator);
     vk.DestroyPipeline(context->device, pipelines.longLists, context->allocator);

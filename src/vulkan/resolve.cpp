@@ -19,14 +19,16 @@ void dispatchResolve(VkCommandBuffer commandBuffer, const VitrailTarget_T& targe
   context.vk.CmdDispatch(commandBuffer, (target.extent.width + kGroupSide - 1) / kGroupSide,
                          (target.extent.height + kGroupSide - 1) / kGroupSide, 1);
 
-  // Writer: the first dispatch. Readers: the second, of the pixels that are left to it, and the command processor, of
-  // how many those are. Both dispatches add to the counters; their pixels and lists are not the same ones.
-  const std::array<VkBufferMemoryBarrier, 2> betweenDispatches = {
-      bufferBarrier(target.longLists, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT),
-      bufferBarrier(target.control, VK_ACCESS_SHADER_WRITE_BIT,
-                    VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT)};
-  recordBarriers(commandBuffer, target, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                 VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, betweenDispatches);
+  // Writer: the first dispatch (the pixels that it leaves, how many, and the picture). Readers: the command processor
+  // and the second dispatch. The pixels and lists of the two are not the same ones, but the image and the counters are.
+  VkMemoryBarrier betweenDispatches{};
+  betweenDispatches.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  betweenDispatches.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
+  betweenDispatches.dstAccessMask =
+      VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+  context.vk.CmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                                VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1,
+                                &betweenDispatches, 0, nullptr, 0, nullptr);
   context.vk.CmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, target.resolve.longLists);
   context.vk.CmdDispatchIndirect(commandBuffer, target.control.buffer, offsetof(layout::VitrailControl, groupsX));
 }
@@ -34,13 +36,15 @@ void dispatchResolve(VkCommandBuffer commandBuffer, const VitrailTarget_T& targe
 // Copies the counters to the frame's slot, then the tag that says that they are there.
 void copyStats(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
   const Dispatch& vk = target.context->vk;
-  // Writer: the resolve. Reader: the copy.
-  const std::array<VkBufferMemoryBarrier, 1> beforeCopy = {
-      bufferBarrier(target.control, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_TRANSFER_READ_BIT)};
-  recordBarriers(commandBuffer, target, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                 beforeCopy);
-
+  // Writers: the resolve (counters) and the clear (the slot's tag). Reader and writer: the copy.
   const VkDeviceSize slot = target.slotOffset(target.frame);
+  const std::array<VkBufferMemoryBarrier, 2> beforeCopy = {
+      bufferBarrier(target.control, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_TRANSFER_READ_BIT),
+      bufferBarrier(target.stats.buffer, slot, sizeof(StatsSlot), VK_ACCESS_TRANSFER_WRITE_BIT,
+                    VK_ACCESS_TRANSFER_WRITE_BIT)};
+  recordBarriers(commandBuffer, target, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
+                 VK_PIPELINE_STAGE_TRANSFER_BIT, beforeCopy);
+
   const VkBufferCopy region{0, slot, sizeof(layout::VitrailControl)};
   vk.CmdCopyBuffer(commandBuffer, target.control.buffer, target.stats.buffer, 1, &region);
 

@@ -6,9 +6,13 @@
 extern "C" VkResult vitrailReadStats(VitrailTarget target, uint64_t frame, VitrailStats* stats) {
   auto* slot =
       reinterpret_cast<vitrail::StatsSlot*>(static_cast<char*>(target->stats.mapped) + target->slotOffset(frame));
-  // Acquire: the counters are read after the tag that says that they are there.
-  if (std::atomic_ref(slot->tag).load(std::memory_order_acquire) != frame + 1) return VK_NOT_READY;
+  // The counters are read between two looks at the tag: the GPU may start to write the slot again at any time.
+  const std::uint64_t tag = frame + 1;
+  const std::atomic_ref<std::uint64_t> written(slot->tag);
+  if (tag == 0 || written.load(std::memory_order_acquire) != tag) return VK_NOT_READY;
   const vitrail::layout::VitrailControl control = slot->control;
+  std::atomic_thread_fence(std::memory_order_acquire);
+  if (written.load(std::memory_order_relaxed) != tag) return VK_NOT_READY;
   *stats = {};
   stats->frame = frame;
   stats->fragmentsStored = control.stored;

@@ -11,8 +11,8 @@
 
 namespace vitrail {
 
-// What the GPU leaves behind for vitrailReadStats. The tag is written after the counters: a slot whose tag is right is
-// whole.
+// What the GPU leaves behind for vitrailReadStats. The tag is 0 from the start of a frame until its counters are there:
+// a slot whose tag is right, before and after the counters are read, is whole.
 struct StatsSlot {
   layout::VitrailControl control;
   std::uint64_t tag; // frame + 1, so that a slot never written names no frame

@@ -54,14 +54,16 @@ constexpr VkVertexInputBindingDescription kBinding = {0, sizeof(PointVertex), VK
 } // namespace
 
 PointHost::PointHost(tool::Gpu& gpu, const PointHostDesc& desc) : gpu_(gpu), desc_(desc), submitter_(gpu) {
-  color_ =
-      tool::GpuImage(gpu,
-                     {{desc.width, desc.height},
-                      desc.colorFormat,
-                      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT},
-                     "points: colour");
-  readback_ = tool::GpuBuffer(gpu, std::uint64_t{desc.width} * desc.height * 16, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                              MemoryKind::Readback, "points: readback");
+  for (std::uint32_t i = 0; i < kColorImages; ++i) {
+    color_[i] =
+        tool::GpuImage(gpu,
+                       {{desc.width, desc.height},
+                        desc.colorFormat,
+                        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT},
+                       "points: colour");
+    readback_[i] = tool::GpuBuffer(gpu, std::uint64_t{desc.width} * desc.height * 16, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                   MemoryKind::Readback, "points: readback");
+  }
   const VkDeviceSize alignment = gpu.properties().limits.minStorageBufferOffsetAlignment;
   guardBytes_ = (kGuardWords * sizeof(std::uint32_t) + alignment - 1) / alignment * alignment;
   nodes_ = tool::GpuBuffer(gpu, nodePoolBytes(desc.capacity) + 2 * guardBytes_, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
@@ -81,14 +83,14 @@ PointHost::PointHost(tool::Gpu& gpu, const PointHostDesc& desc) : gpu_(gpu), des
 
 void PointHost::createTarget(VitrailContextDesc contextDesc) {
   check(Context::create(contextDesc, context_), "vitrailCreateContext");
-  const VkImageView view = color_.view();
+  const std::array<VkImageView, kColorImages> views = {color_[0].view(), color_[1].view()};
   VitrailTargetDesc desc{};
   desc.extent = {desc_.width, desc_.height};
   desc.depthOrder = desc_.depthOrder;
   desc.nodeCapacity = desc_.capacity;
   desc.colorFormat = desc_.colorFormat;
-  desc.colorViewCount = 1;
-  desc.colorViews = &view;
+  desc.colorViewCount = kColorImages;
+  desc.colorViews = views.data();
   desc.nodeBuffer = nodes_.get();
   desc.nodeBufferOffset = guardBytes_;
   desc.debugName = "points";
@@ -170,35 +172,40 @@ void PointHost::recordDraw(VkCommandBuffer commands, VkBuffer vertices, std::uin
   vkCmdEndRendering(commands);
 }
 
-void PointHost::record(VkCommandBuffer commands, VkBuffer vertices, std::uint32_t count) {
+void PointHost::record(VkCommandBuffer commands, std::uint64_t frame, VkBuffer vertices, std::uint32_t count) const {
+  const auto image = static_cast<std::uint32_t>(frame % kColorImages);
+  const VkImage color = color_[image].get();
+  const VkImageSubresourceRange range = color_[image].range();
   // Writer: nobody that matters, the old picture is dropped. Writer after: the clear.
-  tool::cmdImageBarrier(commands, color_.get(), color_.range(), VK_IMAGE_LAYOUT_UNDEFINED,
+  tool::cmdImageBarrier(commands, color, range, VK_IMAGE_LAYOUT_UNDEFINED,
                         {VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_NONE}, VK_IMAGE_LAYOUT_GENERAL,
                         {VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT});
   VkClearColorValue behind{};
   std::copy(desc_.behind.begin(), desc_.behind.end(), behind.float32);
-  const VkImageSubresourceRange range = color_.range();
-  vkCmdClearColorImage(commands, color_.get(), VK_IMAGE_LAYOUT_GENERAL, &behind, 1, &range);
+  vkCmdClearColorImage(commands, color, VK_IMAGE_LAYOUT_GENERAL, &behind, 1, &range);
 
-  target_.begin(commands, {frame_});
+  target_.begin(commands, {frame});
   if (count > 0) recordDraw(commands, vertices, count);
   target_.collected(commands);
 
   // Writer: the clear. Reader and writer: the resolve.
-  tool::cmdImageBarrier(commands, color_.get(), range, VK_IMAGE_LAYOUT_GENERAL,
+  tool::cmdImageBarrier(commands, color, range, VK_IMAGE_LAYOUT_GENERAL,
                         {VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT}, VK_IMAGE_LAYOUT_GENERAL,
                         {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                          VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT});
-  target_.resolve(commands);
+  target_.resolve(commands, {image});
+}
 
+// After the last frame, so that no barrier of this host stands between two frames.
+void PointHost::recordPicture(VkCommandBuffer commands, std::uint32_t image) const {
   // Writer: the resolve. Reader: the copy.
-  tool::cmdImageBarrier(commands, color_.get(), range, VK_IMAGE_LAYOUT_GENERAL,
+  tool::cmdImageBarrier(commands, color_[image].get(), color_[image].range(), VK_IMAGE_LAYOUT_GENERAL,
                         {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT},
                         VK_IMAGE_LAYOUT_GENERAL, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
   VkBufferImageCopy copy{};
   copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
   copy.imageExtent = {desc_.width, desc_.height, 1};
-  vkCmdCopyImageToBuffer(commands, color_.get(), VK_IMAGE_LAYOUT_GENERAL, readback_.get(), 1, &copy);
+  vkCmdCopyImageToBuffer(commands, color_[image].get(), VK_IMAGE_LAYOUT_GENERAL, readback_[image].get(), 1, &copy);
 
   // Writers: the copy, and the fragment shaders behind whose backs the guards are checked. Reader: the host.
   tool::cmdMemoryBarrier(commands,
@@ -207,24 +214,40 @@ void PointHost::record(VkCommandBuffer commands, VkBuffer vertices, std::uint32_
                          {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
 }
 
-PointResult PointHost::draw(std::span<const Point> points) {
-  tool::GpuBuffer vertices(gpu_, points.size() * sizeof(PointVertex), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
-                           MemoryKind::Upload, "points: vertices");
-  auto* written = static_cast<PointVertex*>(vertices.mapped());
-  for (const Point& point : points) *written++ = toVertex(point, desc_);
-
-  submitter_.run("points", [&](VkCommandBuffer commands) {
-    record(commands, vertices.get(), static_cast<std::uint32_t>(points.size()));
-  });
-
+PointResult PointHost::read(std::uint64_t frame) const {
   PointResult result;
-  check(target_.readStats(frame_, result.stats), "vitrailReadStats");
-  ++frame_;
+  check(target_.readStats(frame, result.stats), "vitrailReadStats");
   if (desc_.colorFormat == VK_FORMAT_R32G32B32A32_SFLOAT) {
     result.pixels.resize(std::size_t{desc_.width} * desc_.height);
-    std::memcpy(result.pixels.data(), readback_.mapped(), result.pixels.size() * sizeof(result.pixels[0]));
+    std::memcpy(result.pixels.data(), readback_[frame % kColorImages].mapped(),
+                result.pixels.size() * sizeof(result.pixels[0]));
   }
   return result;
+}
+
+PointResult PointHost::draw(std::span<const Point> points) { return drawTogether({{points.begin(), points.end()}})[0]; }
+
+std::vector<PointResult> PointHost::drawTogether(const std::vector<std::vector<Point>>& frames) {
+  std::vector<tool::GpuBuffer> vertices;
+  for (const std::vector<Point>& points : frames) {
+    vertices.emplace_back(gpu_, points.size() * sizeof(PointVertex), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
+                          MemoryKind::Upload, "points: vertices");
+    auto* written = static_cast<PointVertex*>(vertices.back().mapped());
+    for (const Point& point : points) *written++ = toVertex(point, desc_);
+  }
+  const std::uint64_t first = frame_;
+  frame_ += frames.size();
+  submitter_.run("points", [&](VkCommandBuffer commands) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      record(commands, first + i, vertices[i].get(), static_cast<std::uint32_t>(frames[i].size()));
+    }
+    for (std::uint64_t frame = first; frame < frame_; ++frame) {
+      recordPicture(commands, static_cast<std::uint32_t>(frame % kColorImages));
+    }
+  });
+  std::vector<PointResult> results;
+  for (std::uint64_t frame = first; frame < frame_; ++frame) results.push_back(read(frame));
+  return results;
 }
 
 bool PointHost::guardsUntouched() const {

@@ -45,11 +45,17 @@ class PointHost {
   static constexpr std::uint32_t kGuard = 0xa5c35a3cU;
   static constexpr std::uint32_t kGuardWords = 1024;
 
+  static constexpr std::uint32_t kColorImages = 2;
+
   // Creates the target with a node buffer of the host's own, with guard words on both sides.
   PointHost(tool::Gpu& gpu, const PointHostDesc& desc);
 
   // Draws the points as one frame and waits for it.
   PointResult draw(std::span<const Point> points);
+
+  // Draws frames into the colour images in turn, all in one command buffer, so that nothing but the library's own
+  // barriers keeps them apart. At most kColorImages of them.
+  std::vector<PointResult> drawTogether(const std::vector<std::vector<Point>>& frames);
 
   // Whether every guard word is as it was.
   [[nodiscard]] bool guardsUntouched() const;
@@ -59,16 +65,18 @@ class PointHost {
  private:
   void createTarget(VitrailContextDesc contextDesc);
   void createPipeline();
-  void record(VkCommandBuffer commands, VkBuffer vertices, std::uint32_t count);
+  void record(VkCommandBuffer commands, std::uint64_t frame, VkBuffer vertices, std::uint32_t count) const;
+  void recordPicture(VkCommandBuffer commands, std::uint32_t image) const;
+  PointResult read(std::uint64_t frame) const;
   void recordDraw(VkCommandBuffer commands, VkBuffer vertices, std::uint32_t count) const;
 
   tool::Gpu& gpu_;
   PointHostDesc desc_;
   std::uint64_t frame_ = 0;
   VkDeviceSize guardBytes_ = 0;
-  tool::GpuImage color_;
-  tool::GpuBuffer nodes_;    // guards, pool, guards; in memory that the host can read
-  tool::GpuBuffer readback_; // the colour image
+  std::array<tool::GpuImage, kColorImages> color_;     // of frame n: n % kColorImages
+  tool::GpuBuffer nodes_;                              // guards, pool, guards; in memory that the host can read
+  std::array<tool::GpuBuffer, kColorImages> readback_; // of the colour images
   Context context_;
   Target target_;
   tool::Unique<VkPipelineLayout> layout_;

@@ -8,8 +8,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <fstream>
+#include <set>
 #include <thread>
 
 #include "png_reader.h"
@@ -77,7 +79,6 @@ TEST(Cli, HelpPagesAndVersion) {
   EXPECT_NE(nothing.error.find("Usage:"), std::string::npos);
 }
 
-// Every option that the parser knows is on the help page.
 TEST(Cli, TheHelpPageNamesEveryOption) {
   const std::string help = vitrail({"render", "--help"}).out;
   for (const char* option : {"--scene", "--count", "--seed", "--size", "--camera", "--orbit", "--opacity",
@@ -103,6 +104,8 @@ TEST(Cli, WrongUsageIsOneLineAndExitCode2) {
       {{"render", "a.glb", "--count", "3", "-o", "a.png"}, "--scene"},
       {{"render", "--scene", "spheres", "-o", "a.jpg"}, ".png"},
       {with({"--json", "a.png"}), "same file"},
+      {with({"--json", "./a.png"}), "same file"},
+      {with({"--opacity", "0.001"}), "--opacity"},
       {with({"--size", "100"}), "--size"},
       {with({"--size", "0x10"}), "--size"},
       {with({"--size", "-5x10"}), "--size"},
@@ -194,7 +197,9 @@ TEST(Cli, APictureAndItsReport) {
   EXPECT_EQ(png.width, 96U);
   EXPECT_EQ(png.height, 64U);
   EXPECT_FALSE(png.hasAlpha);
-  EXPECT_NE(std::count(png.rgba.begin(), png.rgba.end(), 255), static_cast<std::ptrdiff_t>(png.rgba.size()));
+  std::set<std::array<std::uint8_t, 3>> colors;
+  for (std::size_t i = 0; i < png.rgba.size(); i += 4) colors.insert({png.rgba[i], png.rgba[i + 1], png.rgba[i + 2]});
+  EXPECT_GT(colors.size(), 100U); // lit surfaces over each other
 
   const auto json = nlohmann::json::parse(readText(folder.path() / "a.json"));
   EXPECT_TRUE(json.at("device").is_string());
@@ -292,25 +297,37 @@ TEST(Cli, AnInterruptedRenderLeavesNothing) {
       std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
       ::kill(child, SIGINT);
     };
-    const ProcessResult result = vitrail({"render", "--scene", "hairball", "--size", "1920x1080", "-o", "a.png"},
-                                         {.folder = folder.path(), .environment = {}, .running = interrupt});
+    const ProcessResult result =
+        vitrail({"render", "--scene", "hairball", "--size", "1920x1080", "--validate", "-o", "a.png"},
+                {.folder = folder.path(), .environment = {}, .running = interrupt});
     if (result.exitCode == 0) continue; // a machine so fast that it was done
     EXPECT_EQ(result.exitCode, 128 + SIGINT) << milliseconds;
     EXPECT_EQ(folder.names(), Words{}) << milliseconds;
   }
 }
 
-TEST(Cli, AFullDiskLeavesNothing) {
+TEST(Cli, AFullDeviceIsAnError) {
   const ProcessResult result = vitrail(smallRender("/dev/full"));
   EXPECT_EQ(result.exitCode, 1);
   EXPECT_NE(result.error.find("No space left on device"), std::string::npos) << result.error;
+}
+
+// What goes to standard output is the file and nothing else.
+TEST(Cli, StandardOutputCanTakeTheReport) {
+  const TemporaryFolder folder;
+  Words arguments = smallRender("a.png");
+  arguments.insert(arguments.end(), {"--json", "/dev/stdout"});
+  const ProcessResult result = vitrail(arguments, in(folder));
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_EQ(nlohmann::json::parse(result.out).at("exact"), true);
 }
 
 TEST(Cli, AMovedProgramNeedsNoFilesBesideIt) {
   const TemporaryFolder folder;
   fs::copy_file(kTool, folder.path() / "moved");
   const ProcessResult result =
-      run({folder.file("moved"), "render", "--scene", "interlocked", "--size", "32x32", "-o", "a.png"}, in(folder));
+      run({folder.file("moved"), "render", "--scene", "interlocked", "--size", "32x32", "--validate", "-o", "a.png"},
+          in(folder));
   EXPECT_EQ(result.exitCode, 0) << result.error;
   EXPECT_EQ(readPng(folder.file("a.png")).width, 32U);
 }

@@ -109,10 +109,20 @@ void OutputFile::write(std::span<const std::byte> content) {
   }
   const fs::path name = target_.parent_path() / fmt::format(".{}.{}.part", target_.filename().string(), ::getpid());
   watch(name); // before the file exists: a signal in between finds nothing to remove
+  const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); // never through a link
+  if (file < 0) {
+    const int reason = errno;
+    unwatch(name); // somebody else's
+    fail(path_, std::strerror(reason));
+  }
   temporary_ = name;
-  const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) fail(path_, std::strerror(errno));
   writeAll(file, content, path_);
+}
+
+bool OutputFile::isSameAs(const OutputFile& other) const {
+  std::error_code error;
+  const auto place = [&](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path, error), error); };
+  return !isSpecial_ && !other.isSpecial_ && place(target_) == place(other.target_);
 }
 
 void OutputFile::commit() {

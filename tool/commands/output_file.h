@@ -25,6 +25,12 @@ class OutputFile {
   // Gives the file its name. Throws std::runtime_error.
   void commit();
 
+  // Whether the name stands for something other than a regular file.
+  [[nodiscard]] bool isSpecial() const { return isSpecial_; }
+
+  // Whether both would write one regular file, under whatever names.
+  [[nodiscard]] bool isSameAs(const OutputFile& other) const;
+
  private:
   std::filesystem::path path_;   // as the user wrote it
   std::filesystem::path target_; // with links followed

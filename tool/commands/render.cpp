@@ -61,7 +61,8 @@ RenderResult renderScene(const RenderArguments& arguments, const Scene& scene) {
   {
     Renderer renderer(gpu, scene, arguments.opacity);
     result = renderer.render(options);
-  } // what was not destroyed by now is a validation error
+  }
+  gpu.close(); // what was not destroyed by now is a validation error
   const std::vector<std::string> errors = gpu.validationErrors();
   if (!errors.empty()) {
     throw std::runtime_error(
@@ -75,6 +76,7 @@ void runRender(const RenderArguments& arguments) {
   OutputFile picture(arguments.output);
   std::optional<OutputFile> report;
   if (!arguments.json.empty()) report.emplace(arguments.json);
+  if (report && report->isSameAs(picture)) throw UsageError("-o and --json name the same file");
 
   const RenderResult result = renderScene(arguments, openScene(arguments));
 
@@ -84,7 +86,8 @@ void runRender(const RenderArguments& arguments) {
   if (report) report->write(std::as_bytes(std::span(json)));
   picture.commit();
   if (report) report->commit();
-  if (!arguments.quiet) fmt::print("{}: {}\n", arguments.output, toSummary(result.report));
+  const bool outputIsTaken = picture.isSpecial() || (report && report->isSpecial()); // it may be standard output
+  if (!arguments.quiet && !outputIsTaken) fmt::print("{}: {}\n", arguments.output, toSummary(result.report));
 }
 
 } // namespace

@@ -32,7 +32,7 @@ How to look at it:
                         without one the whole model is seen from a three-quarter view)
   --orbit AZ,EL[,ZOOM]  look from azimuth and elevation in degrees: 0,0 is the front, 90,0 the right,
                         0,90 the top; ZOOM 2 comes twice as close
-  --opacity A           X-ray: makes every material translucent, 0 < A <= 1
+  --opacity A           X-ray: makes every material translucent, 0.004 to 1
   --background B        a colour as #rrggbb (sRGB), sky, or transparent (a PNG with alpha)
 
 Where to:
@@ -126,8 +126,9 @@ void setBackground(RenderArguments& arguments, const std::string& text) {
 
 void setOpacity(RenderArguments& arguments, const std::string& text) {
   const auto value = parse<float>(text);
-  if (!value || !(*value > 0.0F) || *value > 1.0F) {
-    throw CLI::ValidationError("--opacity", fmt::format("'{}' is not above 0 and at most 1", text));
+  // The first opacity that the node format does not round to none.
+  if (!value || !(*value >= 1.0F / 255.0F) || *value > 1.0F) {
+    throw CLI::ValidationError("--opacity", fmt::format("'{}' is not between 1/255 (0.004) and 1", text));
   }
   arguments.opacity = *value;
 }
@@ -180,11 +181,6 @@ void checkRenderArguments(const RenderArguments& arguments) {
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (extension != ".png" && !output.native().starts_with("/dev/")) {
     throw UsageError(fmt::format("{}: pictures are written as .png", arguments.output));
-  }
-  if (!arguments.json.empty() &&
-      std::filesystem::path(arguments.json).lexically_normal() == output.lexically_normal() &&
-      !output.native().starts_with("/dev/")) {
-    throw UsageError("-o and --json name the same file");
   }
 }
 

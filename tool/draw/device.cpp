@@ -329,8 +329,8 @@ Gpu::Impl::~Impl() {
   if (device != VK_NULL_HANDLE) vkDestroyDevice(device, nullptr);
   if (messenger != VK_NULL_HANDLE) vkDestroyDebugUtilsMessengerEXT(instance, messenger, nullptr);
   if (instance != VK_NULL_HANDLE) vkDestroyInstance(instance, nullptr);
-  // Nobody can ask for these any more (objects that outlive the device), so they end the program: `validate` is for
-  // tests, and a leak must fail one.
+  // Nobody can ask for these any more (objects that outlive a device that nobody closed), so they end the program: a
+  // leak must fail a test.
   const std::vector<std::string> messages = log.messages();
   for (std::size_t i = known; i < messages.size(); ++i) std::fprintf(stderr, "%s\n", messages[i].c_str());
   if (messages.size() > known) std::abort();
@@ -392,6 +392,11 @@ const VkPhysicalDeviceProperties& Gpu::properties() const { return impl_->proper
 const VkPhysicalDeviceMemoryProperties& Gpu::memoryProperties() const { return impl_->memoryProperties; }
 
 std::uint64_t Gpu::maxAllocation() const { return impl_->maxAllocation; }
+
+void Gpu::close() {
+  if (impl_->device != VK_NULL_HANDLE) vkDestroyDevice(impl_->device, nullptr);
+  impl_->device = VK_NULL_HANDLE;
+}
 
 std::vector<std::string> Gpu::validationErrors() const { return impl_->log.messages(); }
 

@@ -58,6 +58,10 @@ class Gpu {
   // The largest single allocation, in bytes.
   std::uint64_t maxAllocation() const;
 
+  // Destroys the device, so that validationErrors() also tells of objects that outlived it. Nothing else may be called
+  // afterwards.
+  void close();
+
   // The validation layer's errors so far, one text each. Empty where validation is off.
   std::vector<std::string> validationErrors() const;
 

@@ -221,7 +221,7 @@ void GpuScene::listDraws(const Scene& scene, const std::vector<MeshRange>& range
   }
   // Depth decides between opaque surfaces: draws that bind the same things go together.
   std::stable_sort(opaque_.begin(), opaque_.end(), [](const GpuDraw& a, const GpuDraw& b) {
-    return std::tie(a.features, a.textures) < std::tie(b.features, b.textures);
+    return std::tie(a.features, a.materialOffset) < std::tie(b.features, b.materialOffset);
   });
   std::vector<GpuDraw> ordered;
   ordered.reserve(transparent_.size());

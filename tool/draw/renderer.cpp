@@ -220,6 +220,11 @@ MethodStats Renderer::Impl::renderUntilComplete(const RenderOptions& options) {
     ++frame;
     submitter.run("frame", [&](VkCommandBuffer commands) { record(commands, options.background); });
     stats = method.stats(frame);
+    if (stats.fragmentsMissing == 0 && stats.cutPixels > 0) {
+      throw GpuError(
+          fmt::format("{} pixels have more surfaces, up to {}, than the driver of {} lets a shader sort: use a GPU",
+                      stats.cutPixels, stats.layersMax, gpu.properties().deviceName));
+    }
     if (stats.exact || !method.grow(stats)) return stats;
   }
   throw GpuError(fmt::format("{} counts the picture's fragments differently in each frame: {} were missing after {}",

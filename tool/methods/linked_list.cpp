@@ -104,6 +104,7 @@ MethodStats LinkedList::stats(std::uint64_t frame) const {
   result.fragmentsRequested = stats.fragmentsRequested;
   result.fragmentsStored = stats.fragmentsStored;
   result.fragmentsMissing = stats.fragmentsMissing;
+  result.cutPixels = stats.cutPixels;
   result.layersMax = stats.layersMax;
   result.layersMean = stats.coveredPixels > 0
                           ? static_cast<double>(stats.fragmentsStored) / static_cast<double>(stats.coveredPixels)

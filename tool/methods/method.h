@@ -24,6 +24,7 @@ struct MethodStats {
   std::uint64_t fragmentsRequested = 0;
   std::uint64_t fragmentsStored = 0;
   std::uint64_t fragmentsMissing = 0;
+  std::uint32_t cutPixels = 0; // pixels that the driver did not let the method finish
   std::uint32_t layersMax = 0;
   double layersMean = 0.0; // over covered pixels
   std::uint64_t nodesBytes = 0;
@@ -59,7 +60,7 @@ class Method {
   // What the GPU reported of a frame that has finished.
   virtual MethodStats stats(std::uint64_t frame) const = 0;
 
-  // Makes room for the fragments of a frame that was not exact. False where the target has all it may have: the frame
+  // Makes room for the fragments that a frame missed. False where the target has all it may have: the frame
   // stays as it is. Throws GpuError where the device cannot hold so many.
   virtual bool grow(const MethodStats& stats) = 0;
 };
