@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "../reference/shading.h"
@@ -138,6 +139,27 @@ TEST_P(StackTest, OneMesh) {
 INSTANTIATE_TEST_SUITE_P(Layers, StackTest, ::testing::Values(1U, 2U, 17U, 130U, 700U));
 
 class ClosedFormTest : public GpuTest {};
+
+// A pane drawn 60,000 times is more than Mesa's CPU driver lets a shader sort: there the picture is refused with the
+// reason, and elsewhere it is exact.
+TEST_F(ClosedFormTest, AStackTooDeepForTheDriverIsRefused) {
+  Scene scene;
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), -2.0F}, unlitMaterial(linearColor({80, 160, 240, 1})));
+  std::vector<std::uint32_t>& indices = scene.meshes[0].indices;
+  const std::vector<std::uint32_t> once = indices;
+  for (int i = 1; i < 60000; ++i) indices.insert(indices.end(), once.begin(), once.end());
+  RenderOptions options = smallPicture(straightView(), {200, 30, 90, 255});
+  options.width = 2;
+  options.height = 1;
+  try {
+    const RenderResult result = renderOnce(gpu(), scene, options);
+    EXPECT_TRUE(result.report.exact);
+    EXPECT_EQ(result.report.layersMax, 60000U);
+    expectEveryPixel(result.picture, {80, 160, 240, 255}, 1); // the last layer's weight is 1/255 * (254/255)^59999
+  } catch (const GpuError& error) {
+    EXPECT_NE(std::string(error.what()).find("lets a shader sort"), std::string::npos) << error.what();
+  }
+}
 
 // Red of alpha 128/255 over green of alpha 64/255.
 Scene redOverGreen() {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 
 #include "../draw/device.h"
 #include "commands.h"
@@ -44,6 +45,9 @@ void printDevice(const DeviceSummary& device) {
   line("memory", sizeText(device.memoryBytes));
   line("fragments", fmt::format("at most {:.1f} M in one picture ({} in one buffer)",
                                 static_cast<double>(pool) / kNodeBytes / 1e6, sizeText(pool)));
+  // Mesa's CPU driver ends a shader's loops after a number of turns (docs/resolve.md).
+  const bool loopsEnd = device.driver.find("llvmpipe") != std::string::npos;
+  line("layers", loopsEnd ? "at most about 15,000 in one pixel" : "any number in one pixel");
   line("picture", fmt::format("at most {0}x{0}", device.maxPictureSide));
   line("pass times", device.timestamps ? "yes" : "no, the queue has no timestamps");
 }
