@@ -31,7 +31,7 @@ How to look at it:
   --camera N            camera N of the file, from 0 (default: the file's first camera;
                         without one the whole model is seen from a three-quarter view)
   --orbit AZ,EL[,ZOOM]  look from azimuth and elevation in degrees: 0,0 is the front, 90,0 the right,
-                        0,90 the top; ZOOM 2 comes twice as close
+                        0,90 the top; ZOOM 2 shows it twice as large
   --opacity A           X-ray: makes every material translucent, 0.004 to 1
   --background B        a colour as #rrggbb (sRGB), sky, or transparent (a PNG with alpha)
 
