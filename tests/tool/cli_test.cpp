@@ -13,6 +13,7 @@
 #include <fstream>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "png_reader.h"
 #include "process.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
