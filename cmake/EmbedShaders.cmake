@@ -2,21 +2,24 @@
 # beside them.
 find_program(VITRAIL_GLSLC glslc REQUIRED)
 
-# embed_shader(TARGETS target... NAME name SOURCE file NAMESPACE ns [INCLUDES dir...] [DEFINES def...])
+# embed_shader(TARGETS target... NAME name SOURCE file NAMESPACE ns [INCLUDES dir...] [DEFINES def...] [OPTIMIZE flag])
 # gives the targets, all of this folder, `#include "shaders/<name>.h"`, which declares `ns::shaders::<name with . as _>`.
 function(embed_shader)
-  cmake_parse_arguments(arg "" "NAME;SOURCE;NAMESPACE" "TARGETS;INCLUDES;DEFINES" ${ARGN})
+  cmake_parse_arguments(arg "" "NAME;SOURCE;NAMESPACE;OPTIMIZE" "TARGETS;INCLUDES;DEFINES" ${ARGN})
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/generated)
   set(words ${folder}/shaders/${arg_NAME}.inc)
   set(header ${folder}/shaders/${arg_NAME}.h)
   string(REPLACE "." "_" symbol ${arg_NAME})
   get_filename_component(source ${arg_SOURCE} ABSOLUTE)
+  if(NOT arg_OPTIMIZE)
+    set(arg_OPTIMIZE -O)
+  endif()
   list(TRANSFORM arg_INCLUDES PREPEND -I)
   list(TRANSFORM arg_DEFINES PREPEND -D)
   # -mfmt=num: comma-separated words. Vulkan 1.2's SPIR-V: what every supported device takes.
   add_custom_command(
     OUTPUT ${words}
-    COMMAND ${VITRAIL_GLSLC} --target-env=vulkan1.2 -O -Werror -mfmt=num -MD -MF ${words}.d ${arg_INCLUDES} ${arg_DEFINES}
+    COMMAND ${VITRAIL_GLSLC} --target-env=vulkan1.2 ${arg_OPTIMIZE} -Werror -mfmt=num -MD -MF ${words}.d ${arg_INCLUDES} ${arg_DEFINES}
             -o ${words} ${source}
     DEPENDS ${source}
     DEPFILE ${words}.d

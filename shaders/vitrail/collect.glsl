@@ -5,48 +5,126 @@
 //   #include "vitrail/collect.glsl"
 //   void main() { vitrailCollect(shade()); }   // linear colour, straight alpha
 //
-// The depth test runs before the shader (early_fragment_tests), so fragments behind opaque geometry never enter a list.
-// With it, discard still works: call it before vitrailCollect(), or do not call vitrailCollect() at all.
+// or vitrailCollect(color, VITRAIL_ADDITIVE) and so on, see VitrailBlend; more than one call in a shader collects more
+// than one fragment. The depth test runs before the shader (early_fragment_tests), so fragments behind opaque geometry
+// never enter a list. discard still works: call it before vitrailCollect(), or do not call vitrailCollect() at all.
+//
+// Define before the include
+//   VITRAIL_SET                   required: the descriptor set number of vitrailTargetDescriptorSet() in your layout
+//   VITRAIL_POST_DEPTH_COVERAGE   with several samples and VK_EXT_post_depth_coverage: VitrailTargetDesc says the same
+//   VITRAIL_BUFFER_REFERENCE      where the context has VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS
+//   VITRAIL_CONSTANT_ID           the first of three specialization constants, default 1700; see
+//                                 vitrailCollectSpecialization()
 #ifndef VITRAIL_COLLECT_GLSL
 #define VITRAIL_COLLECT_GLSL
 
-#include "node.glsl"
+#ifdef VITRAIL_POST_DEPTH_COVERAGE
+#extension GL_ARB_post_depth_coverage : require
+#endif
+#ifdef VITRAIL_BUFFER_REFERENCE
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#endif
+
+#include "layout.h"
 
 #ifndef VITRAIL_SET
 #error define VITRAIL_SET, the descriptor set number of vitrailTargetDescriptorSet() in your pipeline layout
 #endif
+#ifndef VITRAIL_CONSTANT_ID
+#define VITRAIL_CONSTANT_ID 1700
+#endif
 
+#ifdef VITRAIL_POST_DEPTH_COVERAGE
+layout(post_depth_coverage) in;
+#endif
 layout(early_fragment_tests) in;
+
+// By default all are read from the target.
+layout(constant_id = VITRAIL_CONSTANT_ID) const uint VITRAIL_NODE_FORMAT = 0xffffffffu;
+layout(constant_id = VITRAIL_CONSTANT_ID + 1) const uint VITRAIL_SAMPLES = 0u;
+layout(constant_id = VITRAIL_CONSTANT_ID + 2) const uint VITRAIL_KEEP_SUMS = 0xffffffffu; // 0 or 1
 
 layout(set = VITRAIL_SET, binding = 0, std140) uniform VitrailParametersBlock { VitrailParameters vitrailParameters; };
 layout(set = VITRAIL_SET, binding = 1, std430) buffer VitrailControlBlock { VitrailControl vitrailControl; };
 layout(set = VITRAIL_SET, binding = 2, std430) buffer VitrailHeadsBlock { uint vitrailHeads[]; };
-layout(set = VITRAIL_SET, binding = 3, std430) writeonly buffer VitrailNodesBlock { VitrailNode vitrailNodes[]; };
+layout(set = VITRAIL_SET, binding = 4, std430) buffer VitrailSumsBlock { uint vitrailPixelSums[]; };
 
-// Gives back the node number that was taken beyond the pool and counts the fragment as missing. Giving it back keeps the
-// counter from wrapping round to nodes that are in use, however many fragments overflow: the counter stays at or above
-// the capacity once it has reached it.
-void vitrailCountMissing() {
-  atomicAdd(vitrailControl.stored, 0xffffffffu);
-  if (atomicAdd(vitrailControl.missingLow, 1u) == 0xffffffffu) atomicAdd(vitrailControl.missingHigh, 1u);
+uint vitrailPoolCapacity() { return vitrailParameters.capacity; }
+#ifdef VITRAIL_BUFFER_REFERENCE
+uvec2 vitrailPoolAddress() { return uvec2(vitrailParameters.nodesLow, vitrailParameters.nodesHigh); }
+#endif
+#define VITRAIL_POOL_SET VITRAIL_SET
+#define VITRAIL_POOL_BINDING 3
+#include "pool.glsl"
+#include "sums.glsl"
+
+VitrailLayout vitrailTargetLayout() {
+  return VitrailLayout(VITRAIL_NODE_FORMAT == 0xffffffffu ? vitrailParameters.format : VITRAIL_NODE_FORMAT,
+                       VITRAIL_SAMPLES == 0u ? vitrailParameters.samples : VITRAIL_SAMPLES,
+                       vitrailParameters.nearestIsOne != 0u);
 }
 
-// Pushes this fragment on the list of its pixel. `color` is linear with straight alpha. A fragment outside the target's
-// extent, or one whose stored alpha is 0, is ignored. When the pool is full the list is left as it is.
-void vitrailCollect(vec4 color) {
-  uvec2 pixel = uvec2(gl_FragCoord.xy);
-  if (pixel.x >= vitrailParameters.width || pixel.y >= vitrailParameters.height) return;
-  uint bits = vitrailPackColor(color);
-  if (vitrailAlphaBits(bits) == 0u) return;
+bool vitrailKeepsSums() {
+  return VITRAIL_KEEP_SUMS == 0xffffffffu ? vitrailParameters.keepSums != 0u : VITRAIL_KEEP_SUMS != 0u;
+}
 
-  uint index = atomicAdd(vitrailControl.stored, 1u);
+// Whether the shader was specialized, if at all, for this target.
+bool vitrailSuitsTarget(VitrailLayout nodes) {
+  return nodes.format == vitrailParameters.format && nodes.samples == vitrailParameters.samples &&
+         vitrailKeepsSums() == (vitrailParameters.keepSums != 0u);
+}
+
+// Adds a fragment that found no node to the sums of its pixel, and calls for the dispatch that blends them.
+void vitrailAddMissing(uint pixelIndex, uvec4 node, uint coverage, VitrailLayout nodes) {
+  float weight = float(bitCount(coverage)) / float(nodes.samples);
+  VitrailSums sums = vitrailMergeFilters(vitrailSumsOf(vitrailKey(node, nodes), nodes, weight));
+  uint first = pixelIndex * VITRAIL_SUM_WORDS;
+  atomicAdd(vitrailPixelSums[first], sums.color.r);
+  atomicAdd(vitrailPixelSums[first + 1u], sums.color.g);
+  atomicAdd(vitrailPixelSums[first + 2u], sums.color.b);
+  atomicAdd(vitrailPixelSums[first + 3u], sums.opacity);
+  atomicAdd(vitrailPixelSums[first + 4u], sums.density);
+}
+
+void vitrailCountMissing() {
+  uint before = atomicAdd(vitrailControl.missingLow, 1u);
+  if (before == 0xffffffffu) atomicAdd(vitrailControl.missingHigh, 1u);
+  if (before == 0u && vitrailKeepsSums()) {
+    vitrailControl.overflowGroupsX = (vitrailParameters.width + 7u) / 8u;
+    vitrailControl.overflowGroupsY = (vitrailParameters.height + 7u) / 8u;
+    vitrailControl.overflowGroupsZ = 1u;
+  }
+}
+
+// Pushes a fragment at this pixel's depth and coverage on the list of its pixel. `color` is linear; `blend` is one of
+// VITRAIL_OVER (straight alpha), VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY. A fragment outside the
+// frame's area, or one that would change nothing, is ignored. When the pool is full the list is left as it is, and the
+// node number that was taken beyond the pool is given back: that keeps the counter from wrapping round to nodes that are
+// in use, however many fragments overflow, for it stays at or above the capacity once it has reached it.
+void vitrailCollect(vec4 color, uint blend) {
+  uvec2 pixel = uvec2(gl_FragCoord.xy) - uvec2(vitrailParameters.x, vitrailParameters.y);
+  if (pixel.x >= vitrailParameters.width || pixel.y >= vitrailParameters.height) return; // also those left and above
+  VitrailLayout nodes = vitrailTargetLayout();
+  uint coverage = nodes.samples == 1u ? 1u : uint(gl_SampleMaskIn[0]) & ((1u << nodes.samples) - 1u);
+  uvec4 node;
+  if (!vitrailPack(color, blend, gl_FragCoord.z, coverage, nodes, node) || coverage == 0u) return;
+
+  uint pixelIndex = pixel.y * vitrailParameters.width + pixel.x;
+  bool fits = vitrailSuitsTarget(nodes);
+  uint index = VITRAIL_END;
+  if (fits) index = atomicAdd(vitrailControl.stored, 1u);
   if (index >= vitrailParameters.capacity) {
+    if (fits) atomicAdd(vitrailControl.stored, 0xffffffffu);
     vitrailCountMissing();
+    if (vitrailKeepsSums()) vitrailAddMissing(pixelIndex, node, coverage, nodes);
     return;
   }
-  uint depth = vitrailPackDepth(gl_FragCoord.z, vitrailParameters.nearestIsOne != 0u);
-  uint next = atomicExchange(vitrailHeads[pixel.y * vitrailParameters.width + pixel.x], index);
-  vitrailNodes[index] = VitrailNode(bits, depth, next);
+  uint next = atomicExchange(vitrailHeads[pixelIndex], index);
+  node.w |= next & vitrailNextMask(nodes);
+  vitrailStoreNode(index, node, nodes);
 }
+
+void vitrailCollect(vec4 color) { vitrailCollect(color, VITRAIL_OVER); }
 
 #endif

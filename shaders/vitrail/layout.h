@@ -8,13 +8,42 @@
 #include <cstdint>
 namespace vitrail::layout {
 using uint = std::uint32_t;
+struct uvec2 {
+  uint x, y;
+};
+struct uvec4 {
+  uint x, y, z, w;
+};
 #endif
 
-// One stored fragment of the `standard` node format.
-struct VitrailNode {
-  uint color; // 8 bits each, r lowest: sRGB-encoded r, g, b and linear alpha
-  uint depth; // the bits of gl_FragCoord.z, in [0, 1]
-  uint next;  // index of the next node of the same pixel, or VITRAIL_END
+// One stored fragment in each node format. They are vectors because a GPU stores one at once: collecting was seen to
+// take as long as it has stores. A word that holds `next`, the index of the next node of the same pixel, has it in its
+// low bits, 32 - coverage bits of them (24 in `compact`), and the coverage above it: no bits at 1 sample, 4 at 2 and 4
+// samples, 8 at 8 samples.
+
+// 12 bytes in two arrays: all of these first, then as many words with `next`.
+//   x  8 bits each, r lowest: sRGB-encoded r, g, b and linear alpha
+//   y  the bits of gl_FragCoord.z, in [0, 1], in the low 30 bits; the blend mode above them
+struct VitrailNodeStandard {
+  uvec2 words;
+};
+// 8 bytes.
+//   x  1 sample: r5 g6 b5 from bit 0 on the sRGB curve, depth code from bit 16.
+//      Else: r5 g5 b5 from bit 0, the low 3 bits of alpha from bit 15, the depth code without its low 2 bits from
+//      bit 18.
+//   y  next; from bit 24: 1 sample: alpha in 6 bits. Else: coverage in 4 bits, the high 2 bits of alpha. The blend mode
+//   from
+//      bit 30.
+struct VitrailNodeCompact {
+  uvec2 words;
+};
+// 16 bytes.
+//   x  red and green, two 16-bit floats, red lowest
+//   y  blue, a 16-bit float; alpha in 16 bits from bit 16
+//   z  depth and blend mode as in VitrailNodeStandard
+//   w  next
+struct VitrailNodeHdr {
+  uvec4 words;
 };
 
 // What a frame counts. All zero when the collect pass starts.
@@ -22,33 +51,74 @@ struct VitrailControl {
   uint stored;     // nodes taken; above the capacity only while fragments that got none are giving them back
   uint missingLow; // fragments that found the pool full, 64 bits in two words
   uint missingHigh;
-  uint layersMax;     // written by the resolve
-  uint coveredPixels; // written by the resolve
-  uint cutPixels;     // written by the resolve: lists that the driver did not let it finish
-  uint longLists;     // written by the resolve: lists that are left to its second dispatch
-  uint groupsX;       // the work groups of that dispatch, as vkCmdDispatchIndirect reads them
-  uint groupsY;
-  uint groupsZ;
+  uint layersMax; // this and the next three are written by the resolve
+  uint coveredPixels;
+  uint cutPixels; // lists that the driver did not let it finish
+  uint approximatePixels;
+  uint mediumLists;   // lists that are left to the second dispatch
+  uint mediumGroupsX; // the work groups of that dispatch, as vkCmdDispatchIndirect reads them
+  uint mediumGroupsY;
+  uint mediumGroupsZ;
+  uint longLists; // lists that are left to the third dispatch
+  uint longGroupsX;
+  uint longGroupsY;
+  uint longGroupsZ;
+  uint
+      overflowGroupsX; // the dispatch that blends a frame that overflowed; written by the first fragment without a node
+  uint overflowGroupsY;
+  uint overflowGroupsZ;
 };
 
-// What does not change during the life of a target.
+// What one vitrailCmdBegin sets. std140: four-component vectors of words would be padded anyway.
 struct VitrailParameters {
-  uint width; // pixels; the pitch of the head pointers
+  uint x; // the first pixel of the area
+  uint y;
+  uint width; // pixels of the area; the pitch of the head pointers
   uint height;
   uint capacity;     // nodes
+  uint format;       // VITRAIL_FORMAT_*
+  uint samples;      // 1, 2, 4, 8
   uint nearestIsOne; // 1: reversed depth
+  uint keepSums;     // 1: fragments without a node are added to their pixel's sums
+  uint unused;
+  uint nodesLow; // the address of the pool, where it is reached by address
+  uint nodesHigh;
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(VitrailNode) == 12);
-static_assert(sizeof(VitrailControl) == 40);
-static_assert(sizeof(VitrailParameters) == 16);
-constexpr uint VITRAIL_END = 0xffffffffu; // the index that ends a list
-constexpr uint VITRAIL_BLOCK = 16u;       // fragments that are sorted in registers
-} // namespace vitrail::layout
+static_assert(sizeof(VitrailNodeStandard) == 8);
+static_assert(sizeof(VitrailNodeCompact) == 8);
+static_assert(sizeof(VitrailNodeHdr) == 16);
+static_assert(sizeof(VitrailControl) == 72);
+static_assert(sizeof(VitrailParameters) == 48);
+#define VITRAIL_CONSTANT constexpr uint
 #else
-const uint VITRAIL_END = 0xffffffffu;
-const uint VITRAIL_BLOCK = 16u;
+#define VITRAIL_CONSTANT const uint
+#endif
+
+VITRAIL_CONSTANT VITRAIL_END = 0xffffffffu; // a head pointer that has no list
+
+// Node formats, with the values of VitrailNodeFormat.
+VITRAIL_CONSTANT VITRAIL_FORMAT_STANDARD = 0u;
+VITRAIL_CONSTANT VITRAIL_FORMAT_COMPACT = 1u;
+VITRAIL_CONSTANT VITRAIL_FORMAT_HDR = 2u;
+
+// Blend modes, with the values of VitrailBlend.
+VITRAIL_CONSTANT VITRAIL_OVER = 0u;
+VITRAIL_CONSTANT VITRAIL_PREMULTIPLIED = 1u;
+VITRAIL_CONSTANT VITRAIL_ADDITIVE = 2u;
+VITRAIL_CONSTANT VITRAIL_MULTIPLY = 3u;
+
+VITRAIL_CONSTANT VITRAIL_SHORT_LIST = 16u;  // fragments that the first dispatch sorts
+VITRAIL_CONSTANT VITRAIL_MEDIUM_LIST = 32u; // fragments that the second dispatch sorts
+
+// Words of a pixel's sums: colour (3), opacity, -log2 of the transmittance.
+VITRAIL_CONSTANT VITRAIL_SUM_WORDS = 5u;
+
+#undef VITRAIL_CONSTANT
+
+#ifdef __cplusplus
+} // namespace vitrail::layout
 #endif
 
 #endif

@@ -1,8 +1,16 @@
-// Packs and unpacks the `standard` node format. Pure functions: no resources.
+// Packs and unpacks nodes in every format of layout.h. Pure functions: no resources. A node is handled as four words:
+// `w` is always the word that holds `next`, the others are the format's words in order.
 #ifndef VITRAIL_NODE_GLSL
 #define VITRAIL_NODE_GLSL
 
 #include "layout.h"
+
+// How the nodes of a target are stored.
+struct VitrailLayout {
+  uint format;  // VITRAIL_FORMAT_*
+  uint samples; // 1, 2, 4, 8
+  bool nearestIsOne;
+};
 
 // The IEC 61966-2-1 (sRGB) curve and its inverse.
 vec3 vitrailLinearToSrgb(vec3 linear) {
@@ -16,31 +24,180 @@ vec3 vitrailSrgbToLinear(vec3 srgb) {
 }
 
 // Clamps to [0, 1]; a NaN becomes 0. (What clamp() does with a NaN is undefined.)
-vec4 vitrailSaturate(vec4 v) { return mix(clamp(v, 0.0, 1.0), vec4(0.0), isnan(v)); }
+vec4 vitrailSaturate(vec4 v) { return mix(vec4(0.0), min(v, vec4(1.0)), greaterThan(v, vec4(0.0))); }
 
-// Linear colour and straight alpha to the node's colour word.
-uint vitrailPackColor(vec4 color) {
+// Values in [0, 1] to the nearest whole number of steps, at most 65535 of them. Adding 2^23 leaves a float no fraction; the
+// conversion instruction is slow on GPUs.
+uvec4 vitrailQuantize(vec4 v, vec4 steps) { return floatBitsToUint(v * steps + 8388608.0) & 0xffffu; }
+
+// Bits of the coverage, and of an index of the next node.
+uint vitrailCoverageBits(uint samples) { return samples == 1u ? 0u : samples == 8u ? 8u : 4u; }
+uint vitrailNextBits(VitrailLayout nodes) {
+  return nodes.format == VITRAIL_FORMAT_COMPACT ? 24u : 32u - vitrailCoverageBits(nodes.samples);
+}
+// Where it is full, it ends the list: no pool has so many nodes.
+uint vitrailNextMask(VitrailLayout nodes) { return 0xffffffffu >> (32u - vitrailNextBits(nodes)); }
+
+// ---- Depth
+
+const uint VITRAIL_ONE = 0x3f800000u;        // the bits of 1.0
+const uint VITRAIL_DEPTH_MASK = 0x3fffffffu; // the depth word without the blend mode
+
+// Bits of floats in [0, 1] order as the floats. A NaN becomes the farthest depth, -0.0 is 0.0.
+uint vitrailDepthBits(float depth, bool nearestIsOne) {
+  if (isnan(depth)) return nearestIsOne ? 0u : VITRAIL_ONE;
+  return floatBitsToUint(clamp(depth, 0.0, 1.0)) & 0x7fffffffu;
+}
+
+// Depth bits to a key that grows away from the viewer. Its own inverse.
+uint vitrailDepthKey(uint bits, bool nearestIsOne) { return nearestIsOne ? VITRAIL_ONE - min(bits, VITRAIL_ONE) : bits; }
+
+// The depth code of the compact format: a float of the distance to the far plane without sign, 5 bits of exponent, and
+// what is left for the fraction.
+const uint VITRAIL_CODE_BASE = 0x30000000u; // the bits of 2^-31
+uint vitrailCodeShift(uint samples) { return samples == 1u ? 12u : 14u; }
+uint vitrailCodeLargest(uint samples) { return samples == 1u ? 0xffffu : 0x3fffu; }
+
+uint vitrailDepthCode(float depth, VitrailLayout nodes) {
+  float clamped = isnan(depth) ? (nodes.nearestIsOne ? 0.0 : 1.0) : clamp(depth, 0.0, 1.0);
+  uint bits = floatBitsToUint(nodes.nearestIsOne ? clamped : 1.0 - clamped) & 0x7fffffffu;
+  if (bits < VITRAIL_CODE_BASE) return 0u;
+  uint shift = vitrailCodeShift(nodes.samples);
+  return min((bits - VITRAIL_CODE_BASE + (1u << (shift - 1u))) >> shift, vitrailCodeLargest(nodes.samples));
+}
+
+// ---- Packing
+
+// Whether a fragment with these stored values changes nothing.
+bool vitrailIsNothing(uint alphaBits, uint colorBits, uint blend) {
+  return alphaBits == 0u && (blend != VITRAIL_PREMULTIPLIED || colorBits == 0u);
+}
+
+bool vitrailPackCompact(vec4 color, uint blend, float depth, uint coverage, VitrailLayout nodes, out uvec4 node) {
   vec4 c = vitrailSaturate(color);
-  return packUnorm4x8(vec4(vitrailLinearToSrgb(c.rgb), c.a));
+  vec3 srgb = vitrailLinearToSrgb(c.rgb);
+  uint code = vitrailDepthCode(depth, nodes);
+  bool single = nodes.samples == 1u;
+  uvec4 q = vitrailQuantize(vec4(srgb, c.a), single ? vec4(31.0, 63.0, 31.0, 63.0) : vec4(31.0));
+  uint alpha = q.a;
+  uint rgb = q.r | q.g << 5 | q.b << (single ? 11 : 10);
+  node = uvec4(0u);
+  node.x = single ? rgb | code << 16 : rgb | (alpha & 7u) << 15 | code << 18;
+  node.w = (single ? alpha << 24 : (coverage & 15u) << 24 | alpha >> 3 << 28) | blend << 30;
+  return !vitrailIsNothing(alpha, rgb, blend);
 }
 
-// The node's colour word to linear colour and straight alpha.
-vec4 vitrailUnpackColor(uint bits) {
-  vec4 c = unpackUnorm4x8(bits);
-  return vec4(vitrailSrgbToLinear(c.rgb), c.a);
+uint vitrailPackRgba8(vec4 color) {
+  vec4 c = vitrailSaturate(color);
+  uvec4 q = vitrailQuantize(vec4(vitrailLinearToSrgb(c.rgb), c.a), vec4(255.0));
+  return q.r | q.g << 8 | q.b << 16 | q.a << 24;
 }
 
-uint vitrailAlphaBits(uint colorBits) { return colorBits >> 24; }
-
-// gl_FragCoord.z to the node's depth word; a NaN becomes the farthest depth. Bits of floats in [0, 1] order as the floats.
-uint vitrailPackDepth(float depth, bool nearestIsOne) {
-  if (isnan(depth)) return nearestIsOne ? 0u : floatBitsToUint(1.0);
-  return floatBitsToUint(clamp(depth, 0.0, 1.0)) & 0x7fffffffu; // -0.0 is 0.0
+// Two 16-bit floats in [0, 65504] in a word; a NaN is 0.
+uint vitrailPackHalves(vec2 v) {
+  return packHalf2x16(mix(vec2(0.0), min(v, vec2(65504.0)), greaterThan(v, vec2(0.0))));
 }
 
-// The node's depth word to a key that grows away from the viewer.
-uint vitrailDepthKey(uint depthBits, bool nearestIsOne) {
-  return nearestIsOne ? floatBitsToUint(1.0) - min(depthBits, floatBitsToUint(1.0)) : depthBits;
+bool vitrailPackFull(vec4 color, uint blend, float depth, uint coverage, VitrailLayout nodes, out uvec4 node) {
+  uint depthWord = vitrailDepthBits(depth, nodes.nearestIsOne) | blend << 30;
+  uint coverageWord = nodes.samples == 1u ? 0u : coverage << vitrailNextBits(nodes);
+  if (nodes.format == VITRAIL_FORMAT_STANDARD) {
+    uint bits = vitrailPackRgba8(color);
+    node = uvec4(bits, depthWord, 0u, coverageWord);
+    return !vitrailIsNothing(bits >> 24, bits & 0xffffffu, blend);
+  }
+  uint alpha = vitrailQuantize(vitrailSaturate(color), vec4(65535.0)).a;
+  uint redGreen = vitrailPackHalves(color.rg);
+  uint blue = vitrailPackHalves(vec2(color.b, 0.0));
+  node = uvec4(redGreen, blue | alpha << 16, depthWord, coverageWord);
+  return !vitrailIsNothing(alpha, redGreen | blue, blend);
+}
+
+// The node of a fragment, with 0 where the next index goes. False: it would change nothing, and is not stored.
+bool vitrailPack(vec4 color, uint blend, float depth, uint coverage, VitrailLayout nodes, out uvec4 node) {
+  if (nodes.format == VITRAIL_FORMAT_COMPACT) return vitrailPackCompact(color, blend, depth, coverage, nodes, node);
+  return vitrailPackFull(color, blend, depth, coverage, nodes, node);
+}
+
+// ---- Sorting keys. A key is the whole fragment in an order that grows away from the viewer, so two fragments with one
+// key are the same and their order is of no consequence. Unused words are 0.
+
+
+// Of the compact format: blend mode, alpha, coverage, colour, from high to low.
+uint vitrailCompactRest(uvec4 node, uint samples) {
+  if (samples == 1u) return node.w >> 24 << 16 | (node.x & 0xffffu);
+  uint alpha = (node.w >> 28 & 3u) << 3 | (node.x >> 15 & 7u);
+  return node.w >> 30 << 24 | alpha << 19 | (node.w >> 24 & 15u) << 15 | (node.x & 0x7fffu);
+}
+
+uvec4 vitrailKey(uvec4 node, VitrailLayout nodes) {
+  if (nodes.format == VITRAIL_FORMAT_COMPACT) {
+    uint code = node.x >> (nodes.samples == 1u ? 16 : 18);
+    return uvec4(vitrailCodeLargest(nodes.samples) - code, vitrailCompactRest(node, nodes.samples), 0u, 0u);
+  }
+  bool standard = nodes.format == VITRAIL_FORMAT_STANDARD;
+  uint depth = standard ? node.y : node.z;
+  uint coverage = nodes.samples == 1u ? 0u : node.w >> vitrailNextBits(nodes);
+  uint order = vitrailDepthKey(depth & VITRAIL_DEPTH_MASK, nodes.nearestIsOne) << 2 | depth >> 30;
+  return standard ? uvec4(order, node.x, coverage, 0u) : uvec4(order, node.x, node.y, coverage);
+}
+
+// ---- What a key holds
+
+uint vitrailKeyBlend(uvec4 key, VitrailLayout nodes) {
+  return nodes.format == VITRAIL_FORMAT_COMPACT ? key.y >> (nodes.samples == 1u ? 22 : 24) : key.x & 3u;
+}
+
+// One bit a sample.
+uint vitrailKeyCoverage(uvec4 key, VitrailLayout nodes) {
+  if (nodes.samples == 1u) return 1u;
+  if (nodes.format == VITRAIL_FORMAT_COMPACT) return key.y >> 15 & 15u;
+  return nodes.format == VITRAIL_FORMAT_STANDARD ? key.z : key.w;
+}
+
+// The depth in a key, and that of any point rounded as a fragment's would be: greater is farther away.
+uint vitrailKeyDepth(uvec4 key, VitrailLayout nodes) {
+  return nodes.format == VITRAIL_FORMAT_COMPACT ? key.x : key.x >> 2;
+}
+uint vitrailDepthOrder(float depth, VitrailLayout nodes) {
+  if (nodes.format == VITRAIL_FORMAT_COMPACT) return vitrailCodeLargest(nodes.samples) - vitrailDepthCode(depth, nodes);
+  return vitrailDepthKey(vitrailDepthBits(depth, nodes.nearestIsOne), nodes.nearestIsOne);
+}
+
+// Colour and alpha, the colour as it is stored: linear in the hdr format, else on the sRGB curve.
+vec4 vitrailKeyCurve(uvec4 key, VitrailLayout nodes) {
+  if (nodes.format == VITRAIL_FORMAT_HDR) {
+    return vec4(unpackHalf2x16(key.y), unpackHalf2x16(key.z & 0xffffu).x, float(key.z >> 16) / 65535.0);
+  }
+  if (nodes.format == VITRAIL_FORMAT_STANDARD) return unpackUnorm4x8(key.y);
+  if (nodes.samples == 1u) {
+    return vec4(uvec4(key.y, key.y >> 5, key.y >> 11, key.y >> 16) & uvec4(31u, 63u, 31u, 63u)) / vec4(31.0, 63.0, 31.0, 63.0);
+  }
+  return vec4(uvec4(key.y, key.y >> 5, key.y >> 10, key.y >> 19) & 31u) / 31.0;
+}
+
+// Linear colour and alpha.
+vec4 vitrailKeyColor(uvec4 key, VitrailLayout nodes) {
+  vec4 c = vitrailKeyCurve(key, nodes);
+  return nodes.format == VITRAIL_FORMAT_HDR ? c : vec4(vitrailSrgbToLinear(c.rgb), c.a);
+}
+
+// What a fragment does to the light d behind it: color + transmittance * d. The fourth component is for the picture's
+// alpha, whose part in `color` is 1 - transmittance.a.
+struct VitrailPair {
+  vec3 color;
+  vec4 transmittance;
+};
+
+VitrailPair vitrailPairOf(uvec4 key, VitrailLayout nodes) {
+  vec4 c = vitrailKeyColor(key, nodes);
+  uint blend = vitrailKeyBlend(key, nodes);
+  bool multiplies = blend == VITRAIL_MULTIPLY;
+  VitrailPair pair;
+  pair.color = c.rgb * mix(mix(c.a, 0.0, multiplies), 1.0, blend == VITRAIL_PREMULTIPLIED);
+  pair.transmittance = vec4(mix(1.0, 1.0 - c.a, blend <= VITRAIL_PREMULTIPLIED));
+  pair.transmittance.rgb = mix(pair.transmittance.rgb, mix(vec3(1.0), c.rgb, c.a), bvec3(multiplies));
+  return pair;
 }
 
 #endif

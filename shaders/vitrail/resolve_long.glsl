@@ -1,14 +1,13 @@
-// Sorts one long fragment list where it lies and blends it front to back. No bindings: the including shader defines,
-// before the include,
+// Sorts one long fragment list by relinking it, and blends it front to back. No bindings: beside what resolve.glsl asks
+// for, the including shader defines, before the include,
 //
-//   VitrailNode vitrailLoadNode(uint index);
-//   void vitrailStoreNode(uint index, uvec2 colorAndDepth);   // the node's next stays as it is
-//   void vitrailStoreNext(uint index, uint next);
+//   uint vitrailLoadNext(uint index, VitrailLayout nodes);              pool.glsl has both
+//   void vitrailStoreNext(uint index, uint next, VitrailLayout nodes);
 //
-// Blocks of 16 are sorted by insertion in registers, and merged (Knuth, The Art of Computer Programming, volume 3, 5.4: balanced
-// two-way merge; its two input and two output tapes are linked lists here, so that nothing is copied). A list of n takes
-// n log2(n / 16) steps, where taking the nearest fragments in repeated walks takes n^2 / 16: more than some drivers let a
-// shader loop.
+// Blocks of 16 are sorted in registers and relinked, and merged (Knuth, The Art of Computer Programming, volume 3,
+// 5.4: balanced two-way merge; its two input and two output tapes are linked lists here, so that nothing is copied). A
+// list of n takes n log2(n / 16) steps, where taking the nearest fragments in repeated walks takes n^2 / 16: more than some
+// drivers let a shader loop.
 #ifndef VITRAIL_RESOLVE_LONG_GLSL
 #define VITRAIL_RESOLVE_LONG_GLSL
 
@@ -27,7 +26,7 @@ void vitrailAppend(inout VitrailOutput list, uint first, uint last, uint count) 
   if (list.tail == VITRAIL_END) {
     list.head = first;
   } else {
-    vitrailStoreNext(list.tail, first);
+    vitrailStoreNext(list.tail, first, vitrailNodes());
   }
   list.tail = last;
   list.count += count;
@@ -39,60 +38,42 @@ void vitrailSwap(inout VitrailOutput a, inout VitrailOutput b) {
   b = held;
 }
 
-// Writes a key to the next of a block's nodes, if there is one.
-void vitrailPut(inout uint index, inout uint last, inout uint left, uvec2 key, bool nearestIsOne) {
-  if (left == 0u) return;
-  uint depth = vitrailDepthKey(key.x, nearestIsOne); // its own inverse
-  vitrailStoreNode(index, uvec2(key.y, depth));
-  last = index;
-  index = vitrailLoadNode(index).next;
-  --left;
-}
-
-// Sorts the next block of the list in its own nodes and returns its last node. Here and below a turn of a loop takes
-// several steps: a driver that counts turns gets fewer of them.
-uint vitrailSortBlock(inout VitrailWalk walk) {
-  uint index = walk.index;
-  uint last = index;
-  uint left = walk.count;
-  uvec2 k[16] = VITRAIL_LAST_KEYS;
-  while (vitrailMore(walk) && walk.count - left < VITRAIL_BLOCK) {
-    uvec2 key;
-    vitrailTake(walk, key);
-    vitrailInsert(k, key);
-    vitrailTake(walk, key);
-    vitrailInsert(k, key);
+// Sorts the next block of the list and appends it.
+void vitrailSortBlock(inout VitrailWalk walk, inout VitrailOutput list) {
+  VitrailEntry e[16] = VitrailEntry[16](VITRAIL_LAST_16);
+  VitrailWalk block = VitrailWalk(walk.index, 0u, walk.nodeCount - walk.count);
+  vitrailSortFirst(block, e);
+  walk.index = block.index;
+  walk.count += block.count;
+  // Here and below a turn of a loop takes several steps: a driver that counts turns gets fewer of them.
+  for (uint left = block.count; left > 0u; left -= min(left, 2u)) {
+    vitrailAppend(list, e[0].index, e[0].index, 1u);
+    if (left > 1u) vitrailAppend(list, e[1].index, e[1].index, 1u);
+    vitrailShift(e);
+    vitrailShift(e);
   }
-  left = walk.count - left;
-  while (left > 0u) {
-    vitrailPut(index, last, left, k[0], walk.nearestIsOne);
-    vitrailPut(index, last, left, k[1], walk.nearestIsOne);
-    vitrailShift(k);
-    vitrailShift(k);
-  }
-  return last;
 }
 
 // A list that is being read, run by run.
 struct VitrailTape {
   uint index; // the node under the head, and its content
-  uvec2 key;
+  uvec4 key;
   uint next;
   uint run;  // nodes left of the current run, this one included
   uint rest; // nodes behind the current run
 };
 
-void vitrailSeek(inout VitrailTape tape, uint index, uint nodeCount, bool nearestIsOne) {
+void vitrailSeek(inout VitrailTape tape, uint index, uint nodeCount) {
   tape.index = index;
   if (index >= nodeCount) return; // past the end of the tape
-  VitrailNode node = vitrailLoadNode(index);
-  tape.key = vitrailKey(node, nearestIsOne);
-  tape.next = node.next;
+  uvec4 node = vitrailLoadNode(index, vitrailNodes());
+  tape.key = vitrailKey(node, vitrailNodes());
+  tape.next = node.w & vitrailNextMask(vitrailNodes());
 }
 
-VitrailTape vitrailOpen(VitrailOutput list, uint nodeCount, bool nearestIsOne) {
-  VitrailTape tape = VitrailTape(VITRAIL_END, uvec2(0u), VITRAIL_END, 0u, list.count);
-  vitrailSeek(tape, list.head, nodeCount, nearestIsOne);
+VitrailTape vitrailOpen(VitrailOutput list, uint nodeCount) {
+  VitrailTape tape = VitrailTape(VITRAIL_END, uvec4(0u), VITRAIL_END, 0u, list.count);
+  vitrailSeek(tape, list.head, nodeCount);
   return tape;
 }
 
@@ -110,7 +91,7 @@ struct VitrailMerge {
 
 // Moves the nearer of the two nodes under the heads to the output. Runs of `width` become runs of twice that. Does nothing
 // once both tapes are read.
-void vitrailMergeStep(inout VitrailMerge merge, uint width, uint nodeCount, bool nearestIsOne) {
+void vitrailMergeStep(inout VitrailMerge merge, uint width, uint nodeCount) {
   if (merge.a.run + merge.b.run == 0u) {
     vitrailNextRun(merge.a, width);
     vitrailNextRun(merge.b, width);
@@ -122,7 +103,7 @@ void vitrailMergeStep(inout VitrailMerge merge, uint width, uint nodeCount, bool
   if (takeA) tape = merge.a;
   vitrailAppend(merge.current, tape.index, tape.index, 1u);
   --tape.run;
-  vitrailSeek(tape, tape.next, nodeCount, nearestIsOne);
+  vitrailSeek(tape, tape.next, nodeCount);
   if (takeA) {
     merge.a = tape;
   } else {
@@ -130,55 +111,78 @@ void vitrailMergeStep(inout VitrailMerge merge, uint width, uint nodeCount, bool
   }
 }
 
-// Blends the next of `sorted.nodeCount` nodes, if there is one.
-void vitrailBlendNext(inout VitrailResolved result, inout VitrailWalk sorted) {
-  if (sorted.count >= sorted.nodeCount) return;
-  VitrailNode node = vitrailLoadNode(sorted.index);
-  vitrailBlend(result, node.color);
-  sorted.index = node.next;
-  ++sorted.count;
-}
+// A list of any length, sorted: follow it for `count` nodes. `complete` is false where the driver ended a loop before the
+// list was done (Mesa's CPU driver ends a shader's loops after 65,535 turns in total).
+struct VitrailSorted {
+  uint head;
+  uint count;
+  bool complete;
+};
 
-// A list of any length. `complete` is false where the driver ended a loop before the list was done (Mesa's CPU driver
-// ends a shader's loops after 65,535 turns in total).
-VitrailResolved vitrailResolveLong(uint head, uint nodeCount, bool nearestIsOne) {
-  VitrailWalk walk = VitrailWalk(head, 0u, nodeCount, nearestIsOne);
+VitrailSorted vitrailSortLong(uint head, uint nodeCount) {
+  VitrailWalk walk = VitrailWalk(head, 0u, nodeCount);
   VitrailMerge merge;
   merge.current = VITRAIL_EMPTY;
   merge.other = VITRAIL_EMPTY;
   while (vitrailMore(walk)) {
-    uint first = walk.index;
-    uint before = walk.count;
-    uint last = vitrailSortBlock(walk);
-    vitrailAppend(merge.current, first, last, walk.count - before);
+    vitrailSortBlock(walk, merge.current);
     vitrailSwap(merge.current, merge.other);
   }
-  VitrailResolved result = VitrailResolved(vec3(0.0), 1.0, walk.count, !vitrailMore(walk));
+  VitrailSorted sorted = VitrailSorted(VITRAIL_END, walk.count, !vitrailMore(walk));
 
-  uint width = VITRAIL_BLOCK;
+  uint width = VITRAIL_SHORT_LIST;
   for (; width < walk.count; width *= 2u) {
-    merge.a = vitrailOpen(merge.current, nodeCount, nearestIsOne);
-    merge.b = vitrailOpen(merge.other, nodeCount, nearestIsOne);
+    merge.a = vitrailOpen(merge.current, nodeCount);
+    merge.b = vitrailOpen(merge.other, nodeCount);
     merge.current = VITRAIL_EMPTY;
     merge.other = VITRAIL_EMPTY;
     for (uint done = 0u; done < walk.count; done += 4u) {
-      vitrailMergeStep(merge, width, nodeCount, nearestIsOne);
-      vitrailMergeStep(merge, width, nodeCount, nearestIsOne);
-      vitrailMergeStep(merge, width, nodeCount, nearestIsOne);
-      vitrailMergeStep(merge, width, nodeCount, nearestIsOne);
+      vitrailMergeStep(merge, width, nodeCount);
+      vitrailMergeStep(merge, width, nodeCount);
+      vitrailMergeStep(merge, width, nodeCount);
+      vitrailMergeStep(merge, width, nodeCount);
     }
     if (merge.current.count + merge.other.count < walk.count) break;
   }
-  result.complete = result.complete && width >= walk.count;
+  sorted.complete = sorted.complete && width >= walk.count;
+  if (merge.current.count == 0u) merge.current = merge.other;
+  if (merge.current.tail != VITRAIL_END) vitrailStoreNext(merge.current.tail, VITRAIL_END, vitrailNodes());
+  sorted.head = merge.current.head;
+  return sorted;
+}
 
-  VitrailWalk sorted = VitrailWalk(merge.current.count > 0u ? merge.current.head : merge.other.head, 0u, walk.count, false);
-  while (sorted.count < walk.count && result.transmittance > 0.0) {
-    vitrailBlendNext(result, sorted);
-    vitrailBlendNext(result, sorted);
-    vitrailBlendNext(result, sorted);
-    vitrailBlendNext(result, sorted);
+// Blends the next node of a sorted list, if there is one.
+void vitrailBlendNext(inout VitrailResolved result, inout VitrailWalk sorted) {
+  uint number = sorted.count;
+  if (!vitrailMore(sorted)) return;
+  VitrailEntry entry = vitrailTake(sorted);
+  vitrailBlendSorted(result, entry.key, number);
+}
+
+// A list that lies sorted, from its head.
+VitrailResolved vitrailBlendList(uint head, uint nodeCount) {
+  VitrailResolved result = vitrailNothing();
+  VitrailWalk walk = VitrailWalk(head, 0u, nodeCount);
+  bool opaque = false;
+  while (vitrailMore(walk) && !opaque) {
+    vitrailBlendNext(result, walk);
+    vitrailBlendNext(result, walk);
+    vitrailBlendNext(result, walk);
+    vitrailBlendNext(result, walk);
+    opaque = vitrailIsOpaque(result);
   }
-  result.complete = result.complete && (sorted.count >= walk.count || result.transmittance == 0.0);
+  if (vitrailMaxLayers() != 0u) vitrailBlendTail(result);
+  result.layers = walk.count;
+  result.complete = opaque || !vitrailMore(walk);
+  return result;
+}
+
+// A list of any length.
+VitrailResolved vitrailResolveLong(uint head, uint nodeCount) {
+  VitrailSorted sorted = vitrailSortLong(head, nodeCount);
+  VitrailResolved result = vitrailBlendList(sorted.head, nodeCount);
+  result.layers = sorted.count;
+  result.complete = result.complete && sorted.complete;
   return result;
 }
 

@@ -1,4 +1,4 @@
-// Sizes of the buffers behind a target, and the limits that bound them.
+// Sizes: nodes of each format, the most that a pool can have, and where everything lies in a target's one buffer.
 #pragma once
 
 #include <algorithm>
@@ -8,30 +8,111 @@
 
 namespace vitrail {
 
-inline constexpr std::uint64_t kNodeBytes = sizeof(layout::VitrailNode);
-inline constexpr std::uint64_t kHeadBytes = sizeof(layout::uint);
+// Bytes of a node; 0 where `format` is none of VITRAIL_FORMAT_*.
+constexpr std::uint32_t nodeBytes(std::uint32_t format) {
+  switch (format) {
+    case layout::VITRAIL_FORMAT_STANDARD:
+      return sizeof(layout::VitrailNodeStandard) + sizeof(layout::uint); // the link lies apart
+    case layout::VITRAIL_FORMAT_COMPACT:
+      return sizeof(layout::VitrailNodeCompact);
+    case layout::VITRAIL_FORMAT_HDR:
+      return sizeof(layout::VitrailNodeHdr);
+    default:
+      return 0;
+  }
+}
+
+// Bits of a node's last word that hold its coverage.
+constexpr std::uint32_t coverageBits(std::uint32_t samples) { return samples == 1 ? 0 : samples <= 4 ? 4 : 8; }
+
+// Bits of a node's last word that hold the index of the next node.
+constexpr std::uint32_t indexBits(std::uint32_t format, std::uint32_t samples) {
+  return format == layout::VITRAIL_FORMAT_COMPACT ? 24 : 32 - coverageBits(samples);
+}
+
+// The most nodes that one pool can have: of the indices that fit into a node the last ends a list, and one is left out
+// so that an index that was counted up from it never wraps. 0 where the format does not go with the sample count.
+constexpr std::uint32_t maxNodeIndexCount(std::uint32_t format, std::uint32_t samples) {
+  const bool knownSamples = samples == 1 || samples == 2 || samples == 4 || samples == 8;
+  if (nodeBytes(format) == 0 || !knownSamples) return 0;
+  if (format == layout::VITRAIL_FORMAT_COMPACT && samples > 4) return 0;
+  return static_cast<std::uint32_t>((std::uint64_t{1} << indexBits(format, samples)) - 2);
+}
 
 // Bytes of a pool. A pool without nodes still has the room of one: a buffer cannot be empty.
-constexpr std::uint64_t nodePoolBytes(std::uint32_t capacity) {
-  return std::max<std::uint64_t>(capacity, 1) * kNodeBytes;
+constexpr std::uint64_t nodePoolBytes(std::uint32_t format, std::uint32_t capacity) {
+  return std::max<std::uint64_t>(capacity, 1) * nodeBytes(format);
 }
 
-// Bytes of the head pointers of an image.
-constexpr std::uint64_t headBytes(std::uint32_t width, std::uint32_t height) {
-  return std::uint64_t{width} * height * kHeadBytes;
+// Bytes of the head pointers of an area.
+constexpr std::uint64_t headBytes(std::uint32_t areaPixels) {
+  return std::max<std::uint64_t>(areaPixels, 1) * sizeof(layout::uint);
 }
 
-// The most nodes that fit in `bytes`, leaving out the index that ends a list.
-constexpr std::uint32_t nodesThatFit(std::uint64_t bytes) {
-  return static_cast<std::uint32_t>(std::min<std::uint64_t>(bytes / kNodeBytes, layout::VITRAIL_END - 1));
+// Bytes of an array of the pixels that have more than `shorter` fragments: a pool makes only so many of them.
+constexpr std::uint64_t listBytes(std::uint32_t areaPixels, std::uint32_t capacity, std::uint32_t shorter) {
+  return std::max<std::uint64_t>(std::min(areaPixels, capacity / (shorter + 1)), 1) * sizeof(layout::uint);
 }
 
-// Bytes of the list of pixels with more fragments than the resolve sorts in registers, of which a pool of `capacity`
-// nodes makes only so many.
-constexpr std::uint64_t longListBytes(std::uint32_t width, std::uint32_t height, std::uint32_t capacity) {
-  return std::max<std::uint64_t>(
-             1, std::min<std::uint64_t>(capacity / (layout::VITRAIL_BLOCK + 1), std::uint64_t{width} * height)) *
-         4;
+// Bytes of the sums that a frame is blended from when it overflows.
+constexpr std::uint64_t sumBytes(std::uint32_t areaPixels) {
+  return std::uint64_t{areaPixels} * layout::VITRAIL_SUM_WORDS * sizeof(layout::uint);
+}
+
+// A part of a buffer, in bytes.
+struct StoragePart {
+  std::uint64_t offset = 0;
+  std::uint64_t size = 0;
+};
+
+// Everything that the shaders of a target share, in one buffer.
+struct StorageLayout {
+  StoragePart parameters;  // VitrailParameters
+  StoragePart control;     // VitrailControl
+  StoragePart heads;       // a node index a pixel of the area
+  StoragePart mediumLists; // pixels left to the second dispatch
+  StoragePart longLists;   // pixels left to the third dispatch
+  StoragePart sums;        // VITRAIL_SUM_WORDS a pixel of the area; 16 unused bytes where none are kept
+  StoragePart nodes;       // the pool
+  std::uint64_t total = 0; // bytes of the buffer
+};
+
+// Places the parts one after the other, each at a multiple of `alignment` bytes (a power of two, at least 4).
+constexpr StorageLayout layoutStorage(std::uint32_t areaPixels, std::uint32_t nodeCapacity, std::uint32_t format,
+                                      bool keepSums, std::uint64_t alignment) {
+  constexpr std::uint64_t kEmpty = 16; // a binding cannot be empty
+  StorageLayout storage;
+  const auto place = [&](std::uint64_t size) {
+    const StoragePart part{(storage.total + alignment - 1) / alignment * alignment, size};
+    storage.total = part.offset + part.size;
+    return part;
+  };
+  storage.parameters = place(sizeof(layout::VitrailParameters));
+  storage.control = place(sizeof(layout::VitrailControl));
+  storage.heads = place(headBytes(areaPixels));
+  storage.mediumLists = place(listBytes(areaPixels, nodeCapacity, layout::VITRAIL_SHORT_LIST));
+  // Where there is no second dispatch the third takes its lists.
+  storage.longLists = place(listBytes(areaPixels, nodeCapacity, layout::VITRAIL_SHORT_LIST));
+  storage.sums = place(keepSums ? std::max(sumBytes(areaPixels), kEmpty) : kEmpty);
+  storage.nodes = place(nodePoolBytes(format, nodeCapacity));
+  return storage;
+}
+
+// The most nodes for which layoutStorage() takes no more than `bytes`, and that the format can have; 0 where not even
+// one fits.
+constexpr std::uint32_t nodeCapacityFor(std::uint64_t bytes, std::uint32_t areaPixels, std::uint32_t format,
+                                        std::uint32_t samples, bool keepSums, std::uint64_t alignment) {
+  std::uint32_t fits = 0;
+  std::uint32_t most = maxNodeIndexCount(format, samples);
+  while (fits < most) { // the size grows with the capacity
+    const std::uint32_t middle = most - (most - fits) / 2;
+    if (layoutStorage(areaPixels, middle, format, keepSums, alignment).total <= bytes) {
+      fits = middle;
+    } else {
+      most = middle - 1;
+    }
+  }
+  return fits;
 }
 
 } // namespace vitrail

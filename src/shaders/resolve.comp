@@ -1,56 +1,63 @@
-// The first dispatch of the compute resolve of a single-sample target: one thread a pixel. Short lists are done here,
-// long ones are written down for the second dispatch.
+// The first dispatch of the compute resolve: one thread a pixel. Short lists are done here, longer ones are left to the
+// next dispatch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "resolve_bindings.glsl"
-#include "vitrail/resolve.glsl"
+#include "group_counts.glsl"
+#include "missing.glsl"
+#include "picture.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-shared uint groupLayersMax;
-shared uint groupCovered;
-
-// Leaves a pixel to the second dispatch, and makes that large enough.
-void leaveForLater(uint pixelIndex) {
-  uint slot = atomicAdd(control.longLists, 1u);
-  if (slot >= uint(longPixels.length())) { // more long lists than the pool's nodes can make: they are corrupt
-    atomicAdd(control.cutPixels, 1u);
-    return;
-  }
-  longPixels[slot] = pixelIndex;
-  if (slot % LONG_GROUP_SIZE != 0u) return;
-  uint group = slot / LONG_GROUP_SIZE;
-  atomicMax(control.groupsX, min(group + 1u, GROUPS_IN_ROW));
-  atomicMax(control.groupsY, group / GROUPS_IN_ROW + 1u);
-  atomicMax(control.groupsZ, 1u);
+VitrailResolved resolveList(uint head) {
+  if (kMaxLayers != 0u && kMaxLayers <= VITRAIL_SHORT_LIST) return vitrailResolveCapped(head, nodesInUse());
+  return vitrailResolveShort(head, nodesInUse());
 }
 
-void main() {
-  if (gl_LocalInvocationIndex == 0u) {
-    groupLayersMax = 0u;
-    groupCovered = 0u;
+void resolvePixel(uvec2 local) {
+  uint pixelIndex = local.y * parameters.width + local.x;
+  uint head = heads[pixelIndex];
+  uvec2 pixel = imagePixel(pixelIndex);
+  beginPixel(pixel);
+  if (head == VITRAIL_END) {
+#ifdef VITRAIL_MULTISAMPLED
+    writePixel(pixel, vitrailNothing());
+#endif
+    return;
   }
-  barrier();
+  VitrailResolved r = resolveList(head);
+  if (r.complete) {
+    writePixel(pixel, r);
+  } else {
+    leaveForLater(pixelIndex);
+  }
+  countPixel(r.layers);
+}
 
-  uvec2 pixel = gl_GlobalInvocationID.xy;
-  if (pixel.x < parameters.width && pixel.y < parameters.height) {
-    uint pixelIndex = pixel.y * parameters.width + pixel.x;
-    uint head = heads[pixelIndex];
-    if (head != VITRAIL_END) {
-      VitrailResolved r = vitrailResolveShort(head, nodesInUse(), parameters.nearestIsOne != 0u);
-      if (r.complete) {
-        blendOver(pixel, r.color, r.transmittance);
-      } else {
-        leaveForLater(pixelIndex);
-      }
-      atomicMax(groupLayersMax, r.layers);
-      atomicAdd(groupCovered, 1u);
+#if VITRAIL_NETWORKS
+// A frame that overflowed, where a dispatch of its own would cost more than the code.
+void blendSums(uvec2 local) {
+  uint pixelIndex = local.y * parameters.width + local.x;
+  uint head = heads[pixelIndex];
+  VitrailResolved r = vitrailResolveSums(head, nodesInUse(), readMissing(pixelIndex));
+  clearMissing(pixelIndex);
+  writePixel(imagePixel(pixelIndex), r);
+  if (head != VITRAIL_END) countPixel(r.layers);
+}
+#else
+void blendSums(uvec2 local) {} // resolve_overflow.comp does it
+#endif
+
+void main() {
+  bool sums = overflowed();
+  if (sums && (VITRAIL_NETWORKS == 0 || parameters.keepSums == 0u)) return;
+  beginCounts();
+  uvec2 local = gl_GlobalInvocationID.xy;
+  if (local.x < parameters.width && local.y < parameters.height) {
+    if (sums) {
+      blendSums(local);
+    } else {
+      resolvePixel(local);
     }
   }
-
-  barrier();
-  if (gl_LocalInvocationIndex == 0u && groupCovered > 0u) {
-    atomicMax(control.layersMax, groupLayersMax);
-    atomicAdd(control.coveredPixels, groupCovered);
-  }
+  endCounts();
 }

@@ -44,6 +44,10 @@ VkResult Buffer::create(const VitrailContext_T& context, VkDeviceSize bytes, VkB
   allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   allocate.allocationSize = needs.size;
   allocate.memoryTypeIndex = type;
+  VkMemoryAllocateFlagsInfo byAddress{};
+  byAddress.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
+  byAddress.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+  if ((usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0) allocate.pNext = &byAddress;
   result = context.vk.AllocateMemory(context.device, &allocate, context.allocator, &memory);
   if (result != VK_SUCCESS) {
     return context.log.fail(result, "%s: the device has no %.1f MiB of memory left", what, mebibytes(needs.size));

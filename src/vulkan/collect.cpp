@@ -1,17 +1,85 @@
-// The recording calls round the host's transparent draws: empty lists before, visible lists after.
+// The recording calls round the host's transparent draws: empty lists before, visible and, for a fragment resolve,
+// sorted lists after.
+#include <algorithm>
 #include <cstddef>
 
 #include "barrier.h"
-#include "core/pool.h"
+#include "dispatch_compute.h"
 
 namespace vitrail {
 
 namespace {
 
-constexpr VkAccessFlags kShaderReadWrite = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+// The whole target where the host names no area, and never more than there are head pointers for.
+VkRect2D areaOf(const VitrailTarget_T& target, const VitrailBeginInfo* info) {
+  const VkExtent2D extent = target.desc.extent;
+  VkRect2D area{{0, 0}, extent};
+  if (info != nullptr && info->area.extent.width != 0 && info->area.extent.height != 0) {
+    area.offset.x = std::clamp(info->area.offset.x, 0, static_cast<std::int32_t>(extent.width));
+    area.offset.y = std::clamp(info->area.offset.y, 0, static_cast<std::int32_t>(extent.height));
+    area.extent.width = std::min(info->area.extent.width, extent.width - static_cast<std::uint32_t>(area.offset.x));
+    area.extent.height = std::min(info->area.extent.height, extent.height - static_cast<std::uint32_t>(area.offset.y));
+  }
+  if (area.extent.width == 0 || area.extent.height == 0) return {area.offset, {0, 0}};
+  const std::uint32_t areaPixels = target.storage.areaPixels;
+  if (std::uint64_t{area.extent.width} * area.extent.height > areaPixels) {
+    static_cast<void>(
+        target.context->log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                                 "an area of %ux%u pixels is begun, the target has areaPixels %u: the rest is left out",
+                                 area.extent.width, area.extent.height, areaPixels));
+    area.extent.width = std::min(area.extent.width, areaPixels);
+    area.extent.height = areaPixels / area.extent.width;
+  }
+  return area;
+}
 
-VkBufferMemoryBarrier nodesBarrier(const VitrailTarget_T& target, VkAccessFlags source, VkAccessFlags destination) {
-  return bufferBarrier(target.nodeBuffer, target.nodeOffset, nodePoolBytes(target.capacity), source, destination);
+layout::VitrailParameters parametersOf(const VitrailTarget_T& target) {
+  layout::VitrailParameters parameters{};
+  parameters.x = static_cast<std::uint32_t>(target.area.offset.x);
+  parameters.y = static_cast<std::uint32_t>(target.area.offset.y);
+  parameters.width = target.area.extent.width;
+  parameters.height = target.area.extent.height;
+  parameters.capacity = target.storage.nodeCapacity;
+  parameters.format = target.desc.nodeFormat;
+  parameters.samples = target.desc.samples;
+  parameters.nearestIsOne = target.desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE ? 1 : 0;
+  parameters.keepSums = target.keepSums ? 1 : 0;
+  parameters.nodesLow = static_cast<std::uint32_t>(target.storage.nodesAddress);
+  parameters.nodesHigh = static_cast<std::uint32_t>(target.storage.nodesAddress >> 32U);
+  return parameters;
+}
+
+void clear(VkCommandBuffer commandBuffer, VitrailTarget_T& target) {
+  const Dispatch& vk = target.context->vk;
+  Storage& storage = target.storage;
+  const auto fill = [&](const StoragePart& part, VkDeviceSize bytes, std::uint32_t value) {
+    if (bytes > 0) vk.CmdFillBuffer(commandBuffer, storage.buffer, storage.offset + part.offset, bytes, value);
+  };
+  const layout::VitrailParameters parameters = parametersOf(target);
+  vk.CmdUpdateBuffer(commandBuffer, storage.buffer, storage.offset + storage.layout.parameters.offset,
+                     sizeof(parameters), &parameters);
+  fill(storage.layout.heads, VkDeviceSize{parameters.width} * parameters.height * sizeof(layout::uint),
+       layout::VITRAIL_END);
+  fill(storage.layout.control, storage.layout.control.size, 0);
+  if (target.keepSums && !storage.sumsAreClear) fill(storage.layout.sums, storage.layout.sums.size, 0);
+  storage.sumsAreClear = false; // until this frame has been resolved
+  vk.CmdFillBuffer(commandBuffer, target.stats.buffer, target.slotOffset(target.frame) + offsetof(StatsSlot, tag),
+                   sizeof(StatsSlot::tag), 0); // the slot's old frame is gone
+}
+
+// For a fragment resolve: lists that are longer than it sorts itself are sorted where they lie.
+void sortLongLists(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
+  constexpr VkAccessFlags kShaderReadWrite = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+  bindTargetSet(commandBuffer, target);
+  dispatchPixels(commandBuffer, target, target.pipelines.sortFind);
+  // Writer: the search (which lists, how many). Readers: the command processor and the sorting.
+  recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
+                {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                 VK_ACCESS_INDIRECT_COMMAND_READ_BIT | kShaderReadWrite});
+  dispatchIndirect(commandBuffer, target, target.pipelines.sortLong, offsetof(layout::VitrailControl, longGroupsX));
+  // Writers: the search and the sorting. Reader: the resolve in fragment shaders, which adds to the counters.
+  recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
+                {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, kShaderReadWrite});
 }
 
 } // namespace
@@ -19,60 +87,17 @@ VkBufferMemoryBarrier nodesBarrier(const VitrailTarget_T& target, VkAccessFlags 
 } // namespace vitrail
 
 extern "C" void vitrailCmdBegin(VkCommandBuffer commandBuffer, VitrailTarget target, const VitrailBeginInfo* info) {
-  using namespace vitrail;
   target->frame = info != nullptr ? info->frame : 0;
-  const Dispatch& vk = target->context->vk;
-
-  // Writers: the previous frame's fragment shaders (lists), its resolve (counters), its clear and its copy of the
-  // counters (transfer). Its readers, the resolve with its indirect dispatch and that copy, are waited for too. Writer
-  // here: the clear.
-  const std::array<VkBufferMemoryBarrier, 3> beforeClear = {
-      bufferBarrier(target->heads, VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
-                    VK_ACCESS_TRANSFER_WRITE_BIT),
-      bufferBarrier(target->control, VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
-                    VK_ACCESS_TRANSFER_WRITE_BIT),
-      bufferBarrier(target->stats, VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_TRANSFER_WRITE_BIT),
-  };
-  recordBarriers(commandBuffer, *target,
-                 VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT |
-                     VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
-                 VK_PIPELINE_STAGE_TRANSFER_BIT, beforeClear);
-
-  vk.CmdFillBuffer(commandBuffer, target->heads.buffer, 0, VK_WHOLE_SIZE, layout::VITRAIL_END);
-  vk.CmdFillBuffer(commandBuffer, target->control.buffer, 0, VK_WHOLE_SIZE, 0);
-  vk.CmdFillBuffer(commandBuffer, target->stats.buffer, target->slotOffset(target->frame) + offsetof(StatsSlot, tag),
-                   sizeof(StatsSlot::tag), 0); // the slot's old frame is gone
-
-  // Writer: the clear. Readers and writers: vitrailCollect() in fragment shaders, and the resolve, which sees the
-  // cleared lists of pixels that no fragment reaches. The nodes of the previous frame, written by its fragment shaders
-  // and its resolve, may now be overwritten, and so may its list of long lists.
-  const std::array<VkBufferMemoryBarrier, 4> beforeCollect = {
-      bufferBarrier(target->heads, VK_ACCESS_TRANSFER_WRITE_BIT, kShaderReadWrite),
-      bufferBarrier(target->control, VK_ACCESS_TRANSFER_WRITE_BIT, kShaderReadWrite),
-      nodesBarrier(*target, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_SHADER_WRITE_BIT),
-      bufferBarrier(target->longLists, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_SHADER_WRITE_BIT),
-  };
-  recordBarriers(
-      commandBuffer, *target,
-      VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-      VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, beforeCollect);
+  target->area = vitrail::areaOf(*target, info);
+  target->slotCapacity[target->slot(target->frame)] = target->storage.nodeCapacity;
+  vitrail::recordBarriers(commandBuffer, target, VITRAIL_BARRIER_BEFORE_CLEAR);
+  vitrail::clear(commandBuffer, *target);
+  vitrail::recordBarriers(commandBuffer, target, VITRAIL_BARRIER_BEFORE_COLLECT);
 }
 
 extern "C" void vitrailCmdCollected(VkCommandBuffer commandBuffer, VitrailTarget target) {
-  using namespace vitrail;
-#ifdef VITRAIL_TEST_OMIT_COLLECTED_BARRIER
-  // The negative control of the tests: they must notice that this build leaves the barrier out.
-  static_cast<void>(commandBuffer);
-  static_cast<void>(target);
-#else
-  // Writer: vitrailCollect() in fragment shaders. Reader: the resolve, which also sorts long lists in their nodes and
-  // adds to the counters.
-  const std::array<VkBufferMemoryBarrier, 3> barriers = {
-      bufferBarrier(target->heads, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT),
-      bufferBarrier(target->control, VK_ACCESS_SHADER_WRITE_BIT, kShaderReadWrite),
-      nodesBarrier(*target, VK_ACCESS_SHADER_WRITE_BIT, kShaderReadWrite),
-  };
-  recordBarriers(commandBuffer, *target, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                 barriers);
+#ifndef VITRAIL_TEST_OMIT_COLLECTED_BARRIER // the negative control of the tests: they must notice that it is missing
+  vitrail::recordBarriers(commandBuffer, target, VITRAIL_BARRIER_COLLECTED);
 #endif
+  if (!target->isCompute()) vitrail::sortLongLists(commandBuffer, *target);
 }

@@ -1,4 +1,4 @@
-// Creation and destruction of a context: checks the device, builds the layouts and the resolve pipelines.
+// Creation and destruction of a context: checks the device, builds the layouts.
 #include "context.h"
 
 #include <algorithm>
@@ -6,32 +6,53 @@
 #include <new>
 
 #include "core/pool.h"
-#include "shaders/resolve_long_rgba16f.h"
-#include "shaders/resolve_long_rgba32f.h"
-#include "shaders/resolve_rgba16f.h"
-#include "shaders/resolve_rgba32f.h"
 
 namespace vitrail {
 
 namespace {
 
-// The SPIR-V of the resolve, in the order of kColorFormats.
-struct Code {
-  const std::uint32_t* words;
-  std::size_t bytes;
-};
-struct ResolveCode {
-  Code shortLists;
-  Code longLists;
-};
-template <std::size_t kShort, std::size_t kLong>
-constexpr ResolveCode resolveCode(const std::uint32_t (&shortLists)[kShort], const std::uint32_t (&longLists)[kLong]) {
-  return {{shortLists, sizeof(shortLists)}, {longLists, sizeof(longLists)}};
+// The host says that its device was created with these; a physical device without them tells that it was not.
+VkResult checkFeatures(const VitrailContext_T& context, const char* deviceName) {
+  VkPhysicalDeviceVulkan12Features features12{};
+  features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+  VkPhysicalDeviceFeatures2 features{};
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  features.pNext = &features12;
+  context.vk.GetPhysicalDeviceFeatures2(context.physicalDevice, &features);
+  const VkPhysicalDeviceFeatures& core = features.features;
+  const auto lacks = [&](const char* feature, const char* use) {
+    return context.log.fail(VK_ERROR_FEATURE_NOT_PRESENT, "%s lacks %s, which %s", deviceName, feature, use);
+  };
+  if (core.fragmentStoresAndAtomics == VK_FALSE) return lacks("fragmentStoresAndAtomics", "collects fragments");
+  if (context.has(VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS) && features12.bufferDeviceAddress == VK_FALSE) {
+    return lacks("bufferDeviceAddress", "VitrailContextDesc::features names");
+  }
+  if (context.has(VITRAIL_FEATURE_DUAL_SRC_BLEND) && core.dualSrcBlend == VK_FALSE) {
+    return lacks("dualSrcBlend", "VitrailContextDesc::features names");
+  }
+  if (context.has(VITRAIL_FEATURE_SAMPLE_RATE_SHADING) && core.sampleRateShading == VK_FALSE) {
+    return lacks("sampleRateShading", "VitrailContextDesc::features names");
+  }
+  return VK_SUCCESS;
 }
-constexpr std::array<ResolveCode, kColorFormats.size()> kResolveCode = {
-    resolveCode(shaders::resolve_rgba16f, shaders::resolve_long_rgba16f),
-    resolveCode(shaders::resolve_rgba32f, shaders::resolve_long_rgba32f),
-};
+
+void readLimits(VitrailContext_T& context, const VkPhysicalDeviceProperties& device, VkDeviceSize allocationSize) {
+  const VkPhysicalDeviceLimits& limits = device.limits;
+  Limits& kept = context.limits;
+  constexpr VkDeviceSize kLeastAlignment = 256; // of the parts that are cleared and copied, on every device
+  kept.storageBufferRange = limits.maxStorageBufferRange;
+  kept.allocationSize = allocationSize;
+  kept.alignment =
+      std::max({limits.minStorageBufferOffsetAlignment, limits.minUniformBufferOffsetAlignment, kLeastAlignment});
+  kept.sampleCounts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts &
+                      limits.sampledImageColorSampleCounts & limits.sampledImageDepthSampleCounts;
+  kept.isCpu = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  context.vk.GetPhysicalDeviceMemoryProperties(context.physicalDevice, &context.memory);
+  for (std::uint32_t i = 0; i < context.memory.memoryHeapCount; ++i) {
+    const VkMemoryHeap& heap = context.memory.memoryHeaps[i];
+    if ((heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0) kept.heapSize = std::max(kept.heapSize, heap.size);
+  }
+}
 
 VkResult checkDevice(VitrailContext_T& context) {
   VkPhysicalDeviceMaintenance3Properties maintenance3{};
@@ -46,75 +67,47 @@ VkResult checkDevice(VitrailContext_T& context) {
                             device.deviceName, VK_API_VERSION_MAJOR(device.apiVersion),
                             VK_API_VERSION_MINOR(device.apiVersion));
   }
-  VkPhysicalDeviceFeatures features{};
-  context.vk.GetPhysicalDeviceFeatures(context.physicalDevice, &features);
-  if (features.fragmentStoresAndAtomics == VK_FALSE) {
-    return context.log.fail(VK_ERROR_FEATURE_NOT_PRESENT, "%s lacks fragmentStoresAndAtomics, which collects fragments",
-                            device.deviceName);
-  }
-  context.vk.GetPhysicalDeviceMemoryProperties(context.physicalDevice, &context.memory);
-  context.limits.storageBufferRange = device.limits.maxStorageBufferRange;
-  context.limits.storageBufferAlignment = std::max<VkDeviceSize>(1, device.limits.minStorageBufferOffsetAlignment);
-  context.limits.allocationSize = maintenance3.maxMemoryAllocationSize;
-  return VK_SUCCESS;
+  readLimits(context, device, maintenance3.maxMemoryAllocationSize);
+  return checkFeatures(context, device.deviceName);
 }
 
-VkResult createSetLayouts(VitrailContext_T& context) {
-  std::array<VkDescriptorSetLayoutBinding, kBindingCount> bindings{};
-  for (std::uint32_t i = 0; i < kBindingCount; ++i) {
-    bindings[i].binding = i;
-    bindings[i].descriptorType =
-        i == kParametersBinding ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    bindings[i].descriptorCount = 1;
-    bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-    if (i != kLongListsBinding) bindings[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
-  }
+VkResult createSetLayout(const VitrailContext_T& context, std::span<const VkDescriptorSetLayoutBinding> bindings,
+                         const char* name, VkDescriptorSetLayout* layout) {
   VkDescriptorSetLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  info.bindingCount = kBindingCount;
+  info.bindingCount = static_cast<std::uint32_t>(bindings.size());
   info.pBindings = bindings.data();
-  VkResult result = context.vk.CreateDescriptorSetLayout(context.device, &info, context.allocator, &context.setLayout);
-  if (result != VK_SUCCESS) return result;
-  context.name(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, context.setLayout, "vitrail target set layout");
-
-  VkDescriptorSetLayoutBinding color{};
-  color.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-  color.descriptorCount = 1;
-  color.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-  info.bindingCount = 1;
-  info.pBindings = &color;
-  result = context.vk.CreateDescriptorSetLayout(context.device, &info, context.allocator, &context.colorSetLayout);
-  if (result != VK_SUCCESS) return result;
-  context.name(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, context.colorSetLayout, "vitrail colour set layout");
-  return VK_SUCCESS;
-}
-
-VkResult createResolvePipeline(const VitrailContext_T& context, const Code& code, const char* name,
-                               VkPipeline* pipeline) {
-  VkShaderModuleCreateInfo moduleInfo{};
-  moduleInfo.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  moduleInfo.codeSize = code.bytes;
-  moduleInfo.pCode = code.words;
-  VkShaderModule shader = VK_NULL_HANDLE;
-  VkResult result = context.vk.CreateShaderModule(context.device, &moduleInfo, context.allocator, &shader);
-  if (result != VK_SUCCESS) return result;
-  context.name(VK_OBJECT_TYPE_SHADER_MODULE, shader, name);
-
-  VkComputePipelineCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-  info.stage.module = shader;
-  info.stage.pName = "main";
-  info.layout = context.resolveLayout;
-  result = context.vk.CreateComputePipelines(context.device, context.cache, 1, &info, context.allocator, pipeline);
-  context.vk.DestroyShaderModule(context.device, shader, context.allocator);
-  if (result == VK_SUCCESS) context.name(VK_OBJECT_TYPE_PIPELINE, *pipeline, name);
+  const VkResult result = context.vk.CreateDescriptorSetLayout(context.device, &info, context.allocator, layout);
+  if (result == VK_SUCCESS) context.name(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, *layout, name);
   return result;
 }
 
+VkResult createSetLayouts(VitrailContext_T& context) {
+  std::array<VkDescriptorSetLayoutBinding, kBindingCount> buffers{};
+  for (std::uint32_t i = 0; i < kBindingCount; ++i) {
+    buffers[i].binding = i;
+    buffers[i].descriptorType =
+        i == kParametersBinding ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    buffers[i].descriptorCount = 1;
+    buffers[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
+    if (i != kMediumListsBinding && i != kLongListsBinding) buffers[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
+  }
+  VkResult result = createSetLayout(context, buffers, "vitrail target set layout", &context.setLayout);
+  if (result != VK_SUCCESS) return result;
+
+  std::array<VkDescriptorSetLayoutBinding, kViewBindingCount> images{};
+  for (std::uint32_t i = 0; i < kViewBindingCount; ++i) {
+    images[i].binding = i;
+    images[i].descriptorType = i == kColorBinding ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    images[i].descriptorCount = 1;
+    images[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
+    if (i != kColorBinding) images[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
+  }
+  return createSetLayout(context, images, "vitrail view set layout", &context.viewSetLayout);
+}
+
 VkResult createResolveLayout(VitrailContext_T& context) {
-  const std::array<VkDescriptorSetLayout, 2> sets = {context.setLayout, context.colorSetLayout};
+  const std::array<VkDescriptorSetLayout, 2> sets = {context.setLayout, context.viewSetLayout};
   VkPipelineLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
   info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
@@ -137,11 +130,6 @@ VkResult build(VitrailContext_T& context) {
 
 } // namespace
 
-std::size_t colorFormatIndex(VkFormat format) {
-  return static_cast<std::size_t>(std::find(kColorFormats.begin(), kColorFormats.end(), format) -
-                                  kColorFormats.begin());
-}
-
 } // namespace vitrail
 
 void VitrailContext_T::name(VkObjectType type, std::uint64_t handle, const char* text) const {
@@ -152,30 +140,6 @@ void VitrailContext_T::name(VkObjectType type, std::uint64_t handle, const char*
   info.objectHandle = handle;
   info.pObjectName = text;
   vk.SetDebugUtilsObjectNameEXT(device, &info); // a name that cannot be kept changes nothing
-}
-
-VkResult VitrailContext_T::resolvePipelines(std::size_t format, vitrail::ResolvePipelines* made) {
-  const std::lock_guard lock(pipelines);
-  vitrail::ResolvePipelines& kept = resolve[format];
-  if (kept.longLists == VK_NULL_HANDLE) {
-    VkFormatProperties properties{};
-    vk.GetPhysicalDeviceFormatProperties(physicalDevice, vitrail::kColorFormats[format], &properties);
-    if ((properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) == 0) {
-      return log.fail(VK_ERROR_FORMAT_NOT_SUPPORTED, "colorFormat %d: this device cannot use it as storage image",
-                      vitrail::kColorFormats[format]);
-    }
-    const vitrail::ResolveCode& code = vitrail::kResolveCode[format];
-    VkResult result = VK_SUCCESS;
-    if (kept.shortLists == VK_NULL_HANDLE) {
-      result = vitrail::createResolvePipeline(*this, code.shortLists, "vitrail resolve", &kept.shortLists);
-    }
-    if (result == VK_SUCCESS) {
-      result = vitrail::createResolvePipeline(*this, code.longLists, "vitrail resolve long", &kept.longLists);
-    }
-    if (result != VK_SUCCESS) return log.fail(result, "the resolve pipelines could not be created");
-  }
-  *made = kept;
-  return VK_SUCCESS;
 }
 
 extern "C" VkResult vitrailCreateContext(const VitrailContextDesc* desc, VitrailContext* context) {
@@ -193,6 +157,7 @@ extern "C" VkResult vitrailCreateContext(const VitrailContextDesc* desc, Vitrail
   made->log = log;
   made->physicalDevice = desc->physicalDevice;
   made->device = desc->device;
+  made->features = desc->features;
   made->allocator = desc->allocator;
   made->cache = desc->cache;
   if (const char* missing = made->vk.load(desc->instance, desc->device, desc->getInstanceProcAddr)) {
@@ -212,27 +177,27 @@ extern "C" void vitrailDestroyContext(VitrailContext context) {
   if (context == nullptr) return;
   const std::unique_ptr<VitrailContext_T> owned(context);
   const vitrail::Dispatch& vk = context->vk;
-  for (const vitrail::ResolvePipelines& pipelines : context->resolve) {
-    vk.DestroyPipeline(context->device, pipelines.shortLists, context->allocator);
-    vk.DestroyPipeline(context->device, pipelines.longLists, context->allocator);
+  for (const auto& [key, pipeline] : context->pipelines) {
+    vk.DestroyPipeline(context->device, pipeline, context->allocator);
   }
   vk.DestroyPipelineLayout(context->device, context->resolveLayout, context->allocator);
-  vk.DestroyDescriptorSetLayout(context->device, context->colorSetLayout, context->allocator);
+  vk.DestroyDescriptorSetLayout(context->device, context->viewSetLayout, context->allocator);
   vk.DestroyDescriptorSetLayout(context->device, context->setLayout, context->allocator);
 }
 
 extern "C" VkDescriptorSetLayout vitrailDescriptorSetLayout(VitrailContext context) { return context->setLayout; }
 
-extern "C" uint32_t vitrailMaxNodeCapacity(VitrailContext context, VitrailNodeFormat /*only one format so far*/) {
-  VkDeviceSize heap = 0;
-  for (std::uint32_t i = 0; i < context->memory.memoryHeapCount; ++i) {
-    if ((context->memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0) {
-      heap = std::max(heap, context->memory.memoryHeaps[i].size);
-    }
-  }
-  return vitrail::nodesThatFit(std::min({context->limits.storageBufferRange, context->limits.allocationSize, heap}));
+extern "C" uint32_t vitrailMaxNodeCapacity(VitrailContext context, VitrailNodeFormat format,
+                                           VkSampleCountFlagBits samples) {
+  const std::uint32_t bytes = vitrail::nodeBytes(format);
+  if (bytes == 0) return 0;
+  const vitrail::Limits& limits = context->limits;
+  std::uint64_t most = std::min(limits.allocationSize, limits.heapSize);
+  if (!context->has(VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS)) most = std::min(most, limits.storageBufferRange);
+  const std::uint32_t indices = vitrail::maxNodeIndexCount(format, samples != 0 ? samples : 1);
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(most / bytes, indices));
 }
 
-extern "C" VkDeviceSize vitrailNodePoolSize(VitrailNodeFormat /*only one format so far*/, uint32_t nodeCapacity) {
-  return vitrail::nodePoolBytes(nodeCapacity);
+extern "C" VkDeviceSize vitrailNodePoolSize(VitrailNodeFormat format, uint32_t nodeCapacity) {
+  return vitrail::nodePoolBytes(format, nodeCapacity);
 }

@@ -1,12 +1,14 @@
-// What the library keeps for one VkDevice: functions, layouts, pipelines, limits.
+// What the library keeps for one VkDevice: functions, layouts, compute pipelines, limits.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <mutex>
 
 #include "dispatch.h"
 #include "log.h"
+#include "pipelines.h"
 #include "vitrail/vitrail.h"
 
 namespace vitrail {
@@ -17,26 +19,23 @@ enum Binding : std::uint32_t {
   kControlBinding,
   kHeadsBinding,
   kNodesBinding,
+  kSumsBinding,
+  kMediumListsBinding,
   kLongListsBinding,
   kBindingCount
 };
 
-// The colour formats that the resolve writes, each with a pipeline of its own.
-inline constexpr std::array<VkFormat, 2> kColorFormats = {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT};
-
-// The compute resolve: short lists, then, by indirect dispatch, the long ones.
-struct ResolvePipelines {
-  VkPipeline shortLists = VK_NULL_HANDLE;
-  VkPipeline longLists = VK_NULL_HANDLE;
-};
-
-// The index of a format in kColorFormats, or its size where it is not there.
-std::size_t colorFormatIndex(VkFormat format);
+// The bindings of the set of images, one set for each of a target's views, as src/shaders/samples.glsl and picture.glsl
+// name them.
+enum ViewBinding : std::uint32_t { kColorBinding, kOpaqueBinding, kDepthBinding, kViewBindingCount };
 
 struct Limits {
   std::uint64_t storageBufferRange = 0;
   std::uint64_t allocationSize = 0;
-  std::uint64_t storageBufferAlignment = 1;
+  std::uint64_t heapSize = 0;          // the largest device-local one
+  std::uint64_t alignment = 1;         // of every part of a target's buffer
+  VkSampleCountFlags sampleCounts = 0; // that colour and depth attachments and sampled images share
+  bool isCpu = false;                  // a driver that runs on the CPU
 };
 
 } // namespace vitrail
@@ -47,18 +46,17 @@ struct VitrailContext_T {
   vitrail::Limits limits;
   VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
+  std::uint32_t features = 0; // VitrailFeatureBits
   const VkAllocationCallbacks* allocator = nullptr;
   VkPhysicalDeviceMemoryProperties memory{};
-  VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;      // the target's resources
-  VkDescriptorSetLayout colorSetLayout = VK_NULL_HANDLE; // one colour image
-  VkPipelineLayout resolveLayout = VK_NULL_HANDLE;
+  VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;     // the target's resources
+  VkDescriptorSetLayout viewSetLayout = VK_NULL_HANDLE; // the images of one view
+  VkPipelineLayout resolveLayout = VK_NULL_HANDLE;      // both of them
   VkPipelineCache cache = VK_NULL_HANDLE;
-  std::mutex pipelines; // guards `resolve`
-  // By colour format; made for the first target that has it.
-  std::array<vitrail::ResolvePipelines, vitrail::kColorFormats.size()> resolve{};
+  std::mutex pipelinesMutex; // guards `pipelines`
+  std::map<vitrail::ComputeKey, VkPipeline> pipelines;
 
-  // The resolve pipelines of kColorFormats[format].
-  VkResult resolvePipelines(std::size_t format, vitrail::ResolvePipelines* made);
+  [[nodiscard]] bool has(VitrailFeatureBits feature) const { return (features & feature) != 0; }
 
   // Names a Vulkan object for debuggers and the validation layer, where the host has enabled debug utils.
   void name(VkObjectType type, std::uint64_t handle, const char* text) const;

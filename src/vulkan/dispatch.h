@@ -8,7 +8,7 @@ namespace vitrail {
 
 #define VITRAIL_INSTANCE_FUNCTIONS(X)  \
   X(GetDeviceProcAddr)                 \
-  X(GetPhysicalDeviceFeatures)         \
+  X(GetPhysicalDeviceFeatures2)        \
   X(GetPhysicalDeviceFormatProperties) \
   X(GetPhysicalDeviceMemoryProperties) \
   X(GetPhysicalDeviceProperties2)
@@ -22,13 +22,17 @@ namespace vitrail {
   X(CmdCopyBuffer)                  \
   X(CmdDispatch)                    \
   X(CmdDispatchIndirect)            \
+  X(CmdDraw)                        \
   X(CmdFillBuffer)                  \
   X(CmdPipelineBarrier)             \
+  X(CmdSetScissor)                  \
+  X(CmdSetViewport)                 \
   X(CmdUpdateBuffer)                \
   X(CreateBuffer)                   \
   X(CreateComputePipelines)         \
   X(CreateDescriptorPool)           \
   X(CreateDescriptorSetLayout)      \
+  X(CreateGraphicsPipelines)        \
   X(CreatePipelineLayout)           \
   X(CreateShaderModule)             \
   X(DestroyBuffer)                  \
@@ -38,6 +42,7 @@ namespace vitrail {
   X(DestroyPipelineLayout)          \
   X(DestroyShaderModule)            \
   X(FreeMemory)                     \
+  X(GetBufferDeviceAddress)         \
   X(GetBufferMemoryRequirements)    \
   X(MapMemory)                      \
   X(UpdateDescriptorSets)

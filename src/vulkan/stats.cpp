@@ -1,7 +1,74 @@
-// What the GPU reported about a past frame.
+// What the GPU reports about a frame: copied out at its end, read by the host later.
+#include <array>
 #include <atomic>
+#include <cstddef>
 
-#include "target.h"
+#include "barrier.h"
+#include "dispatch_compute.h"
+
+namespace vitrail {
+
+namespace {
+
+// Of the frame's slot.
+void slotBarrier(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipelineStageFlags destination,
+                 VkAccessFlags accesses) {
+  VkBufferMemoryBarrier barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER;
+  barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+  barrier.dstAccessMask = accesses;
+  barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.buffer = target.stats.buffer;
+  barrier.offset = target.slotOffset(target.frame);
+  barrier.size = sizeof(StatsSlot);
+  target.context->vk.CmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_TRANSFER_BIT, destination, 0, 0, nullptr, 1,
+                                        &barrier, 0, nullptr);
+}
+
+// Copies the counters to the frame's slot, then the tag that says that they are there.
+void copyStats(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
+  const Dispatch& vk = target.context->vk;
+  const Storage& storage = target.storage;
+  const VkDeviceSize slot = target.slotOffset(target.frame);
+  // Writers: the resolve (counters) and the clear (the slot's tag). Reader and writer: the copy.
+  recordBarrier(
+      commandBuffer, target,
+      {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
+       VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT},
+      {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT});
+  const VkBufferCopy region{storage.offset + storage.layout.control.offset, slot, sizeof(layout::VitrailControl)};
+  vk.CmdCopyBuffer(commandBuffer, storage.buffer, target.stats.buffer, 1, &region);
+
+  // Writer: the copy. Readers: the host, and the order of the tag, which is written after.
+  slotBarrier(commandBuffer, target, VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_HOST_BIT,
+              VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_HOST_READ_BIT);
+  const std::uint64_t tag = target.frame + 1;
+  vk.CmdUpdateBuffer(commandBuffer, target.stats.buffer, slot + offsetof(StatsSlot, tag), sizeof(tag), &tag);
+
+  // Writer: the tag. Reader: the host.
+  slotBarrier(commandBuffer, target, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+}
+
+// A fragment resolve only reads the sums, several times a pixel where it runs per sample.
+void cleanUpSums(VkCommandBuffer commandBuffer, VitrailTarget_T& target) {
+  // Reader: the resolve. Writer: the cleaning.
+  recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
+                {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT});
+  bindTargetSet(commandBuffer, target);
+  dispatchIndirect(commandBuffer, target, target.pipelines.clearSums,
+                   offsetof(layout::VitrailControl, overflowGroupsX));
+  target.storage.sumsAreClear = true;
+}
+
+} // namespace
+
+} // namespace vitrail
+
+extern "C" void vitrailCmdEnd(VkCommandBuffer commandBuffer, VitrailTarget target) {
+  if (target->pipelines.clearSums != VK_NULL_HANDLE) vitrail::cleanUpSums(commandBuffer, *target);
+  vitrail::copyStats(commandBuffer, *target);
+}
 
 extern "C" VkResult vitrailReadStats(VitrailTarget target, uint64_t frame, VitrailStats* stats) {
   auto* slot =
@@ -15,11 +82,13 @@ extern "C" VkResult vitrailReadStats(VitrailTarget target, uint64_t frame, Vitra
   if (written.load(std::memory_order_relaxed) != tag) return VK_NOT_READY;
   *stats = {};
   stats->frame = frame;
+  stats->nodeCapacity = target->slotCapacity[target->slot(frame)];
   stats->fragmentsStored = control.stored;
   stats->fragmentsMissing = (std::uint64_t{control.missingHigh} << 32U) | control.missingLow;
   stats->fragmentsRequested = stats->fragmentsStored + stats->fragmentsMissing;
   stats->cutPixels = control.cutPixels;
-  stats->exact = stats->fragmentsMissing == 0 && stats->cutPixels == 0 ? 1 : 0;
+  stats->approximatePixels = control.approximatePixels;
+  stats->exact = stats->fragmentsMissing == 0 && stats->cutPixels == 0 && stats->approximatePixels == 0 ? 1 : 0;
   stats->layersMax = control.layersMax;
   stats->coveredPixels = control.coveredPixels;
   return VK_SUCCESS;

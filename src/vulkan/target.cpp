@@ -1,221 +1,222 @@
-// Creation and destruction of a target: its buffers and its descriptor sets.
+// Creation, resizing and destruction of a target.
 #include "target.h"
 
+#include <algorithm>
 #include <memory>
 #include <new>
 
-#include "core/pool.h"
+#include "check_target.h"
 
 namespace vitrail {
 
 namespace {
 
-constexpr std::uint32_t kDefaultFramesInFlight = 2;
-
-VkResult check(VitrailContext_T& context, const VitrailTargetDesc& desc) {
-  const Log& log = context.log;
-  if (desc.extent.width == 0 || desc.extent.height == 0) {
-    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "extent %ux%u: both sides must be at least 1", desc.extent.width,
-                    desc.extent.height);
-  }
-  if (desc.nodeFormat != VITRAIL_NODE_STANDARD) {
-    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "nodeFormat %d is none of VitrailNodeFormat", desc.nodeFormat);
-  }
-  if (desc.depthOrder != VITRAIL_DEPTH_NEAREST_IS_ZERO && desc.depthOrder != VITRAIL_DEPTH_NEAREST_IS_ONE) {
-    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "depthOrder %d is none of VitrailDepthOrder", desc.depthOrder);
-  }
-  if (desc.colorViewCount == 0 || desc.colorViewCount > VITRAIL_MAX_COLOR_VIEWS || desc.colorViews == nullptr) {
-    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "%u colour views: between 1 and %d are needed", desc.colorViewCount,
-                    VITRAIL_MAX_COLOR_VIEWS);
-  }
-  if (desc.framesInFlight > VITRAIL_MAX_FRAMES_IN_FLIGHT) {
-    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "framesInFlight %u: at most %d", desc.framesInFlight,
-                    VITRAIL_MAX_FRAMES_IN_FLIGHT);
-  }
-  const std::uint32_t most = vitrailMaxNodeCapacity(&context, desc.nodeFormat);
-  if (desc.nodeCapacity > most) {
-    return log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY, "nodeCapacity %u: this device holds at most %u nodes in one pool",
-                    desc.nodeCapacity, most);
-  }
-  if (headBytes(desc.extent.width, desc.extent.height) > context.limits.storageBufferRange) {
-    return log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY, "extent %ux%u: its head pointers exceed maxStorageBufferRange",
-                    desc.extent.width, desc.extent.height);
-  }
-  if (desc.nodeBuffer != VK_NULL_HANDLE && desc.nodeBufferOffset % context.limits.storageBufferAlignment != 0) {
-    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "nodeBufferOffset %llu is not a multiple of %llu",
-                    static_cast<unsigned long long>(desc.nodeBufferOffset),
-                    static_cast<unsigned long long>(context.limits.storageBufferAlignment));
-  }
-  return VK_SUCCESS;
+// Copies what the host gave of an array of views.
+const VkImageView* keep(const VkImageView* given, std::uint32_t count,
+                        std::array<VkImageView, VITRAIL_MAX_COLOR_VIEWS>& kept) {
+  if (given == nullptr || count == 0) return nullptr;
+  std::copy(given, given + count, kept.begin());
+  return kept.data();
 }
 
-// The pipelines that resolve into images of a format.
-VkResult findPipelines(VitrailContext_T& context, VkFormat format, ResolvePipelines* pipelines) {
-  const std::size_t index = colorFormatIndex(format == VK_FORMAT_UNDEFINED ? VK_FORMAT_R16G16B16A16_SFLOAT : format);
-  if (index == kColorFormats.size()) {
-    return context.log.fail(VK_ERROR_FORMAT_NOT_SUPPORTED,
-                            "colorFormat %d: use VK_FORMAT_R16G16B16A16_SFLOAT or VK_FORMAT_R32G32B32A32_SFLOAT",
-                            format);
-  }
-  return context.resolvePipelines(index, pipelines);
+void keepViews(VitrailTarget_T& target, const VitrailViews& views) {
+  target.desc.views.count = views.count;
+  target.desc.views.color = keep(views.color, views.count, target.colorViews);
+  target.desc.views.opaque = keep(views.opaque, views.count, target.opaqueViews);
+  target.desc.views.depth = keep(views.depth, views.count, target.depthViews);
 }
 
-VkResult createBuffers(VitrailTarget_T& target, const VitrailTargetDesc& desc, const char* prefix) {
-  const VitrailContext_T& context = *target.context;
+Specialization constantsOf(const VitrailTargetDesc& desc) {
+  Specialization constants;
+  constants.format = desc.nodeFormat;
+  constants.samples = desc.samples;
+  constants.nearestIsOne = desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE ? VK_TRUE : VK_FALSE;
+  constants.maxLayers = desc.maxLayers;
+  constants.testDepth = desc.samples > 1 && desc.postDepthCoverage == VK_FALSE ? VK_TRUE : VK_FALSE;
+  return constants;
+}
+
+// How to sort on this device.
+bool usesNetworks(const VitrailContext_T& context) {
+#ifdef VITRAIL_TEST_USE_NETWORKS // so that a CPU device tests what GPUs run
+  static_cast<void>(context);
+  return true;
+#else
+  return !context.limits.isCpu;
+#endif
+}
+
+VkResult findComputePipelines(VitrailTarget_T& target) {
+  VitrailContext_T& context = *target.context;
+  ComputeKey key;
+  key.color = target.desc.colorFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? ColorImage::Rgba32f : ColorImage::Rgba16f;
+  key.multisampled = target.desc.samples > 1;
+  key.byAddress = context.has(VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS);
+  key.networks = usesNetworks(context);
+  key.constants = target.constants;
+  const auto find = [&](Kernel kernel, VkPipeline* pipeline) {
+    key.kernel = kernel;
+    return computePipeline(context, key, pipeline);
+  };
+  const bool capped = target.desc.maxLayers != 0 && target.desc.maxLayers <= layout::VITRAIL_SHORT_LIST;
+  VkResult result = find(Kernel::Resolve, &target.pipelines.shortLists);
+  if (result == VK_SUCCESS && !capped && key.networks) {
+    result = find(Kernel::ResolveMedium, &target.pipelines.mediumLists);
+  }
+  if (result == VK_SUCCESS && !capped) result = find(Kernel::ResolveLong, &target.pipelines.longLists);
+  const bool apart = target.keepSums && !key.networks; // else the first kernel does it
+  if (result == VK_SUCCESS && apart) result = find(Kernel::ResolveOverflow, &target.pipelines.overflow);
+  return result;
+}
+
+FragmentResolve fragmentKind(const VitrailContext_T& context, const VitrailTargetDesc& desc,
+                             const Specialization& constants) {
+  const bool dual = context.has(VITRAIL_FEATURE_DUAL_SRC_BLEND);
+  if (desc.samples == 1) return dual ? FragmentResolve::SingleDual : FragmentResolve::Single;
+  if (desc.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_PIXEL) return FragmentResolve::PerPixel;
+  if (constants.testDepth != VK_FALSE) {
+    return dual ? FragmentResolve::PerSampleDualDepth : FragmentResolve::PerSampleDepth;
+  }
+  return dual ? FragmentResolve::PerSampleDual : FragmentResolve::PerSample;
+}
+
+VkResult createFragmentPipelines(VitrailTarget_T& target) {
+  VitrailContext_T& context = *target.context;
+  ComputeKey key;
+  key.byAddress = context.has(VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS);
+  key.networks = usesNetworks(context);
+  key.constants = target.constants;
+  key.constants.testDepth = VK_FALSE; // sorting does not look at the picture
+  key.kernel = Kernel::SortFind;
+  VkResult result = computePipeline(context, key, &target.pipelines.sortFind);
+  key.kernel = Kernel::SortLong;
+  if (result == VK_SUCCESS) result = computePipeline(context, key, &target.pipelines.sortLong);
+  key.kernel = Kernel::ClearSums;
+  if (result == VK_SUCCESS && target.keepSums) result = computePipeline(context, key, &target.pipelines.clearSums);
+  if (result != VK_SUCCESS) return result;
+
+  FragmentInfo info;
+  info.resolve = fragmentKind(context, target.desc, target.constants);
+  info.byAddress = key.byAddress;
+  info.networks = key.networks;
+  info.constants = target.constants;
+  info.scopeSamples = info.resolve == FragmentResolve::PerPixel ? VK_SAMPLE_COUNT_1_BIT : target.desc.samples;
+  info.colorFormat = target.desc.colorFormat;
+  info.scope = target.desc.scope;
+  return createFragmentPipeline(context, info, &target.pipelines.fragment);
+}
+
+VkResult createStats(VitrailTarget_T& target) {
   constexpr VkMemoryPropertyFlags kHost = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  constexpr VkMemoryPropertyFlags kDevice = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-  constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-
-  VkResult result = target.parameters.create(context, sizeof(layout::VitrailParameters),
-                                             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, kHost, kDevice, prefix, "parameters");
+  const VkResult result =
+      target.stats.create(*target.context, statsBytes(target.desc), VK_BUFFER_USAGE_TRANSFER_DST_BIT, kHost,
+                          VK_MEMORY_PROPERTY_HOST_CACHED_BIT, target.debugName.c_str(), "statistics");
   if (result != VK_SUCCESS) return result;
-  auto* parameters = new (target.parameters.mapped) layout::VitrailParameters;
-  parameters->width = desc.extent.width;
-  parameters->height = desc.extent.height;
-  parameters->capacity = desc.nodeCapacity;
-  parameters->nearestIsOne = desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE ? 1 : 0;
-
-  result = target.control.create(context, sizeof(layout::VitrailControl),
-                                 kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                                     VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                 0, kDevice, prefix, "counters");
-  if (result != VK_SUCCESS) return result;
-  result = target.heads.create(context, headBytes(desc.extent.width, desc.extent.height),
-                               kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, 0, kDevice, prefix, "head pointers");
-  if (result != VK_SUCCESS) return result;
-  if (desc.nodeBuffer == VK_NULL_HANDLE) {
-    result = target.nodes.create(context, nodePoolBytes(desc.nodeCapacity), kStorage, 0, kDevice, prefix, "node pool");
-    if (result != VK_SUCCESS) return result;
-    target.nodeBuffer = target.nodes.buffer;
-  } else {
-    target.nodeBuffer = desc.nodeBuffer;
-    target.nodeOffset = desc.nodeBufferOffset;
-  }
-  result = target.longLists.create(context, longListBytes(desc.extent.width, desc.extent.height, desc.nodeCapacity),
-                                   kStorage, 0, kDevice, prefix, "long lists");
-  if (result != VK_SUCCESS) return result;
-  result = target.stats.create(context, sizeof(StatsSlot) * target.framesInFlight, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                               kHost, VK_MEMORY_PROPERTY_HOST_CACHED_BIT, prefix, "statistics");
-  if (result != VK_SUCCESS) return result;
-  for (std::uint32_t i = 0; i < target.framesInFlight; ++i)
+  for (std::uint32_t i = 0; i < target.desc.framesInFlight; ++i) {
     new (static_cast<StatsSlot*>(target.stats.mapped) + i) StatsSlot{};
-  return VK_SUCCESS;
-}
-
-VkResult createDescriptorPool(VitrailTarget_T& target) {
-  const std::array<VkDescriptorPoolSize, 3> sizes = {
-      VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
-      VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kBindingCount - 1},
-      VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, target.colorViewCount},
-  };
-  VkDescriptorPoolCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  info.maxSets = 1 + target.colorViewCount;
-  info.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
-  info.pPoolSizes = sizes.data();
-  const VitrailContext_T& context = *target.context;
-  return context.vk.CreateDescriptorPool(context.device, &info, context.allocator, &target.pool);
-}
-
-void writeBufferSet(const VitrailTarget_T& target) {
-  const std::array<VkDescriptorBufferInfo, kBindingCount> buffers = {
-      VkDescriptorBufferInfo{target.parameters.buffer, 0, VK_WHOLE_SIZE},
-      VkDescriptorBufferInfo{target.control.buffer, 0, VK_WHOLE_SIZE},
-      VkDescriptorBufferInfo{target.heads.buffer, 0, VK_WHOLE_SIZE},
-      VkDescriptorBufferInfo{target.nodeBuffer, target.nodeOffset, nodePoolBytes(target.capacity)},
-      VkDescriptorBufferInfo{target.longLists.buffer, 0, VK_WHOLE_SIZE},
-  };
-  std::array<VkWriteDescriptorSet, kBindingCount> writes{};
-  for (std::uint32_t i = 0; i < kBindingCount; ++i) {
-    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    writes[i].dstSet = target.set;
-    writes[i].dstBinding = i;
-    writes[i].descriptorCount = 1;
-    writes[i].descriptorType =
-        i == kParametersBinding ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    writes[i].pBufferInfo = &buffers[i];
-  }
-  target.context->vk.UpdateDescriptorSets(target.context->device, kBindingCount, writes.data(), 0, nullptr);
-}
-
-void writeColorSet(const VitrailTarget_T& target, VkDescriptorSet set, VkImageView view) {
-  VkDescriptorImageInfo image{};
-  image.imageView = view;
-  image.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
-  VkWriteDescriptorSet write{};
-  write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-  write.dstSet = set;
-  write.descriptorCount = 1;
-  write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-  write.pImageInfo = &image;
-  target.context->vk.UpdateDescriptorSets(target.context->device, 1, &write, 0, nullptr);
-}
-
-VkResult createSets(VitrailTarget_T& target, const VitrailTargetDesc& desc) {
-  const VitrailContext_T& context = *target.context;
-  VkResult result = createDescriptorPool(target);
-  if (result != VK_SUCCESS) return result;
-
-  std::array<VkDescriptorSetLayout, 1 + VITRAIL_MAX_COLOR_VIEWS> layouts{};
-  layouts.fill(context.colorSetLayout);
-  layouts[0] = context.setLayout;
-  std::array<VkDescriptorSet, 1 + VITRAIL_MAX_COLOR_VIEWS> sets{};
-  VkDescriptorSetAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-  info.descriptorPool = target.pool;
-  info.descriptorSetCount = 1 + target.colorViewCount;
-  info.pSetLayouts = layouts.data();
-  result = context.vk.AllocateDescriptorSets(context.device, &info, sets.data());
-  if (result != VK_SUCCESS) return result;
-
-  target.set = sets[0];
-  writeBufferSet(target);
-  for (std::uint32_t i = 0; i < target.colorViewCount; ++i) {
-    target.colorSets[i] = sets[1 + i];
-    writeColorSet(target, target.colorSets[i], desc.colorViews[i]);
   }
   return VK_SUCCESS;
 }
 
+// `desc` has passed checkTarget().
 VkResult build(VitrailTarget_T& target, const VitrailTargetDesc& desc) {
-  const char* prefix = desc.debugName != nullptr ? desc.debugName : "vitrail";
-  VkResult result = createBuffers(target, desc, prefix);
-  if (result != VK_SUCCESS) return result; // the log has the reason
-  result = createSets(target, desc);
-  if (result != VK_SUCCESS) return target.context->log.fail(result, "the target's descriptor sets could not be made");
-  target.context->name(VK_OBJECT_TYPE_DESCRIPTOR_POOL, target.pool, prefix);
-  target.context->name(VK_OBJECT_TYPE_DESCRIPTOR_SET, target.set, prefix);
-  for (std::uint32_t i = 0; i < target.colorViewCount; ++i) {
-    target.context->name(VK_OBJECT_TYPE_DESCRIPTOR_SET, target.colorSets[i], prefix);
+  target.desc = desc;
+  target.debugName = desc.debugName;
+  target.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
+  target.constants = constantsOf(desc);
+  keepViews(target, desc.views);
+  if (desc.memoryBudget != 0) {
+    target.desc.nodeCapacity = std::min(desc.nodeCapacity, budgetCapacity(target.context, desc, desc.areaPixels));
   }
-  return VK_SUCCESS;
+  VkResult result = target.isCompute() ? findComputePipelines(target) : createFragmentPipelines(target);
+  if (result == VK_SUCCESS) result = createStats(target);
+  if (result == VK_SUCCESS) {
+    result = target.storage.create(*target.context, storageInfo(target, target.desc.nodeCapacity));
+  }
+  return result;
 }
 
 } // namespace
 
+StorageInfo storageInfo(const VitrailTarget_T& target, std::uint32_t nodeCapacity) {
+  StorageInfo info;
+  info.extent = target.desc.extent;
+  info.areaPixels = target.desc.areaPixels;
+  info.nodeCapacity = nodeCapacity;
+  info.format = target.desc.nodeFormat;
+  info.keepSums = target.keepSums;
+  info.buffer = target.desc.buffer;
+  info.bufferOffset = target.desc.bufferOffset;
+  info.views = target.desc.views;
+  info.debugName = target.debugName.c_str();
+  return info;
+}
+
+VkResult replaceStorage(VitrailTarget_T& target, const StorageInfo& info, std::uint64_t frame) {
+  Storage made;
+  const VkResult result = made.create(*target.context, info);
+  if (result != VK_SUCCESS) {
+    made.destroy(*target.context);
+    return result;
+  }
+  target.retired.push_back({target.storage, frame == 0 ? 0 : frame - 1});
+  target.storage = made;
+  return VK_SUCCESS;
+}
+
+void freeRetired(VitrailTarget_T& target, std::uint64_t frame) {
+  // That the host records `frame` says that frame - framesInFlight has finished.
+  const auto finished = [&](Retired& retired) {
+    if (frame < target.desc.framesInFlight || retired.lastFrame > frame - target.desc.framesInFlight) return false;
+    retired.storage.destroy(*target.context);
+    return true;
+  };
+  target.retired.erase(std::remove_if(target.retired.begin(), target.retired.end(), finished), target.retired.end());
+}
+
 } // namespace vitrail
+
+extern "C" VitrailResolve vitrailDefaultResolve(VitrailContext context, const VitrailTargetDesc* desc) {
+  const bool perSample = desc->samples > 1 && desc->msaaResolve == VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
+  const VkFormat format = desc->colorFormat != VK_FORMAT_UNDEFINED ? desc->colorFormat : VK_FORMAT_R16G16B16A16_SFLOAT;
+  const bool writable = format == VK_FORMAT_R16G16B16A16_SFLOAT || format == VK_FORMAT_R32G32B32A32_SFLOAT;
+  if (perSample || !writable || desc->views.count == 0 || desc->views.color == nullptr) return VITRAIL_RESOLVE_FRAGMENT;
+  VkFormatProperties properties{};
+  context->vk.GetPhysicalDeviceFormatProperties(context->physicalDevice, format, &properties);
+  const bool stores = (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) != 0;
+  return stores ? VITRAIL_RESOLVE_COMPUTE : VITRAIL_RESOLVE_FRAGMENT;
+}
+
+extern "C" VkResult vitrailTargetRequirements(VitrailContext context, const VitrailTargetDesc* desc,
+                                              VitrailRequirements* requirements) {
+  *requirements = {};
+  const VitrailTargetDesc full = vitrail::withDefaults(context, *desc);
+  const VkResult result = vitrail::checkMemory(context, full);
+  if (result != VK_SUCCESS) return result;
+  const bool sums = full.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
+  requirements->size =
+      vitrail::layoutStorage(full.areaPixels, full.nodeCapacity, full.nodeFormat, sums, context->limits.alignment)
+          .total;
+  requirements->alignment = context->limits.alignment;
+  requirements->usage = vitrail::storageUsage(*context);
+  return VK_SUCCESS;
+}
 
 extern "C" VkResult vitrailCreateTarget(VitrailContext context, const VitrailTargetDesc* desc, VitrailTarget* target) {
   if (target == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
   *target = nullptr;
   if (context == nullptr || desc == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
-  vitrail::ResolvePipelines resolve;
-  VkResult result = vitrail::check(*context, *desc);
-  if (result == VK_SUCCESS) result = vitrail::findPipelines(*context, desc->colorFormat, &resolve);
+  const VitrailTargetDesc full = vitrail::withDefaults(context, *desc);
+  VkResult result = vitrail::checkTarget(context, full);
   if (result != VK_SUCCESS) return result;
 
   std::unique_ptr<VitrailTarget_T> made(new (std::nothrow) VitrailTarget_T);
   if (!made) return context->log.fail(VK_ERROR_OUT_OF_HOST_MEMORY, "no memory for a target");
   made->context = context;
-  made->extent = desc->extent;
-  made->capacity = desc->nodeCapacity;
-  made->framesInFlight = desc->framesInFlight != 0 ? desc->framesInFlight : vitrail::kDefaultFramesInFlight;
-  made->resolve = resolve;
-  made->colorViewCount = desc->colorViewCount;
-  result = vitrail::build(*made, *desc);
+  result = vitrail::build(*made, full);
   if (result != VK_SUCCESS) {
     vitrailDestroyTarget(made.release());
-    return result;
+    return result; // the log has the reason
   }
   *target = made.release();
   return VK_SUCCESS;
@@ -225,17 +226,73 @@ extern "C" void vitrailDestroyTarget(VitrailTarget target) {
   if (target == nullptr) return;
   const std::unique_ptr<VitrailTarget_T> owned(target);
   const VitrailContext_T& context = *target->context;
-  context.vk.DestroyDescriptorPool(context.device, target->pool, context.allocator);
-  for (vitrail::Buffer* buffer :
-       {&target->parameters, &target->control, &target->heads, &target->nodes, &target->longLists, &target->stats}) {
-    buffer->destroy(context);
+  for (vitrail::Retired& retired : target->retired) retired.storage.destroy(context);
+  target->storage.destroy(context);
+  target->stats.destroy(context);
+  context.vk.DestroyPipeline(context.device, target->pipelines.fragment, context.allocator);
+}
+
+extern "C" VkResult vitrailResizeTarget(VitrailTarget target, const VitrailResizeInfo* info) {
+  VitrailContext context = target->context;
+  if (target->desc.buffer != VK_NULL_HANDLE) {
+    return context->log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                             "a target in the host's memory cannot be resized: make another one");
+  }
+  VitrailTargetDesc wanted = target->desc;
+  wanted.extent = info->extent;
+  wanted.areaPixels = info->areaPixels;
+  wanted.views = info->views;
+  if (wanted.memoryBudget != 0) wanted.nodeCapacity = target->storage.nodeCapacity;
+  wanted = vitrail::withDefaults(context, wanted);
+  VkResult result = vitrail::checkTarget(context, wanted);
+  if (result != VK_SUCCESS) return result;
+  if (wanted.memoryBudget != 0) {
+    wanted.nodeCapacity = std::min(wanted.nodeCapacity, vitrail::budgetCapacity(context, wanted, wanted.areaPixels));
+  }
+  vitrail::StorageInfo storage = vitrail::storageInfo(*target, wanted.nodeCapacity);
+  storage.extent = wanted.extent;
+  storage.areaPixels = wanted.areaPixels;
+  storage.views = wanted.views;
+  vitrail::freeRetired(*target, info->frame);
+  result = vitrail::replaceStorage(*target, storage, info->frame);
+  if (result != VK_SUCCESS) return result;
+  target->desc.extent = wanted.extent;
+  target->desc.areaPixels = wanted.areaPixels;
+  vitrail::keepViews(*target, wanted.views);
+  target->demand = {};
+  return VK_SUCCESS;
+}
+
+extern "C" VkDescriptorSet vitrailTargetDescriptorSet(VitrailTarget target) { return target->storage.set; }
+
+extern "C" void vitrailTargetMemory(VitrailTarget target, VitrailMemory* memory) {
+  const vitrail::Storage& storage = target->storage;
+  *memory = {};
+  memory->nodeCapacity = storage.nodeCapacity;
+  memory->nodeBytes = storage.layout.nodes.size;
+  memory->headBytes = storage.layout.heads.size;
+  memory->totalBytes = storage.layout.total + target->stats.size;
+  memory->otherBytes = memory->totalBytes - memory->nodeBytes - memory->headBytes;
+  for (const vitrail::Retired& retired : target->retired) memory->totalBytes += retired.storage.layout.total;
+}
+
+extern "C" void vitrailCollectSpecialization(const VitrailTargetDesc* desc, VitrailSpecialization* specialization) {
+  constexpr std::uint32_t kFirstId = 1700; // VITRAIL_CONSTANT_ID of shaders/vitrail/collect.glsl
+  specialization->data[0] = desc->nodeFormat;
+  specialization->data[1] = desc->samples != 0 ? desc->samples : VK_SAMPLE_COUNT_1_BIT;
+  specialization->data[2] = desc->overflow == VITRAIL_OVERFLOW_APPROXIMATE ? 1 : 0;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    specialization->entries[i] = {kFirstId + i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)),
+                                  sizeof(std::uint32_t)};
   }
 }
 
-extern "C" VkDescriptorSet vitrailTargetDescriptorSet(VitrailTarget target) { return target->set; }
-
-extern "C" void vitrailTargetMemory(VitrailTarget target, VitrailMemory* memory) {
-  memory->nodeBytes = vitrail::nodePoolBytes(target->capacity);
-  memory->headBytes = target->heads.size;
-  memory->otherBytes = target->parameters.size + target->control.size + target->longLists.size + target->stats.size;
+extern "C" void vitrailStencilMark(VkStencilOpState* state) {
+  *state = {};
+  state->failOp = VK_STENCIL_OP_KEEP;
+  state->passOp = VK_STENCIL_OP_INCREMENT_AND_CLAMP;
+  state->depthFailOp = VK_STENCIL_OP_KEEP;
+  state->compareOp = VK_COMPARE_OP_ALWAYS;
+  state->compareMask = 0xffU;
+  state->writeMask = 0xffU;
 }

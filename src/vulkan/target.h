@@ -1,11 +1,15 @@
-// The buffers and descriptor sets of one view.
+// One view: its memory now, the memory that frames in flight still use, and how it is resolved.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "buffer.h"
 #include "context.h"
+#include "pipelines.h"
+#include "storage.h"
 #include "vitrail/layout.h"
 #include "vitrail/vitrail.h"
 
@@ -17,31 +21,74 @@ struct StatsSlot {
   layout::VitrailControl control;
   std::uint64_t tag; // frame + 1, so that a slot never written names no frame
 };
-static_assert(sizeof(StatsSlot) == 48);
+static_assert(sizeof(StatsSlot) == 80);
+
+// The pipelines of a target's resolve; null where its kind does not need one.
+struct ResolvePipelines {
+  VkPipeline shortLists = VK_NULL_HANDLE;
+  VkPipeline mediumLists = VK_NULL_HANDLE;
+  VkPipeline longLists = VK_NULL_HANDLE;
+  VkPipeline overflow = VK_NULL_HANDLE;
+  VkPipeline sortFind = VK_NULL_HANDLE;
+  VkPipeline sortLong = VK_NULL_HANDLE;
+  VkPipeline clearSums = VK_NULL_HANDLE;
+  VkPipeline fragment = VK_NULL_HANDLE; // the target's own
+};
+
+// Memory that frames up to `lastFrame` use.
+struct Retired {
+  Storage storage;
+  std::uint64_t lastFrame = 0;
+};
+
+// What recent frames needed, for vitrailUpdateTarget.
+struct Demand {
+  std::uint64_t newestFrame = 0; // that was looked at, + 1
+  std::uint32_t lowFrames = 0;   // in a row that needed less than a quarter of the pool
+  std::uint64_t lowMost = 0;     // the most that any of those needed
+};
 
 } // namespace vitrail
 
 struct VitrailTarget_T {
   VitrailContext context = nullptr;
-  VkExtent2D extent{};
-  std::uint32_t capacity = 0;
-  std::uint32_t framesInFlight = 0;
-  std::uint64_t frame = 0;           // the frame being recorded
-  vitrail::ResolvePipelines resolve; // the context's
-  vitrail::Buffer parameters;
-  vitrail::Buffer control;
-  vitrail::Buffer heads;
-  vitrail::Buffer nodes;     // empty where the host brought its own
-  vitrail::Buffer longLists; // pixel numbers that the first resolve dispatch leaves to the second
-  vitrail::Buffer stats;     // StatsSlot[framesInFlight]
-  VkBuffer nodeBuffer = VK_NULL_HANDLE;
-  VkDeviceSize nodeOffset = 0;
-  VkDescriptorPool pool = VK_NULL_HANDLE;
-  VkDescriptorSet set = VK_NULL_HANDLE;
-  std::uint32_t colorViewCount = 0;
-  std::array<VkDescriptorSet, VITRAIL_MAX_COLOR_VIEWS> colorSets{};
+  // As given, with defaults filled in; the pointers in it are of no use any more.
+  VitrailTargetDesc desc{};
+  std::string debugName;
+  bool keepSums = false;
+  vitrail::Specialization constants;
+  vitrail::ResolvePipelines pipelines;
+  vitrail::Storage storage;
+  std::vector<vitrail::Retired> retired;
+  // The host's views, for when the memory changes and the images do not.
+  std::array<VkImageView, VITRAIL_MAX_COLOR_VIEWS> colorViews{};
+  std::array<VkImageView, VITRAIL_MAX_COLOR_VIEWS> opaqueViews{};
+  std::array<VkImageView, VITRAIL_MAX_COLOR_VIEWS> depthViews{};
+  vitrail::Buffer stats; // StatsSlot[framesInFlight]
+  // The pool of the frame in each slot.
+  std::array<std::uint32_t, VITRAIL_MAX_FRAMES_IN_FLIGHT> slotCapacity{};
+  vitrail::Demand demand;
+  std::uint64_t frame = 0; // the one being recorded
+  VkRect2D area{};         // of that frame
 
+  [[nodiscard]] bool isCompute() const { return desc.resolve == VITRAIL_RESOLVE_COMPUTE; }
+  [[nodiscard]] std::uint32_t slot(std::uint64_t ofFrame) const {
+    return static_cast<std::uint32_t>(ofFrame % desc.framesInFlight);
+  }
   [[nodiscard]] VkDeviceSize slotOffset(std::uint64_t ofFrame) const {
-    return (ofFrame % framesInFlight) * sizeof(vitrail::StatsSlot);
+    return slot(ofFrame) * sizeof(vitrail::StatsSlot);
   }
 };
+
+namespace vitrail {
+
+// Memory for the target as it is, with another pool.
+StorageInfo storageInfo(const VitrailTarget_T& target, std::uint32_t nodeCapacity);
+
+// Gives the target other memory from `frame` on; frames before it keep theirs. On error nothing changes.
+VkResult replaceStorage(VitrailTarget_T& target, const StorageInfo& info, std::uint64_t frame);
+
+// Frees what only frames used that have finished when `frame` is recorded.
+void freeRetired(VitrailTarget_T& target, std::uint64_t frame);
+
+} // namespace vitrail

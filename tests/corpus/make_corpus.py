@@ -331,6 +331,67 @@ def write_good_materials():
     m.save("tangents.gltf")
 
 
+def write_good_transmission():
+    """Panes that transmit light, side by side before a patterned wall, and one before them all."""
+    m = Model()
+    m.doc["scenes"] = [{"nodes": []}]
+    m.doc["nodes"] = []
+    m.doc["extensionsUsed"] = m.doc["extensionsRequired"] = ["KHR_materials_transmission"]
+    m.doc["extensionsUsed"] = m.doc["extensionsUsed"] + ["KHR_materials_unlit", "KHR_materials_emissive_strength"]
+    pattern = [[235, 90, 40, 255], [40, 60, 200, 255], [250, 240, 200, 255], [20, 20, 20, 255]]
+    wall = b"".join(bytes(pattern[(x + 2 * (y % 2)) % 4]) for y in range(4) for x in range(8))
+    m.put("images", {"uri": data_uri(png(8, 4, wall), "image/png")})
+    m.put("images", {"uri": data_uri(RED_GREEN, "image/png")})
+    m.put("samplers", {"magFilter": 9728, "minFilter": 9728, "wrapS": 33071, "wrapT": 33071})
+    m.put("textures", {"source": 0, "sampler": 0})
+    m.put("textures", {"source": 1, "sampler": 0})
+
+    attributes = {
+        "POSITION": m.accessor(QUAD, "VEC3"),
+        "NORMAL": m.accessor(UP * 4, "VEC3"),
+        "TEXCOORD_0": m.accessor([0, 1, 1, 1, 0, 0, 1, 0], "VEC2"),
+    }
+    indices = m.accessor([0, 1, 2, 2, 1, 3], "SCALAR", USHORT)
+
+    def pane(name, place, size, extension, color=(1, 1, 1, 1), metallic=0, turn=0.0, pbr=None, **fields):
+        material = m.put(
+            "materials",
+            {
+                "name": name,
+                "pbrMetallicRoughness": {
+                    "baseColorFactor": list(color),
+                    "metallicFactor": metallic,
+                    "roughnessFactor": 0.3,
+                    **(pbr or {}),
+                },
+                "extensions": {"KHR_materials_transmission": extension} if extension else {"KHR_materials_unlit": {}},
+                **fields,
+            },
+        )
+        mesh = m.mesh(attributes, indices=indices, material=material)
+        rotation = [0, math.sin(turn / 2), 0, math.cos(turn / 2)]
+        node = {"mesh": mesh, "translation": place, "scale": [*size, 1], "rotation": rotation}
+        m.doc["scenes"][0]["nodes"].append(m.put("nodes", node))
+
+    pane("wall", [-3.2, -1.2, -1], [6.4, 2.4], None, pbr={"baseColorTexture": {"index": 0}})
+    full = {"transmissionFactor": 1}
+    pane("clear", [-3, -0.8, 0], [0.9, 1.6], full, (0.3, 0.8, 1, 1), turn=0.2)
+    pane("half", [-2, -0.8, 0], [0.9, 1.6], {"transmissionFactor": 0.5}, (0.3, 0.8, 1, 1), turn=0.1)
+    textured = {"transmissionFactor": 0.9, "transmissionTexture": {"index": 1}}
+    pane("textured", [-1, -0.8, 0], [0.9, 1.6], textured, (1, 0.9, 0.3, 1))
+    pane("covers half", [0, -0.8, 0], [0.9, 1.6], full, (0.2, 0.9, 0.3, 0.5), alphaMode="BLEND")
+    cut = {"baseColorTexture": {"index": 1}}
+    pane("cut", [1, -0.8, 0], [0.9, 1.6], full, pbr=cut, alphaMode="MASK", alphaCutoff=0.75)
+    pane("metal", [2, -0.8, 0], [0.9, 1.6], full, (0.9, 0.6, 0.3, 1), metallic=1, turn=-0.1)
+    glow = {"KHR_materials_emissive_strength": {"emissiveStrength": 3}}
+    pane("glow", [-2.5, -0.2, 0.5], [5, 0.4], {"transmissionFactor": 0.8}, (1, 0.5, 0.8, 1), turn=0.05)
+    m.doc["materials"][-1]["emissiveFactor"] = [0.2, 0.05, 0]
+    m.doc["materials"][-1]["extensions"].update(glow)
+    camera = m.put("cameras", {"type": "perspective", "perspective": {"yfov": 0.6, "znear": 0.5, "zfar": 20}})
+    m.doc["scenes"][0]["nodes"].append(m.put("nodes", {"camera": camera, "translation": [0, 0, 6]}))
+    m.save("transmission.gltf")
+
+
 def write_good_plain():
     (GOOD / "colors.ply").write_text(
         "ply\nformat ascii 1.0\ncomment made by make_corpus.py\nelement vertex 4\n"
@@ -516,6 +577,8 @@ def bad_documents():
         setter("materials", 0, "pbrMetallicRoughness", "baseColorTexture", "index", 1), lambda: textured_quad(RED_GREEN)
     )
     yield simple("material_factor_range", "materials", [{"pbrMetallicRoughness": {"metallicFactor": 1e39}}])
+    glass = {"KHR_materials_transmission": {"transmissionTexture": {"index": 1}}}
+    yield "material_transmission_range", change(setter("materials", [{"extensions": glass}]), triangle_with(**image))
     yield simple("material_factor_type", "materials", [{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]}}])
     yield "texture_no_image", change(setter("textures", 0, {}), lambda: textured_quad(RED_GREEN))
     yield simple("mesh_mode", "meshes", 0, "primitives", 0, "mode", 7)
@@ -644,6 +707,7 @@ def main():
     write_good_shapes()
     write_good_poses()
     write_good_materials()
+    write_good_transmission()
     write_good_plain()
     write_bad()
 

@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "point_host.h"
+
 namespace vitrail::tool::test {
 
 namespace {
@@ -14,7 +16,10 @@ std::unique_ptr<Gpu>& sharedGpu() {
 
 class GpuEnvironment : public ::testing::Environment {
  public:
-  void TearDown() override { sharedGpu().reset(); }
+  void TearDown() override {
+    tests::dropContexts();
+    sharedGpu().reset();
+  }
 };
 
 const ::testing::Environment* const environment = ::testing::AddGlobalTestEnvironment(new GpuEnvironment);
@@ -37,9 +42,38 @@ void GpuTest::TearDown() {
 }
 
 RenderResult renderOnce(Gpu& gpu, const Scene& scene, const RenderOptions& options, std::optional<float> opacity,
-                        DrawOrder order) {
-  Renderer renderer(gpu, scene, opacity, order);
+                        DrawOrder order, const MethodOptions& method) {
+  Renderer renderer(gpu, scene, opacity, order, method);
   return renderer.render(options);
+}
+
+std::vector<MethodOptions> methodVariety(const Gpu& gpu) {
+  MethodOptions drawn;
+  drawn.resolve = VITRAIL_RESOLVE_FRAGMENT;
+  MethodOptions compact;
+  compact.nodes = VITRAIL_NODE_COMPACT;
+  compact.resolve = VITRAIL_RESOLVE_COMPUTE;
+  MethodOptions hdr = drawn;
+  hdr.nodes = VITRAIL_NODE_HDR;
+  std::vector<MethodOptions> methods = {compact, hdr};
+  for (const std::uint32_t samples : {2U, 4U, 8U}) {
+    if ((gpu.features().sampleCounts & samples) == 0) continue;
+    MethodOptions perPixel;
+    perPixel.samples = samples;
+    methods.push_back(perPixel);
+    if (!gpu.features().sampleRateShading) continue;
+    MethodOptions perSample = drawn;
+    perSample.samples = samples;
+    perSample.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
+    methods.push_back(perSample);
+  }
+  return methods;
+}
+
+std::string describe(const MethodOptions& method) {
+  return std::to_string(method.samples) + " samples, " + std::string(nameOf(method.nodes)) + ", " +
+         (method.resolve == VITRAIL_RESOLVE_DEFAULT ? "default resolve" : std::string(nameOf(method.resolve))) + ", " +
+         std::string(nameOf(method.msaaResolve));
 }
 
 RenderOptions usualOptions(const Scene& scene, std::uint32_t width, std::uint32_t height) {

@@ -1,6 +1,10 @@
 // What the GPU tests share: one device under the validation layer, and the rule that a validation error fails a test.
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "../../tool/draw/device.h"
@@ -21,7 +25,13 @@ class GpuTest : public ::testing::Test {
 
 // Renders once, with a renderer of its own.
 RenderResult renderOnce(Gpu& gpu, const Scene& scene, const RenderOptions& options, std::optional<float> opacity = {},
-                        DrawOrder order = DrawOrder::Forward);
+                        DrawOrder order = DrawOrder::Forward, const MethodOptions& method = {});
+
+// Ways to draw fragment lists on this device: every node format, resolve and kind of multisampling, each at least once.
+std::vector<MethodOptions> methodVariety(const Gpu& gpu);
+
+// A method's options in a few words.
+std::string describe(const MethodOptions& method);
 
 // Options for a picture of a scene as the tool would take it: the scene's first camera where it has one, else framed
 // from the three-quarter view; the scene's background where it has one, else white.

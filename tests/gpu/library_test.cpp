@@ -1,107 +1,128 @@
-// The library through its public face, list by list: every list length against the reference resolve in double
-// precision, pool capacities around what a frame needs, equal depths, hostile colours, statistics.
+// The library through its public face, list by list, at one sample: every list length against the reference resolve in
+// double precision, in every node format, blend mode and way to resolve; equal depths, hostile values, statistics.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <random>
 
-#include "core/reference_resolve.h"
 #include "gpu_fixture.h"
-#include "point_host.h"
+#include "point_reference.h"
 
 namespace vitrail::tests {
 namespace {
 
 class LibraryTest : public tool::test::GpuTest {};
 
-enum class Order { Forward, Reversed, Shuffled };
-
-std::vector<Point> ordered(std::vector<Point> points, Order order) {
-  if (order == Order::Reversed) std::reverse(points.begin(), points.end());
-  if (order == Order::Shuffled) {
-    std::mt19937 random(11);
-    std::shuffle(points.begin(), points.end(), random);
-  }
-  return points;
-}
-
-// `lengths[i]` fragments on pixel i of an image of the given width: random depths and colours, the nearest first. Every
-// tenth depth repeats the one before, so that the rest of the node decides. Colours and alphas are on the format's
-// grid, so that nothing is rounded; long lists get its thinnest layers, so that deep ones still matter.
-std::vector<Point> lists(const std::vector<std::uint32_t>& lengths, std::uint32_t width, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  const auto upTo = [&](std::uint32_t most) { return static_cast<std::uint32_t>(random() % (most + 1)); };
-  const auto channel = [&] { return static_cast<float>(srgbToLinear(upTo(255) / 255.0)); };
-  std::vector<Point> points;
-  for (std::uint32_t i = 0; i < lengths.size(); ++i) {
-    std::vector<float> depths(lengths[i]);
-    for (float& depth : depths) depth = static_cast<float>(random() >> 8U) / 16777216.0F;
-    std::sort(depths.begin(), depths.end());
-    for (std::size_t k = 10; k < depths.size(); k += 10) depths[k] = depths[k - 1];
-    const std::uint32_t alphas = lengths[i] > 300 ? 0 : lengths[i] > 40 ? 15 : 254;
-    for (const float depth : depths) {
-      const float alpha = static_cast<float>(1 + upTo(alphas)) / 255.0F;
-      points.push_back({i % width, i / width, depth, {channel(), channel(), channel(), alpha}});
-    }
-  }
-  return points;
-}
-
-// What the picture must be, from the points.
-std::vector<Color> expectedPixels(const PointHostDesc& desc, const std::vector<Point>& points) {
-  const bool nearestIsOne = desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
-  std::vector<std::vector<StoredFragment>> stored(std::size_t{desc.width} * desc.height);
-  for (const Point& p : points) {
-    const Color color = {p.color[0], p.color[1], p.color[2], p.color[3]};
-    stored[p.y * desc.width + p.x].push_back({packColor(color), packDepth(p.depth, nearestIsOne)});
-  }
-  const Color behind = {desc.behind[0], desc.behind[1], desc.behind[2], desc.behind[3]};
-  std::vector<Color> pixels;
-  pixels.reserve(stored.size());
-  for (const auto& list : stored) pixels.push_back(resolveReference(list, behind, nearestIsOne));
-  return pixels;
-}
-
-double largestError(const std::vector<std::array<float, 4>>& got, const std::vector<Color>& expected) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    for (unsigned c = 0; c < 4; ++c) worst = std::max(worst, std::abs(double{got[i][c]} - expected[i][c]));
-  }
-  return worst;
-}
-
 // What single-precision blending and a device's pow() may add up to. A fragment at rank n of a list of 1/255 layers
 // weighs 1/255 * (254/255)^n: a wrong one is seen down to rank 1,500.
 constexpr double kTolerance = 1e-5;
 
-TEST_F(LibraryTest, EveryListLengthMatchesTheReferenceInEveryOrder) {
-  PointHostDesc desc;
-  desc.width = 16;
-  desc.height = 8;
-  desc.behind = {0.25F, 0.5F, 1.0F, 1.0F};
+// 0 to 67: every remainder of the sorting blocks, twice and more; and some beyond.
+std::vector<std::uint32_t> manyLengths(std::initializer_list<std::uint32_t> longer) {
   std::vector<std::uint32_t> lengths(68);
-  std::iota(lengths.begin(), lengths.end(), 0U); // 0 to 67: every remainder of the sorting block, twice and more
-  for (std::uint32_t longer : {127U, 128U, 129U, 255U, 256U, 700U, 1023U, 1025U, 5000U, 15000U})
-    lengths.push_back(longer);
-  const std::vector<Point> points = lists(lengths, desc.width, 5);
-  desc.capacity = static_cast<std::uint32_t>(points.size());
+  std::iota(lengths.begin(), lengths.end(), 0U);
+  lengths.insert(lengths.end(), longer);
+  return lengths;
+}
 
-  for (VitrailDepthOrder depthOrder : {VITRAIL_DEPTH_NEAREST_IS_ZERO, VITRAIL_DEPTH_NEAREST_IS_ONE}) {
-    desc.depthOrder = depthOrder;
-    PointHost host(gpu(), desc);
-    const PointResult forward = host.draw(points);
-    EXPECT_LT(largestError(forward.pixels, expectedPixels(desc, points)), kTolerance);
-    EXPECT_EQ(forward.stats.exact, 1U);
-    EXPECT_EQ(forward.stats.fragmentsStored, points.size());
-    EXPECT_EQ(forward.stats.layersMax, 15000U);
-    EXPECT_EQ(forward.stats.coveredPixels, lengths.size() - 1); // the first list is empty
-    for (Order order : {Order::Reversed, Order::Shuffled}) {
-      EXPECT_TRUE(host.draw(ordered(points, order)).pixels == forward.pixels) << "order changes the picture";
+void expectLikeReference(const PointResult& result, const Expected& expected, double tolerance = kTolerance) {
+  EXPECT_LT(largestError(result.pixels, expected.pixels), tolerance);
+  EXPECT_EQ(result.stats.exact, 1U);
+  EXPECT_EQ(result.stats.fragmentsRequested, expected.fragments);
+  EXPECT_EQ(result.stats.fragmentsStored, expected.fragments);
+  EXPECT_EQ(result.stats.fragmentsMissing, 0U);
+  EXPECT_EQ(result.stats.layersMax, expected.layersMax);
+  EXPECT_EQ(result.stats.coveredPixels, expected.coveredPixels);
+  EXPECT_EQ(result.stats.approximatePixels, 0U);
+  EXPECT_EQ(result.stats.cutPixels, 0U);
+}
+
+TEST_F(LibraryTest, EveryListLengthMatchesTheReferenceInEveryOrder) {
+  for (const Way& way : everyWay(gpu(), 1)) {
+    for (const VitrailDepthOrder depthOrder : {VITRAIL_DEPTH_NEAREST_IS_ZERO, VITRAIL_DEPTH_NEAREST_IS_ONE}) {
+      SCOPED_TRACE(way.name);
+      PointHostDesc desc;
+      desc.width = 16;
+      desc.height = 8;
+      desc.behind = {0.25F, 0.5F, 1.0F, 1.0F};
+      desc.depthOrder = depthOrder;
+      apply(way, desc);
+      const std::vector<Point> points =
+          randomLists(desc, manyLengths({127, 128, 129, 255, 256, 700, 1023, 1025, 5000, 15000}), 5);
+      desc.capacity = static_cast<std::uint32_t>(points.size());
+      PointHost host(gpu(), desc);
+      const PointResult forward = host.draw(points);
+      expectLikeReference(forward, expectedFrame(desc, points));
+      for (const Order order : {Order::Reversed, Order::Shuffled}) {
+        EXPECT_TRUE(host.draw(ordered(points, order)).pixels == forward.pixels) << "order changes the picture";
+      }
     }
   }
+}
+
+// Colours of `hdr` reach 8 here, and what lists add up to in it more: errors are relative.
+TEST_F(LibraryTest, EveryFormatAndBlendModeMatchesTheReferenceInEveryOrder) {
+  for (const VitrailNodeFormat format : nodeFormats(1)) {
+    for (const Way& way : everyWay(gpu(), 1)) {
+      if (way.resolve == VITRAIL_RESOLVE_FRAGMENT && !gpu().features().dualSourceBlending) continue;
+      SCOPED_TRACE(way.name + ", format " + std::to_string(format));
+      PointHostDesc desc;
+      desc.width = 16;
+      desc.height = 8;
+      desc.behind = {0.25F, 0.5F, 1.0F, 0.75F};
+      desc.nodes = format;
+      desc.depthOrder = way.stencilMark ? VITRAIL_DEPTH_NEAREST_IS_ONE : VITRAIL_DEPTH_NEAREST_IS_ZERO;
+      desc.specialized = true;
+      apply(way, desc);
+      PointVariety variety;
+      variety.blendModes = true;
+      variety.brightest = format == VITRAIL_NODE_HDR ? 8.0F : 1.0F;
+      const std::vector<Point> points = randomLists(desc, manyLengths({100, 300, 1200}), 6, variety);
+      desc.capacity = static_cast<std::uint32_t>(points.size());
+      PointHost host(gpu(), desc);
+      const PointResult forward = host.draw(ordered(points, Order::Shuffled));
+      expectLikeReference(forward, expectedFrame(desc, points), 2e-5);
+      EXPECT_TRUE(host.draw(ordered(points, Order::Reversed)).pixels == forward.pixels);
+    }
+  }
+}
+
+// Every way computes the same picture, up to what fixed-function blending rounds.
+TEST_F(LibraryTest, BothResolvesAgree) {
+  std::vector<std::vector<FloatColor>> pictures;
+  for (const Way& way : everyWay(gpu(), 1)) {
+    PointHostDesc desc;
+    desc.behind = {0.2F, 0.4F, 0.6F, 1.0F};
+    apply(way, desc);
+    const std::vector<Point> points = randomLists(desc, {0, 1, 2, 5, 16, 17, 31, 32, 33, 80, 400}, 8);
+    desc.capacity = static_cast<std::uint32_t>(points.size());
+    pictures.push_back(PointHost(gpu(), desc).draw(points).pixels);
+  }
+  for (const auto& picture : pictures) {
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+      for (unsigned c = 0; c < 4; ++c) EXPECT_NEAR(picture[i][c], pictures[0][i][c], 1e-6F) << "pixel " << i;
+    }
+  }
+}
+
+// Without dual-source blending a filter's colour is blended as grey, and said to be.
+TEST_F(LibraryTest, WithoutDualSourceBlendingColouredFiltersAreCounted) {
+  PointHostDesc desc;
+  desc.resolve = VITRAIL_RESOLVE_FRAGMENT;
+  desc.dualSourceBlending = false;
+  desc.behind = {0.5F, 0.5F, 0.5F, 1.0F};
+  const std::vector<Point> points = {{0, 0, 0.5F, {1.0F, 0.0F, 0.0F, 1.0F}, VITRAIL_BLEND_MULTIPLY},
+                                     {2, 0, 0.5F, {1.0F, 0.0F, 0.0F, 0.2F}}};
+  desc.capacity = 2;
+  const PointResult result = PointHost(gpu(), desc).draw(points);
+  EXPECT_EQ(result.stats.approximatePixels, 1U);
+  EXPECT_EQ(result.stats.exact, 0U);
+  for (unsigned c = 0; c < 3; ++c) EXPECT_NEAR(result.pixels[0][c], 0.5F / 3.0F, 1e-6F); // the mean of 1, 0, 0
+  const Expected expected = expectedFrame(desc, points);
+  for (unsigned c = 0; c < 3; ++c) EXPECT_NEAR(result.pixels[2][c], expected.pixels[2][c], 1e-6);
 }
 
 TEST_F(LibraryTest, TheNearestFragmentIsOnTop) {
@@ -156,49 +177,29 @@ TEST_F(LibraryTest, ManyEqualFragmentsAreAllBlendedOnce) {
   desc.capacity = static_cast<std::uint32_t>(points.size());
   PointHost host(gpu(), desc);
   const PointResult result = host.draw(ordered(points, Order::Shuffled));
-  EXPECT_LT(largestError(result.pixels, expectedPixels(desc, points)), 1e-4);
+  EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), 1e-4);
   EXPECT_TRUE(host.draw(points).pixels == result.pixels);
 }
 
 TEST_F(LibraryTest, EqualDepthsAreOrderedByTheNodeAndNotByArrival) {
-  PointHostDesc desc;
-  desc.width = 1;
-  desc.height = 1;
-  std::vector<Point> points;
-  for (std::uint32_t i = 0; i < 40; ++i) {
-    const auto v = static_cast<float>(i) / 40.0F;
-    points.push_back({0, 0, 0.5F, {v, 1.0F - v, 0.3F, 0.4F}});
-  }
-  desc.capacity = static_cast<std::uint32_t>(points.size());
-  PointHost host(gpu(), desc);
-  const PointResult forward = host.draw(points);
-  EXPECT_LT(largestError(forward.pixels, expectedPixels(desc, points)), kTolerance);
-  EXPECT_TRUE(host.draw(ordered(points, Order::Reversed)).pixels == forward.pixels);
-  EXPECT_TRUE(host.draw(ordered(points, Order::Shuffled)).pixels == forward.pixels);
-}
-
-TEST_F(LibraryTest, CapacitiesAroundTheNeedCountWhatIsMissing) {
-  const std::vector<std::uint32_t> lengths = {0, 1, 2, 17, 40, 100, 3, 900};
-  const std::vector<Point> points = ordered(lists(lengths, 8, 3), Order::Shuffled);
-  const auto need = static_cast<std::uint32_t>(points.size());
-  for (const std::uint32_t capacity : {0U, 1U, need / 2, need - 1, need, need + 1}) {
-    PointHostDesc desc;
-    desc.capacity = capacity;
-    PointHost host(gpu(), desc);
-    for (int repetition = 0; repetition < 2; ++repetition) { // the second frame starts from an overflowed one
-      const PointResult result = host.draw(points);
-      const std::uint32_t stored = std::min(capacity, need);
-      EXPECT_EQ(result.stats.fragmentsRequested, need) << "capacity " << capacity;
-      EXPECT_EQ(result.stats.fragmentsStored, stored) << "capacity " << capacity;
-      EXPECT_EQ(result.stats.fragmentsMissing, need - stored) << "capacity " << capacity;
-      EXPECT_EQ(result.stats.exact, stored == need ? 1U : 0U) << "capacity " << capacity;
-      EXPECT_TRUE(host.guardsUntouched()) << "capacity " << capacity;
-      for (const auto& pixel : result.pixels) {
-        for (const float channel : pixel) EXPECT_TRUE(channel >= 0.0F && channel <= 1.0F);
-      }
-      if (stored == need) {
-        EXPECT_LT(largestError(result.pixels, expectedPixels(desc, points)), kTolerance);
-      }
+  for (const VitrailNodeFormat format : nodeFormats(1)) {
+    for (const Way& way : everyWay(gpu(), 1)) {
+      if (format != VITRAIL_NODE_STANDARD && way.resolve == VITRAIL_RESOLVE_FRAGMENT) continue; // keys are keys
+      SCOPED_TRACE(way.name + ", format " + std::to_string(format));
+      PointHostDesc desc;
+      desc.nodes = format;
+      apply(way, desc);
+      PointVariety variety;
+      variety.blendModes = way.resolve == VITRAIL_RESOLVE_COMPUTE;
+      std::vector<Point> points = randomLists(desc, {2, 3, 9, 16, 17, 40, 90}, 4, variety);
+      for (Point& point : points) point.depth = 0.5F;
+      points.push_back(points.back()); // two that are the same in everything
+      desc.capacity = static_cast<std::uint32_t>(points.size());
+      PointHost host(gpu(), desc);
+      const PointResult forward = host.draw(points);
+      EXPECT_LT(largestError(forward.pixels, expectedFrame(desc, points).pixels), kTolerance);
+      EXPECT_TRUE(host.draw(ordered(points, Order::Reversed)).pixels == forward.pixels);
+      EXPECT_TRUE(host.draw(ordered(points, Order::Shuffled)).pixels == forward.pixels);
     }
   }
 }
@@ -207,59 +208,178 @@ TEST_F(LibraryTest, CapacitiesAroundTheNeedCountWhatIsMissing) {
 // blended silently wrong. On a GPU the same list is exact.
 TEST_F(LibraryTest, AListThatTheDriverCutsIsReported) {
   PointHostDesc desc;
-  std::vector<Point> points = lists({300000U, 3U}, desc.width, 9);
+  const std::vector<Point> points = randomLists(desc, {300000U, 3U}, 9);
   desc.capacity = static_cast<std::uint32_t>(points.size());
   const PointResult result = PointHost(gpu(), desc).draw(points);
   EXPECT_EQ(result.stats.fragmentsMissing, 0U);
   EXPECT_EQ(result.stats.exact == 1U, result.stats.cutPixels == 0U);
   if (result.stats.exact == 1U) {
-    EXPECT_LT(largestError(result.pixels, expectedPixels(desc, points)), kTolerance);
+    EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kTolerance);
   } else {
     EXPECT_EQ(result.stats.cutPixels, 1U);
   }
 }
 
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
 TEST_F(LibraryTest, HostileColoursStayInTheirPixel) {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  PointHostDesc desc;
-  desc.behind = {0.5F, 0.5F, 0.5F, 1.0F};
-  const std::vector<Point> points = {
-      {0, 0, 0.5F, {kNan, 0.5F, 0.5F, 1.0F}},      {1, 0, 0.5F, {0.5F, 0.5F, 0.5F, kNan}},
-      {2, 0, 0.5F, {kInfinity, 0.0F, 0.0F, 1.0F}}, {3, 0, 0.5F, {-kInfinity, -1.0F, 2.0F, 7.0F}},
-      {4, 0, 0.5F, {0.5F, 0.5F, 0.5F, -3.0F}},     {5, 0, 0.5F, {0.5F, 0.5F, 0.5F, 0.001F}},
-  };
-  desc.capacity = static_cast<std::uint32_t>(points.size());
-  const PointResult result = PointHost(gpu(), desc).draw(points);
-  EXPECT_EQ(result.pixels[0][0], 0.0F);
-  EXPECT_EQ(result.pixels[1], desc.behind);
-  EXPECT_EQ(result.pixels[2], (std::array<float, 4>{1.0F, 0.0F, 0.0F, 1.0F}));
-  EXPECT_EQ(result.pixels[3], (std::array<float, 4>{0.0F, 0.0F, 1.0F, 1.0F}));
-  EXPECT_EQ(result.pixels[4], desc.behind);
-  EXPECT_EQ(result.pixels[5], desc.behind);
-  for (std::size_t i = points.size(); i < result.pixels.size(); ++i) EXPECT_EQ(result.pixels[i], desc.behind);
-  // Stored alpha 0 is neither stored nor counted: points 1, 4 and 5.
-  EXPECT_EQ(result.stats.fragmentsRequested, 3U);
+  for (const VitrailNodeFormat format : nodeFormats(1)) {
+    SCOPED_TRACE(format);
+    const float brightest = format == VITRAIL_NODE_HDR ? 65504.0F : 1.0F;
+    PointHostDesc desc;
+    desc.nodes = format;
+    desc.behind = {0.5F, 0.5F, 0.5F, 1.0F};
+    const std::vector<Point> points = {
+        {0, 0, 0.5F, {kNan, 0.5F, 0.5F, 1.0F}},
+        {1, 0, 0.5F, {0.5F, 0.5F, 0.5F, kNan}},
+        {2, 0, 0.5F, {kInfinity, 0.0F, 0.0F, 1.0F}},
+        {3, 0, 0.5F, {-kInfinity, -1.0F, kInfinity, 7.0F}},
+        {4, 0, 0.5F, {0.5F, 0.5F, 0.5F, -3.0F}},
+        {5, 0, 0.5F, {0.5F, 0.5F, 0.5F, 0.000007F}},
+        {6, 0, 0.5F, {kNan, -1.0F, 0.0F, 0.0F}, VITRAIL_BLEND_PREMULTIPLIED},
+    };
+    desc.capacity = static_cast<std::uint32_t>(points.size());
+    const PointResult result = PointHost(gpu(), desc).draw(points);
+    EXPECT_EQ(result.pixels[0][0], 0.0F);
+    EXPECT_EQ(result.pixels[1], desc.behind);
+    EXPECT_EQ(result.pixels[2], (FloatColor{brightest, 0.0F, 0.0F, 1.0F}));
+    EXPECT_EQ(result.pixels[3], (FloatColor{0.0F, 0.0F, brightest, 1.0F}));
+    EXPECT_EQ(result.pixels[4], desc.behind);
+    EXPECT_EQ(result.pixels[5], desc.behind);
+    for (std::size_t i = 6; i < result.pixels.size(); ++i) EXPECT_EQ(result.pixels[i], desc.behind);
+    // Stored alpha 0 is neither stored nor counted: points 1, 4, 5 and 6.
+    EXPECT_EQ(result.stats.fragmentsRequested, 3U);
+  }
 }
 
+// What becomes of a point at such a depth is the rasterizer's business; all other pixels are as they would be.
+TEST_F(LibraryTest, HostileDepthsStayInTheirPixel) {
+  for (const VitrailNodeFormat format : nodeFormats(1)) {
+    PointHostDesc desc;
+    desc.nodes = format;
+    std::vector<Point> points = randomLists(desc, {0, 4, 20, 40}, 12);
+    const Expected expected = expectedFrame(desc, points);
+    for (const float depth : {kNan, kInfinity, -kInfinity, 1e30F, -0.0F}) {
+      points.push_back({0, 0, depth, {0.5F, 0.25F, 1.0F, 0.5F}});
+    }
+    desc.capacity = static_cast<std::uint32_t>(points.size());
+    const PointResult result = PointHost(gpu(), desc).draw(ordered(points, Order::Shuffled));
+    EXPECT_EQ(result.stats.exact, 1U);
+    EXPECT_LT(largestError(std::span(result.pixels).subspan(1), std::span(expected.pixels).subspan(1)), kTolerance);
+    for (const float channel : result.pixels[0]) EXPECT_TRUE(channel >= 0.0F && channel <= 1.0F);
+  }
+}
+
+// The steps of the colour channels on the curve and of alpha; none: `hdr` has floats.
+struct Steps {
+  std::array<double, 3> color{};
+  double alpha = 0.0;
+};
+
+Steps stepsOf(VitrailNodeFormat format, std::uint32_t samples) {
+  switch (format) {
+    case VITRAIL_NODE_STANDARD:
+      return {{255, 255, 255}, 255};
+    case VITRAIL_NODE_COMPACT:
+      return samples == 1 ? Steps{{31, 63, 31}, 63} : Steps{{31, 31, 31}, 31};
+    default:
+      return {{}, 65535};
+  }
+}
+
+// One fragment a pixel over black: the picture is the stored colour, premultiplied, or white times the stored alpha.
+// Values lie anywhere between two steps; the bounds are those of VitrailNodeFormat.
 TEST_F(LibraryTest, ColourAndAlphaKeepTheirStatedRounding) {
-  // One fragment a pixel over black: the picture is the stored colour times the stored alpha.
+  constexpr std::uint32_t kValues = 2048;
+  std::vector<std::uint32_t> counts = sampleCounts(gpu());
+  counts.insert(counts.begin(), 1);
+  for (const std::uint32_t samples : counts) {
+    for (const VitrailNodeFormat format : nodeFormats(samples)) {
+      SCOPED_TRACE(std::to_string(samples) + " samples, format " + std::to_string(format));
+      PointHostDesc desc;
+      desc.nodes = format;
+      desc.samples = samples;
+      desc.width = kValues;
+      desc.height = 2;
+      const bool hdr = format == VITRAIL_NODE_HDR;
+      std::vector<Point> points;
+      std::vector<double> wanted;
+      for (std::uint32_t i = 0; i < kValues; ++i) {
+        const double step = (i + 0.37) / kValues;
+        wanted.push_back(hdr ? std::exp2(step * 38.0 - 22.0) : srgbToLinear(step)); // hdr: 2^-22 to 2^16
+        const auto grey = static_cast<float>(wanted.back());
+        points.push_back({i, 0, 0.5F, {grey, grey, grey, 1.0F}, VITRAIL_BLEND_PREMULTIPLIED});
+        points.push_back({i, 1, 0.5F, {1.0F, 1.0F, 1.0F, static_cast<float>(step)}});
+      }
+      desc.capacity = static_cast<std::uint32_t>(points.size());
+      const PointResult result = PointHost(gpu(), desc).draw(points);
+      const Steps steps = stepsOf(format, samples);
+      for (std::uint32_t i = 0; i < kValues; ++i) {
+        for (unsigned c = 0; c < 3; ++c) {
+          const double got = result.pixels[i][c];
+          if (hdr) {
+            ASSERT_NEAR(got, wanted[i], std::max(wanted[i] * 0x1p-10, 0x1p-24)) << i;
+          } else {
+            ASSERT_NEAR(linearToSrgb(got), linearToSrgb(wanted[i]), 0.5 / steps.color[c] + 2e-5) << i;
+          }
+        }
+        ASSERT_NEAR(double{result.pixels[kValues + i][0]}, (i + 0.37) / kValues, 0.5 / steps.alpha + 1e-6) << i;
+      }
+    }
+  }
+}
+
+TEST_F(LibraryTest, SurfacesBrighterThanOneSurviveInHdr) {
   PointHostDesc desc;
-  desc.width = 256;
-  desc.height = 2;
-  std::vector<Point> points;
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    const auto grey = static_cast<float>(srgbToLinear((static_cast<double>(i) + 0.3) / 255.3));
-    points.push_back({i, 0, 0.5F, {grey, grey, grey, 1.0F}});
-    points.push_back({i, 1, 0.5F, {1.0F, 1.0F, 1.0F, (static_cast<float>(i) + 0.3F) / 255.3F}});
+  desc.nodes = VITRAIL_NODE_HDR;
+  const std::vector<Point> points = {{0, 0, 0.2F, {0.0F, 0.0F, 0.0F, 0.5F}}, {0, 0, 0.7F, {40.0F, 2.0F, 0.0F, 1.0F}}};
+  desc.capacity = 2;
+  const FloatColor pixel = PointHost(gpu(), desc).draw(points).pixels[0];
+  EXPECT_NEAR(pixel[0], 20.0F, 1e-3F); // 0.5 is 32768/65535
+  EXPECT_NEAR(pixel[1], 1.0F, 1e-4F);
+}
+
+// Depths nearer than what the format tells apart count as equal, and the rest of the node orders them: as the reference
+// says, whose rounding the unit tests hold to the header.
+TEST_F(LibraryTest, CompactDepthsAreToldApartAsStated) {
+  for (const VitrailDepthOrder depthOrder : {VITRAIL_DEPTH_NEAREST_IS_ZERO, VITRAIL_DEPTH_NEAREST_IS_ONE}) {
+    PointHostDesc desc;
+    desc.nodes = VITRAIL_NODE_COMPACT;
+    desc.depthOrder = depthOrder;
+    desc.width = 64;
+    desc.height = 64;
+    std::vector<Point> points;
+    for (std::uint32_t i = 0; i < desc.width * desc.height; ++i) {
+      const float n = std::exp2(-32.0F * static_cast<float>(i) / 4096.0F);
+      const float other = n * (1.0F + 0x1p-14F * static_cast<float>(i % 17)); // up to two codes apart
+      for (const float nearness : {n, std::min(other, 1.0F)}) {
+        const float depth = depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE ? nearness : 1.0F - nearness;
+        const bool first = nearness == n;
+        points.push_back(
+            {i % desc.width, i / desc.width, depth, {first ? 1.0F : 0.0F, 0.0F, first ? 0.0F : 1.0F, 1.0F}});
+      }
+    }
+    desc.capacity = static_cast<std::uint32_t>(points.size());
+    const PointResult result = PointHost(gpu(), desc).draw(points);
+    EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kTolerance);
   }
-  desc.capacity = static_cast<std::uint32_t>(points.size());
-  const PointResult result = PointHost(gpu(), desc).draw(points);
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    const double wanted = (i + 0.3) / 255.3;
-    EXPECT_NEAR(linearToSrgb(double{result.pixels[i][0]}), wanted, 0.5 / 255.0 + 2e-5) << i;
-    EXPECT_NEAR(double{result.pixels[256 + i][0]}, wanted, 0.5 / 255.0 + 1e-6) << i;
-  }
+}
+
+// A shader that is specialized for another target stores nothing there, and says so.
+TEST_F(LibraryTest, AShaderOfAnotherTargetStoresNothing) {
+  PointHostDesc desc;
+  desc.capacity = 4;
+  desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
+  const Point point = {0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}};
+  desc.specialized = true;
+  EXPECT_EQ(PointHost(gpu(), desc).draw(std::span(&point, 1)).stats.fragmentsStored, 1U);
+  desc.specializedFor = VITRAIL_NODE_HDR;
+  desc.overflow = VITRAIL_OVERFLOW_SKIP;
+  const PointResult result = PointHost(gpu(), desc).draw(std::span(&point, 1));
+  EXPECT_EQ(result.stats.fragmentsStored, 0U);
+  EXPECT_EQ(result.stats.fragmentsMissing, 1U);
+  EXPECT_EQ(result.pixels[0], desc.behind);
 }
 
 TEST_F(LibraryTest, StatisticsBelongToTheirFrame) {
@@ -282,71 +402,29 @@ TEST_F(LibraryTest, StatisticsBelongToTheirFrame) {
 // Two frames in one command buffer, of the same target, into two images: the second must wait for the first wherever
 // they share memory. Synchronization validation is the judge, and the pictures are.
 TEST_F(LibraryTest, FramesInOneCommandBufferDoNotMeet) {
-  PointHostDesc desc;
-  const std::vector<Point> first = lists({3, 0, 100, 17, 1}, desc.width, 1);
-  const std::vector<Point> second = lists({0, 5, 2, 400, 30}, desc.width, 2);
-  desc.capacity = static_cast<std::uint32_t>(std::max(first.size(), second.size()));
-  PointHost host(gpu(), desc);
-  for (int repetition = 0; repetition < 3; ++repetition) {
-    const std::vector<PointResult> results = host.drawTogether({first, second});
-    EXPECT_LT(largestError(results[0].pixels, expectedPixels(desc, first)), kTolerance);
-    EXPECT_LT(largestError(results[1].pixels, expectedPixels(desc, second)), kTolerance);
-    EXPECT_EQ(results[0].stats.fragmentsStored, first.size());
-    EXPECT_EQ(results[1].stats.fragmentsStored, second.size());
-    EXPECT_EQ(results[0].stats.layersMax, 100U);
-    EXPECT_EQ(results[1].stats.layersMax, 400U);
-  }
-}
-
-TEST_F(LibraryTest, WrongDescriptionsAreRefusedWithAReason) {
-  struct Collected {
-    std::string last;
-  } collected;
-  VitrailContextDesc contextDesc{};
-  VitrailContext none = nullptr;
-  EXPECT_EQ(vitrailCreateContext(&contextDesc, &none), VK_ERROR_INITIALIZATION_FAILED);
-  contextDesc.instance = gpu().instance();
-  contextDesc.physicalDevice = gpu().physicalDevice();
-  contextDesc.device = gpu().device();
-  contextDesc.getInstanceProcAddr = vkGetInstanceProcAddr;
-  contextDesc.log = [](VitrailLogSeverity, const char* message, void* user) {
-    static_cast<Collected*>(user)->last = message;
-  };
-  contextDesc.logUser = &collected;
-  Context context;
-  ASSERT_EQ(Context::create(contextDesc, context), VK_SUCCESS);
-
-  const auto refused = [&](const VitrailTargetDesc& desc, VkResult code, const char* word) {
-    collected.last.clear();
-    Target target;
-    EXPECT_EQ(Target::create(context, desc, target), code) << word;
-    EXPECT_FALSE(target) << word;
-    EXPECT_NE(collected.last.find(word), std::string::npos) << "the log says: " << collected.last;
-  };
-  VitrailTargetDesc desc{};
-  const VkImageView view = VK_NULL_HANDLE; // never reached
-  desc.colorViews = &view;
-  desc.colorViewCount = 1;
-  refused(desc, VK_ERROR_INITIALIZATION_FAILED, "extent");
-  desc.extent = {64, 64};
-  desc.colorViewCount = 0;
-  refused(desc, VK_ERROR_INITIALIZATION_FAILED, "colour views");
-  desc.colorViewCount = VITRAIL_MAX_COLOR_VIEWS + 1;
-  refused(desc, VK_ERROR_INITIALIZATION_FAILED, "colour views");
-  desc.colorViewCount = 1;
-  desc.colorFormat = VK_FORMAT_B8G8R8A8_SRGB;
-  refused(desc, VK_ERROR_FORMAT_NOT_SUPPORTED, "colorFormat");
-  desc.colorFormat = VK_FORMAT_UNDEFINED;
-  desc.framesInFlight = VITRAIL_MAX_FRAMES_IN_FLIGHT + 1;
-  refused(desc, VK_ERROR_INITIALIZATION_FAILED, "framesInFlight");
-  desc.framesInFlight = 0;
-  desc.nodeFormat = static_cast<VitrailNodeFormat>(7);
-  refused(desc, VK_ERROR_INITIALIZATION_FAILED, "nodeFormat");
-  desc.nodeFormat = VITRAIL_NODE_STANDARD;
-  const std::uint32_t most = context.maxNodeCapacity(VITRAIL_NODE_STANDARD);
-  if (most < std::numeric_limits<std::uint32_t>::max() - 1) {
-    desc.nodeCapacity = most + 1;
-    refused(desc, VK_ERROR_OUT_OF_DEVICE_MEMORY, "nodeCapacity");
+  std::vector<std::uint32_t> counts = sampleCounts(gpu());
+  counts.insert(counts.begin(), 1);
+  for (const std::uint32_t samples : counts) {
+    for (const Way& way : everyWay(gpu(), samples)) {
+      if (samples > 1 && way.stencilMark) continue;
+      SCOPED_TRACE(std::to_string(samples) + " samples, " + way.name);
+      PointHostDesc desc;
+      desc.samples = samples;
+      apply(way, desc);
+      const std::vector<Point> first = randomLists(desc, {3, 0, 100, 17, 1}, 1);
+      const std::vector<Point> second = randomLists(desc, {0, 5, 2, 400, 30}, 2);
+      desc.capacity = static_cast<std::uint32_t>(std::max(first.size(), second.size()));
+      PointHost host(gpu(), desc);
+      for (int repetition = 0; repetition < 2; ++repetition) {
+        const std::vector<PointResult> results = host.drawTogether({first, second});
+        EXPECT_LT(largestError(results[0].pixels, expectedFrame(desc, first).pixels), kTolerance);
+        EXPECT_LT(largestError(results[1].pixels, expectedFrame(desc, second).pixels), kTolerance);
+        EXPECT_EQ(results[0].stats.fragmentsStored, first.size());
+        EXPECT_EQ(results[1].stats.fragmentsStored, second.size());
+        EXPECT_EQ(results[0].stats.layersMax, 100U);
+        EXPECT_EQ(results[1].stats.layersMax, 400U);
+      }
+    }
   }
 }
 

@@ -15,6 +15,7 @@ TEST(NegativeControl, AMissingBarrierIsCaught) {
     const Point point = {0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}};
     PointHost(gpu, desc).draw(std::span(&point, 1));
   }
+  dropContexts();
   const std::vector<std::string> errors = gpu.validationErrors();
   ASSERT_FALSE(errors.empty()) << "synchronization validation does not see a missing barrier";
   EXPECT_NE(errors[0].find("SYNC-HAZARD-READ-AFTER-WRITE"), std::string::npos) << errors[0];

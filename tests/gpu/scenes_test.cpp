@@ -27,13 +27,16 @@ using reference::unlitMaterial;
 
 constexpr int kBound = 2; // 1/255
 
-Reference referenceOf(const Scene& scene, const RenderOptions& options, std::optional<float> opacity = {}) {
+Reference referenceOf(const Scene& scene, const RenderOptions& options, std::optional<float> opacity = {},
+                      const MethodOptions& method = {}) {
   ReferenceOptions same;
   same.width = options.width;
   same.height = options.height;
   same.view = options.view;
   same.background = options.background;
   same.opacity = opacity;
+  same.samples = method.samples;
+  same.nodeFormat = static_cast<std::uint32_t>(method.nodes);
   return renderReference(scene, same);
 }
 
@@ -63,6 +66,18 @@ class ScenesTest : public GpuTest {
     const Reference reference = referenceOf(scene, options, opacity);
     expectAgreement(compare(result.picture, reference.exact, reference, kBound), kBound, edgeShare);
     expectAgreement(compare(result.picture, reference.rounded, reference, kBound), kBound, edgeShare);
+    expectCounts(result.report, reference);
+  }
+
+  // A scene drawn by some method, against the reference that rounds as its nodes do. The exact one may be `exactBound`
+  // away.
+  void expectMethod(const Scene& scene, const RenderOptions& options, const MethodOptions& method, double edgeShare,
+                    int exactBound = kBound) {
+    SCOPED_TRACE(describe(method));
+    const RenderResult result = renderOnce(gpu(), scene, options, {}, DrawOrder::Forward, method);
+    const Reference reference = referenceOf(scene, options, {}, method);
+    expectAgreement(compare(result.picture, reference.rounded, reference, kBound), kBound, edgeShare);
+    expectAgreement(compare(result.picture, reference.exact, reference, exactBound), exactBound, edgeShare);
     expectCounts(result.report, reference);
   }
 
@@ -215,6 +230,113 @@ TEST_F(ScenesTest, MaskAndBlendByVertexAlpha) {
   options.view = straightView();
   expectLikeReference(scene, options, 0.001);
   expectLikeReference(scene, options, 0.001, 0.8F);
+}
+
+// Each sample is a ray of its own, so a silhouette passes near one more often than near a centre.
+TEST_F(ScenesTest, SpheresWithSeveralSamples) {
+  const Scene scene = makeBuiltinScene("spheres", {});
+  const RenderOptions options = usualOptions(scene, 320, 180);
+  for (const MethodOptions& method : methodVariety(gpu())) {
+    if (method.samples > 1) expectMethod(scene, options, method, 0.004 * method.samples);
+  }
+}
+
+TEST_F(ScenesTest, InterlockedWithSeveralSamples) {
+  const Scene scene = makeBuiltinScene("interlocked", {});
+  const RenderOptions options = usualOptions(scene, 320, 180);
+  for (const MethodOptions& method : methodVariety(gpu())) {
+    if (method.samples > 1) expectMethod(scene, options, method, 0.006 * method.samples);
+  }
+}
+
+// Opaque surfaces cut transparent ones here, within pixels too.
+TEST_F(ScenesTest, MannequinsWithSeveralSamples) {
+  const Scene scene = makeBuiltinScene("mannequins", {});
+  const RenderOptions options = usualOptions(scene, 240, 135);
+  for (const MethodOptions& method : methodVariety(gpu())) {
+    if (method.samples > 1) expectMethod(scene, options, method, 0.03 * method.samples);
+  }
+}
+
+// Panes that light passes through, tinted; each is two fragments.
+Scene tintedGlass() {
+  Scene scene;
+  scene.meshes.push_back(uvSphere(32, 16));
+  const auto place = [&](glm::vec3 at, float size, const glm::vec3& color, float transmission, float metallic) {
+    Material material;
+    material.baseColor = glm::vec4(color, 1.0F);
+    material.transmission = transmission;
+    material.metallic = metallic;
+    material.roughness = 0.3F;
+    scene.materials.push_back(material);
+    const auto number = static_cast<std::uint32_t>(scene.materials.size() - 1);
+    scene.draws.push_back({0, number, glm::scale(glm::translate(glm::mat4(1.0F), at), glm::vec3(size))});
+  };
+  place({-0.5F, 0.0F, 0.0F}, 0.6F, {0.9F, 0.3F, 0.2F}, 1.0F, 0.0F);
+  place({0.4F, 0.2F, -0.4F}, 0.6F, {0.2F, 0.7F, 0.9F}, 0.8F, 0.0F);
+  place({0.2F, -0.4F, 0.5F}, 0.4F, {0.9F, 0.9F, 0.3F}, 0.6F, 0.3F);
+  place({0.0F, 0.0F, -1.2F}, 0.8F, {0.5F, 0.5F, 0.5F}, 0.0F, 0.0F); // opaque, behind them
+  return scene;
+}
+
+TEST_F(ScenesTest, LightPassesThroughTintedGlass) {
+  const Scene scene = tintedGlass();
+  const RenderOptions options = usualOptions(scene, 320, 180);
+  expectMethod(scene, options, {}, 0.01);
+  for (const MethodOptions& method : methodVariety(gpu())) {
+    if (method.nodes == VITRAIL_NODE_HDR || method.samples == 4) expectMethod(scene, options, method, 0.04);
+  }
+}
+
+TEST_F(ScenesTest, FlamesWithoutMipmaps) {
+  Scene scene = makeBuiltinScene("flames", {});
+  for (Material& material : scene.materials) material.baseColorTexture.sampler.mipmaps = false;
+  const RenderOptions options = usualOptions(scene, 320, 180);
+  const RenderResult result = renderOnce(gpu(), scene, options);
+  const Reference reference = referenceOf(scene, options);
+  expectAgreement(compare(result.picture, reference.rounded, reference, kBound), kBound, 0.001);
+  expectAgreement(compare(result.picture, reference.exact, reference, 4), 4, 0.001);
+  expectCounts(result.report, reference);
+}
+
+// A lamp of brightness 16 behind smoked glass: clamped to 1 it would be far darker.
+TEST_F(ScenesTest, HdrNodesKeepBrightSurfaces) {
+  Scene scene;
+  Material lamp;
+  lamp.alphaMode = AlphaMode::Blend;
+  lamp.metallic = 0.0F;
+  lamp.baseColor = {0.0F, 0.0F, 0.0F, 0.9F};
+  lamp.emissive = {16.0F, 4.0F, 1.0F};
+  addRectangle(scene, {glm::vec2(-0.8F), glm::vec2(0.8F), 0.0F}, lamp);
+  addRectangle(scene, {glm::vec2(-0.5F), glm::vec2(0.9F), 0.5F}, unlitMaterial({0.0F, 0.0F, 0.0F, 0.95F}));
+  RenderOptions options = usualOptions(scene, 96, 96);
+  options.view = straightView();
+  MethodOptions hdr;
+  hdr.nodes = VITRAIL_NODE_HDR;
+  expectMethod(scene, options, hdr, 0.0);
+  const auto middle = [&](const MethodOptions& method) {
+    return int{renderOnce(gpu(), scene, options, {}, DrawOrder::Forward, method).picture.rgba[(48 * 96 + 48) * 4]};
+  };
+  EXPECT_GT(middle(hdr), 200); // 0.05 * 0.9 * 16 = 0.72
+  EXPECT_LT(middle({}), 80);   // 0.05 * 0.9
+}
+
+// Low precision shows, but no more than is stated: alpha is up to 0.5/63 off, colours 0.5/31 on the curve. Where
+// shading comes out next to the middle between two steps the device may store the other one.
+TEST_F(ScenesTest, CompactNodesRoundAsStated) {
+  const Scene scene = makeBuiltinScene("spheres", {});
+  const RenderOptions options = usualOptions(scene, 320, 180);
+  MethodOptions compact;
+  compact.nodes = VITRAIL_NODE_COMPACT;
+  const RenderResult result = renderOnce(gpu(), scene, options, {}, DrawOrder::Forward, compact);
+  const Reference reference = referenceOf(scene, options, {}, compact);
+  const Comparison rounded = compare(result.picture, reference.rounded, reference, kBound);
+  EXPECT_LE(rounded.away, 12) << rounded; // a step of a colour is 8/255
+  EXPECT_LE(rounded.beyond, reference.edge.size() / 2000) << rounded;
+  const Comparison exact = compare(result.picture, reference.exact, reference, 8);
+  EXPECT_LE(exact.away, 12) << exact;
+  EXPECT_GT(exact.away, kBound) << "nothing was rounded";
+  expectCounts(result.report, reference);
 }
 
 } // namespace

@@ -45,26 +45,48 @@ bool insideEdge(double area, const glm::dvec2& a, const glm::dvec2& b) {
   return along.y < 0.0 || (along.y == 0.0 && along.x < 0.0);
 }
 
-void addHit(const Triangle& triangle, const PictureRay& ray, std::vector<RayHit>& hits) {
+// A ray and a triangle in the space where the ray is the z axis: its corners, and the edge functions opposite of them.
+struct Sheared {
   std::array<glm::dvec2, 3> p;
+  glm::dvec3 area{0.0};
+  double sum = 0.0;
+};
+
+Sheared shear(const Triangle& triangle, const PictureRay& ray) {
+  Sheared sheared;
+  std::array<glm::dvec2, 3>& p = sheared.p;
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3& corner = triangle.corners[i];
     p[i] = glm::dvec2(corner) - ray.origin + ray.slope * corner.z;
   }
-  const glm::dvec3 area(edgeFunction(p[1], p[2]), edgeFunction(p[2], p[0]), edgeFunction(p[0], p[1]));
-  const double sum = area.x + area.y + area.z;
+  sheared.area = {edgeFunction(p[1], p[2]), edgeFunction(p[2], p[0]), edgeFunction(p[0], p[1])};
+  sheared.sum = sheared.area.x + sheared.area.y + sheared.area.z;
+  return sheared;
+}
+
+// Where the ray meets the triangle's plane.
+void place(RayHit& hit, const Triangle& triangle, const Sheared& sheared) {
+  hit.barycentric = sheared.area / sheared.sum;
+  hit.depth = -(hit.barycentric.x * triangle.corners[0].z + hit.barycentric.y * triangle.corners[1].z +
+                hit.barycentric.z * triangle.corners[2].z);
+}
+
+void addHit(const std::vector<Triangle>& triangles, std::uint32_t number, const PictureRay& ray,
+            std::vector<RayHit>& hits) {
+  const Triangle& triangle = triangles[number];
+  const Sheared sheared = shear(triangle, ray);
+  const auto& [p, area, sum] = sheared;
   if (!(sum != 0.0)) return; // seen edge-on, or not finite
   const bool inside =
       sum > 0.0 ? insideEdge(area.x, p[1], p[2]) && insideEdge(area.y, p[2], p[0]) && insideEdge(area.z, p[0], p[1])
                 : insideEdge(-area.x, p[2], p[1]) && insideEdge(-area.y, p[0], p[2]) && insideEdge(-area.z, p[1], p[0]);
   if (!inside) return;
   RayHit hit;
+  hit.number = number;
   hit.draw = triangle.draw;
   hit.triangle = triangle.index;
-  hit.barycentric = area / sum;
-  hit.depth = -(hit.barycentric.x * triangle.corners[0].z + hit.barycentric.y * triangle.corners[1].z +
-                hit.barycentric.z * triangle.corners[2].z);
   hit.front = (sum > 0.0) != triangle.mirrored;
+  place(hit, triangle, sheared);
   hits.push_back(hit);
 }
 
@@ -101,7 +123,7 @@ void onCandidate(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
   const auto& triangles = *static_cast<const std::vector<Triangle>*>(args->geometryUserPtr);
   auto* walk = reinterpret_cast<Walk*>(args->context);
-  addHit(triangles[args->primID], *walk->ray, *walk->hits);
+  addHit(triangles, args->primID, *walk->ray, *walk->hits);
 }
 
 // The box of a triangle, grown by more than what single precision loses on the way to it.
@@ -219,6 +241,13 @@ void RayScene::allHits(const PictureRay& ray, std::vector<RayHit>& hits) const {
   walk.ray = &ray;
   walk.hits = &hits;
   intersect(impl_->scene, walk, query);
+}
+
+RayHit RayScene::onSamePlane(const RayHit& hit, const PictureRay& ray) const {
+  const Triangle& triangle = impl_->triangles[hit.number];
+  RayHit moved = hit;
+  place(moved, triangle, shear(triangle, ray));
+  return moved;
 }
 
 } // namespace vitrail::tool::reference

@@ -24,6 +24,7 @@ struct PictureRay {
 PictureRay pictureRay(const View& view, const glm::dvec2& pixel, const glm::dvec2& size);
 
 struct RayHit {
+  std::uint32_t number = 0;    // of the triangle among all that are drawn
   std::uint32_t draw = 0;      // index into Scene::draws
   std::uint32_t triangle = 0;  // index into the mesh's triangles
   glm::dvec3 barycentric{0.0}; // weights of the triangle's three corners, in order
@@ -43,6 +44,9 @@ class RayScene {
   // in no particular order. An edge belongs to one of the two triangles that share it, by the top-left rule. Safe to
   // call from several threads.
   void allHits(const PictureRay& ray, std::vector<RayHit>& hits) const;
+
+  // Where another ray meets the plane of a hit's triangle, inside the triangle or not. `front` stays.
+  RayHit onSamePlane(const RayHit& hit, const PictureRay& ray) const;
 
  private:
   struct Impl;

@@ -1,65 +1,38 @@
-// One pixel at a time: gather the ray's hits, find the opaque one, sort the transparent ones before it, blend.
+// One pixel at a time: find the surfaces, shade them once, sort the transparent ones, blend each sample, average.
 #include "reference.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <thread>
 
+#include "core/reference_resolve.h"
 #include "rays.h"
 #include "shading.h"
+#include "surfaces.h"
 
 namespace vitrail::tool::reference {
 
 namespace {
 
+using Samples = std::array<Blended, kMostSamples>;
+
 constexpr double kNudge = 1.0 / 256.0;      // pixels; Vulkan asks for at least 4 bits, drivers have 8
-constexpr double kSameDepth = 1e-6;         // of the depth
 constexpr double kEdgeChange = 0.5 / 255.0; // on the sRGB curve
-constexpr double kOpaqueEnough = 1e-7;      // what is left to see behind this much is not looked at
+constexpr double kOpaqueEnough = 1e-10;     // what is left to see behind this much is not looked at
+constexpr double kLargestHalf = 65504.0;    // opaque colours are kept as 16-bit floats
 
-// A transparent surface on a ray.
-struct Fragment {
-  const RayHit* hit = nullptr;
-  glm::dvec4 base{1.0}; // colour factor times texture times vertex colour; alpha with the X-ray factor
-  double storedAlpha = 1.0;
-};
-
-// What a ray meets.
-struct Surfaces {
-  std::optional<Fragment> opaque;    // the nearest one
-  std::vector<Fragment> visible;     // transparent and before it, front to back
-  std::vector<Fragment> tiesSwapped; // what `visible` could be where depths are almost equal
-};
-
-// Alpha as 8 bits hold it. The product is a single-precision one: materials with alphas such as 0.7 lie exactly between
-// two steps there, and on one side of the middle in double precision.
-double storeAlpha(double alpha) {
-  const float scaled = static_cast<float>(std::clamp(alpha, 0.0, 1.0)) * 255.0F;
-  return static_cast<double>(std::floor(scaled + 0.5F)) / 255.0;
+// What a renderer that is right may be given for alpha: materials with alphas such as 0.7 lie exactly between two steps
+// in single precision, and on one side of the middle in double precision. This is the single-precision step.
+double snapAlpha(double alpha, const NodeCoding& coding) {
+  const float largest = coding.format == layout::VITRAIL_FORMAT_STANDARD ? 255.0F
+                        : coding.format == layout::VITRAIL_FORMAT_HDR    ? 65535.0F
+                        : coding.samples == 1                            ? 63.0F
+                                                                         : 31.0F;
+  const float scaled = static_cast<float>(std::clamp(alpha, 0.0, 1.0)) * largest;
+  return static_cast<double>(std::floor(scaled + 0.5F)) / double{largest};
 }
-
-glm::dvec3 storeColor(const glm::dvec3& color) {
-  const auto channel = [](double c) { return decodeSrgb(quantize8(encodeSrgb(std::clamp(c, 0.0, 1.0))) / 255.0); };
-  return {channel(color.r), channel(color.g), channel(color.b)};
-}
-
-// Front to back over-blending.
-class Blend {
- public:
-  void add(const glm::dvec3& color, double alpha) {
-    color_ += left_ * alpha * color;
-    left_ *= 1.0 - alpha;
-  }
-  double left() const { return left_; }
-  glm::dvec4 over(const glm::dvec4& behind) const { return glm::dvec4(color_, 1.0 - left_) + left_ * behind; }
-
- private:
-  glm::dvec3 color_{0.0};
-  double left_ = 1.0;
-};
 
 // Straight alpha on the sRGB curve, in [0, 1]: what the 8-bit picture rounds.
 glm::dvec4 displayColor(const glm::dvec4& premultiplied) {
@@ -73,7 +46,7 @@ double largestChange(const glm::dvec4& a, const glm::dvec4& b) {
   return std::max({change.r, change.g, change.b, change.a});
 }
 
-// What a ray sees.
+// What is seen in a pixel.
 struct Sight {
   glm::dvec4 exact{0.0};
   glm::dvec4 rounded{0.0};
@@ -85,36 +58,37 @@ class Eye {
  public:
   Eye(const Scene& scene, const ReferenceOptions& options);
 
-  // Follows the ray through a point of the picture. `centre`: with everything in Sight; else `exact` and `layers` only.
+  // Looks at the pixel around a point of the picture. `centre`: with everything in Sight; else `exact` and `layers`
+  // only.
   Sight look(const glm::dvec2& pixel, bool centre, std::vector<RayHit>& hits) const;
 
  private:
-  std::array<Vertex, 3> corners(const RayHit& hit) const;
-  Surfaces gather(const std::vector<RayHit>& hits) const;
-  std::optional<Fragment> fragmentOf(const RayHit& hit) const;
-  glm::dvec3 shadeHit(const PictureRay& ray, const RayHit& hit, const glm::dvec3& base) const;
-  glm::dvec4 behindEverything(const PictureRay& ray) const;
-  bool isTransparent(const Material& material) const {
-    return options_.opacity.has_value() || material.alphaMode == AlphaMode::Blend;
-  }
-  const Material& materialOf(const RayHit& hit) const { return scene_.materials[scene_.draws[hit.draw].material]; }
+  using Fragments = std::vector<Fragment>;
+
+  glm::dvec3 shadeSurface(const PictureRay& ray, const PixelSurface& surface) const;
+  Fragments fragmentsOf(const PictureRay& ray, const PixelSurface& surface) const;
+  std::uint32_t storedCount(const PictureRay& ray, const PixelSurface& surface) const;
+  std::vector<PixelSurface> swapTies(const std::vector<PixelSurface>& surfaces) const;
+  Samples blend(const PictureRay& ray, const std::vector<PixelSurface>& surfaces, PixelList* stored) const;
+  std::array<Color, kMostSamples> opaqueColors(const PictureRay& ray, const PixelSurfaces& surfaces) const;
+  Color behindEverything(const PictureRay& ray) const;
+  glm::dvec4 mean(const Samples& samples, const std::array<Color, kMostSamples>& behind) const;
 
   const Scene& scene_;
   const ReferenceOptions& options_;
-  RayScene rays_;
+  SurfaceFinder finder_;
+  NodeCoding coding_;
+  double brightest_; // of a stored colour
   glm::dmat3 cameraAxes_;
-  glm::dvec3 eye_;
   glm::dvec3 toLight_;
-  double near_;
-  double far_;
-  std::vector<glm::dmat4> toWorld_;       // by draw
   std::vector<glm::dmat3> normalToWorld_; // by draw
 };
 
 void checkTextures(const Scene& scene) {
   for (const Material& material : scene.materials) {
     if (material.metallicRoughnessTexture.image >= 0 || material.normalTexture.image >= 0 ||
-        material.occlusionTexture.image >= 0 || material.emissiveTexture.image >= 0) {
+        material.occlusionTexture.image >= 0 || material.emissiveTexture.image >= 0 ||
+        material.transmissionTexture.image >= 0) {
       throw std::invalid_argument("the reference knows base colour textures only");
     }
   }
@@ -123,167 +97,186 @@ void checkTextures(const Scene& scene) {
 Eye::Eye(const Scene& scene, const ReferenceOptions& options)
     : scene_(scene),
       options_(options),
-      rays_(scene, options.view),
+      finder_(scene, options),
+      coding_{options.nodeFormat, options.samples, true},
+      brightest_(options.nodeFormat == layout::VITRAIL_FORMAT_HDR ? kLargestHalf : 1.0),
       cameraAxes_(glm::dmat4(options.view.cameraToWorld)),
-      eye_(glm::dmat4(options.view.cameraToWorld)[3]),
-      toLight_(cameraAxes_ * glm::normalize(glm::dvec3(-0.4, 0.7, 0.6))),
-      near_(options.view.nearPlane),
-      far_(options.view.farPlane > 0.0F || options.view.orthographic ? double{options.view.farPlane}
-                                                                     : std::numeric_limits<double>::infinity()) {
+      toLight_(cameraAxes_ * glm::normalize(glm::dvec3(-0.4, 0.7, 0.6))) {
   checkTextures(scene);
   for (const Draw& draw : scene.draws) {
-    toWorld_.emplace_back(draw.transform);
-    normalToWorld_.push_back(glm::transpose(glm::inverse(glm::dmat3(toWorld_.back()))));
+    normalToWorld_.push_back(glm::transpose(glm::inverse(glm::dmat3(glm::dmat4(draw.transform)))));
   }
 }
 
-std::array<Vertex, 3> Eye::corners(const RayHit& hit) const {
-  const Mesh& mesh = scene_.meshes[scene_.draws[hit.draw].mesh];
-  const std::size_t first = std::size_t{hit.triangle} * 3;
-  return {mesh.vertices[mesh.indices[first]], mesh.vertices[mesh.indices[first + 1]],
-          mesh.vertices[mesh.indices[first + 2]]};
-}
-
-// The surface that a hit is, or nothing where it is clipped, culled or cut out.
-std::optional<Fragment> Eye::fragmentOf(const RayHit& hit) const {
-  if (hit.depth < near_ || hit.depth > far_) return std::nullopt;
-  const Material& material = materialOf(hit);
-  const bool transparent = isTransparent(material);
-  if (!hit.front && !material.doubleSided && !transparent) return std::nullopt;
-
-  glm::dvec4 color(0.0);
-  glm::dvec2 uv(0.0);
-  const std::array<Vertex, 3> corner = corners(hit);
-  const TextureSlot& slot = material.baseColorTexture;
-  for (int i = 0; i < 3; ++i) {
-    const Vertex& vertex = corner[static_cast<std::size_t>(i)];
-    color += hit.barycentric[i] * glm::dvec4(vertex.color);
-    uv += hit.barycentric[i] * glm::dvec2(slot.texCoord == 0 ? vertex.texCoord0 : vertex.texCoord1);
-  }
-  Fragment fragment{&hit, glm::dvec4(material.baseColor) * color, 1.0};
-  if (slot.image >= 0) {
-    fragment.base *= sampleColorTexture(scene_.images[static_cast<std::size_t>(slot.image)], slot, uv);
-  }
-  double& alpha = fragment.base.a;
-  if (material.alphaMode == AlphaMode::Mask && alpha < double{material.alphaCutoff}) return std::nullopt;
-  if (material.alphaMode != AlphaMode::Blend) alpha = 1.0;
-  if (options_.opacity) alpha *= double{*options_.opacity};
-  fragment.storedAlpha = storeAlpha(alpha);
-  return fragment;
-}
-
-glm::dvec3 Eye::shadeHit(const PictureRay& ray, const RayHit& hit, const glm::dvec3& base) const {
-  const Material& material = materialOf(hit);
+// The colour of the section "Colour" of docs/shading.md.
+glm::dvec3 Eye::shadeSurface(const PictureRay& ray, const PixelSurface& surface) const {
+  const RayHit& hit = surface.hit;
+  const Material& material = finder_.materialOf(hit);
+  const glm::dvec3 base(surface.base);
   if (material.unlit) return base;
   glm::dvec3 normal(0.0);
-  const std::array<Vertex, 3> corner = corners(hit);
+  const std::array<Vertex, 3> corner = finder_.corners(hit);
   for (int i = 0; i < 3; ++i) {
     const glm::dvec3 vertexNormal(corner[static_cast<std::size_t>(i)].normal);
     normal += hit.barycentric[i] * (normalToWorld_[hit.draw] * vertexNormal);
   }
-  Surface surface;
-  surface.normal = glm::normalize(normal) * (hit.front ? 1.0 : -1.0);
+  Surface lit;
+  lit.normal = glm::normalize(normal) * (hit.front ? 1.0 : -1.0);
   const glm::dvec3 fromEye(ray.slope, -1.0); // camera space; an orthographic ray has no slope
-  surface.toEye = cameraAxes_ * glm::normalize(-fromEye);
-  surface.toLight = toLight_;
-  surface.base = base;
-  surface.emissive = glm::dvec3(material.emissive);
-  surface.metallic = double{material.metallic};
-  surface.roughness = double{material.roughness};
-  return shade(surface);
+  lit.toEye = cameraAxes_ * glm::normalize(-fromEye);
+  lit.toLight = toLight_;
+  lit.base = base;
+  lit.emissive = glm::dvec3(material.emissive);
+  lit.metallic = double{material.metallic};
+  lit.roughness = double{material.roughness};
+  lit.transmission = std::clamp(double{material.transmission}, 0.0, 1.0);
+  return shade(lit);
 }
 
-glm::dvec4 Eye::behindEverything(const PictureRay& ray) const {
-  switch (options_.background.kind) {
-    case Background::Kind::Transparent:
-      return glm::dvec4(0.0);
-    case Background::Kind::Sky:
-      return {skyColor(glm::normalize(cameraAxes_ * glm::dvec3(ray.slope, -1.0))), 1.0};
-    case Background::Kind::Color:
-      break;
+// What a transparent surface hands to vitrailCollect(), the nearer fragment first; its coverage is what is seen of it.
+Eye::Fragments Eye::fragmentsOf(const PictureRay& ray, const PixelSurface& surface) const {
+  const Material& material = finder_.materialOf(surface.hit);
+  const glm::dvec3 color = shadeSurface(ray, surface);
+  const double k = surface.base.a;
+  const auto depth = static_cast<float>(deviceDepth(options_.view, surface.hit.depth));
+  const std::uint32_t seen = surface.covered & ~surface.hidden;
+  const auto fragment = [&](const glm::dvec3& rgb, double alpha, std::uint32_t mode) {
+    const glm::dvec3 c = glm::clamp(rgb, 0.0, brightest_);
+    return Fragment{{c.r, c.g, c.b, std::clamp(alpha, 0.0, 1.0)}, depth, mode, seen};
+  };
+  const double t = material.unlit ? 0.0 : std::clamp(double{material.transmission}, 0.0, 1.0);
+  if (t > 0.0) {
+    const double q = t * (1.0 - std::clamp(double{material.metallic}, 0.0, 1.0));
+    const double passing = 1.0 - k + k * q;
+    return {fragment(k * color, k * (1.0 - q), layout::VITRAIL_PREMULTIPLIED),
+            fragment(glm::dvec3(surface.base), passing > 0.0 ? k * q / passing : 0.0, layout::VITRAIL_MULTIPLY)};
   }
-  const glm::dvec3 srgb(options_.background.srgb);
-  return {decodeSrgb(srgb.r), decodeSrgb(srgb.g), decodeSrgb(srgb.b), 1.0};
+  const bool adds = material.alphaMode == AlphaMode::Blend && material.blend == BlendMode::Additive;
+  return {fragment(color, k, adds ? layout::VITRAIL_ADDITIVE : layout::VITRAIL_OVER)};
 }
 
-bool sameOrder(const std::vector<Fragment>& a, const std::vector<Fragment>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const Fragment& x, const Fragment& y) { return x.hit == y.hit; });
+// How many nodes a surface takes. Shading is left out where alpha alone decides.
+std::uint32_t Eye::storedCount(const PictureRay& ray, const PixelSurface& surface) const {
+  if ((surface.covered & ~surface.hidden) == 0) return 0;
+  if (finder_.materialOf(surface.hit).transmission <= 0.0F) return snapAlpha(surface.base.a, coding_) > 0.0 ? 1 : 0;
+  std::uint32_t count = 0;
+  for (Fragment fragment : fragmentsOf(ray, surface)) {
+    fragment.color[3] = snapAlpha(fragment.color[3], coding_);
+    if (packNode(coding_, fragment)) ++count;
+  }
+  return count;
 }
 
-bool sameDepth(const Fragment& a, const Fragment& b) {
-  return std::abs(a.hit->depth - b.hit->depth) <= kSameDepth * std::abs(a.hit->depth);
-}
-
-// What a list might be in a renderer that knows depths less well: each run of fragments whose neighbours are at almost
-// the same depth is reversed, and the opaque surface hides those at almost its depth exactly where it did not before.
-// `fragments` is sorted and still holds what is behind the opaque surface.
-std::vector<Fragment> swapTies(const std::vector<Fragment>& fragments, const std::optional<Fragment>& opaque) {
-  std::vector<Fragment> swapped;
-  for (std::size_t first = 0; first < fragments.size();) {
+// What a list might be in a renderer that knows depths less well: each run of surfaces whose neighbours are at almost
+// the same depth is reversed, and the opaque surfaces hide those at almost their depth exactly where they did not
+// before.
+std::vector<PixelSurface> Eye::swapTies(const std::vector<PixelSurface>& surfaces) const {
+  const auto tied = [&](const PixelSurface& a, const PixelSurface& b) {
+    if (almostSameDepth(a.hit.depth, b.hit.depth)) return true;
+    if (options_.nodeFormat != layout::VITRAIL_FORMAT_COMPACT) return false;
+    const double near = deviceDepth(options_.view, a.hit.depth);
+    const double step = options_.samples == 1 ? 0x1p-11 : 0x1p-9; // the largest between two codes, of the nearness
+    return std::abs(near - deviceDepth(options_.view, b.hit.depth)) <= step * near;
+  };
+  std::vector<PixelSurface> swapped;
+  for (std::size_t first = 0; first < surfaces.size();) {
     std::size_t end = first + 1;
-    while (end < fragments.size() && sameDepth(fragments[end], fragments[end - 1])) ++end;
+    while (end < surfaces.size() && tied(surfaces[end - 1], surfaces[end])) ++end;
     for (std::size_t i = end; i-- > first;) {
-      const bool hidden = opaque && fragments[i].hit->depth >= opaque->hit->depth;
-      if (hidden == (opaque && sameDepth(fragments[i], *opaque))) swapped.push_back(fragments[i]);
+      swapped.push_back(surfaces[i]);
+      swapped.back().hidden ^= surfaces[i].tied;
     }
     first = end;
   }
   return swapped;
 }
 
-Surfaces Eye::gather(const std::vector<RayHit>& hits) const {
-  Surfaces found;
-  std::vector<Fragment>& fragments = found.visible;
-  for (const RayHit& hit : hits) {
-    const std::optional<Fragment> fragment = fragmentOf(hit);
-    if (!fragment) continue;
-    if (isTransparent(materialOf(hit))) {
-      fragments.push_back(*fragment);
-    } else if (!found.opaque || hit.depth < found.opaque->hit->depth) {
-      found.opaque = fragment;
+// Blends each sample, without rounding. `stored`: receives the nodes of all that is not behind enough.
+Samples Eye::blend(const PictureRay& ray, const std::vector<PixelSurface>& surfaces, PixelList* stored) const {
+  Samples samples;
+  const auto isOpaque = [&](std::uint32_t s) {
+    const Color& t = samples[s].transmittance;
+    return std::max({t[0], t[1], t[2], t[3]}) < kOpaqueEnough;
+  };
+  for (const PixelSurface& surface : surfaces) {
+    const std::uint32_t seen = surface.covered & ~surface.hidden;
+    std::uint32_t wanted = 0;
+    for (std::uint32_t s = 0; s < options_.samples; ++s) {
+      if ((seen >> s & 1U) != 0 && !isOpaque(s)) wanted |= 1U << s;
+    }
+    if (wanted == 0) continue;
+    for (Fragment fragment : fragmentsOf(ray, surface)) {
+      for (std::uint32_t s = 0; s < options_.samples; ++s) {
+        if ((wanted >> s & 1U) != 0) samples[s] = compose(samples[s], blendOf(fragment));
+      }
+      if (stored == nullptr) continue;
+      fragment.color[3] = snapAlpha(fragment.color[3], coding_);
+      if (const auto node = packNode(coding_, fragment)) stored->nodes.push_back(*node);
     }
   }
-  std::sort(fragments.begin(), fragments.end(),
-            [](const Fragment& a, const Fragment& b) { return a.hit->depth < b.hit->depth; });
-  found.tiesSwapped = swapTies(fragments, found.opaque);
-  std::erase_if(fragments, [&](const Fragment& f) { return found.opaque && f.hit->depth >= found.opaque->hit->depth; });
-  return found;
+  return samples;
+}
+
+Color Eye::behindEverything(const PictureRay& ray) const {
+  glm::dvec3 color(0.0);
+  switch (options_.background.kind) {
+    case Background::Kind::Transparent:
+      return {};
+    case Background::Kind::Sky:
+      color = skyColor(glm::normalize(cameraAxes_ * glm::dvec3(ray.slope, -1.0)));
+      break;
+    case Background::Kind::Color:
+      for (int i = 0; i < 3; ++i) color[i] = decodeSrgb(options_.background.srgb[i]);
+      break;
+  }
+  return {color.r, color.g, color.b, 1.0};
+}
+
+std::array<Color, kMostSamples> Eye::opaqueColors(const PictureRay& ray, const PixelSurfaces& surfaces) const {
+  const Color background = behindEverything(ray);
+  std::vector<Color> shaded;
+  for (const PixelSurface& surface : surfaces.opaque) {
+    const glm::dvec3 c = glm::min(shadeSurface(ray, surface), kLargestHalf);
+    shaded.push_back({c.r, c.g, c.b, 1.0});
+  }
+  std::array<Color, kMostSamples> colors{};
+  for (std::uint32_t s = 0; s < options_.samples; ++s) {
+    const int nearest = surfaces.nearestOpaque[s];
+    colors[s] = nearest < 0 ? background : shaded[static_cast<std::size_t>(nearest)];
+  }
+  return colors;
+}
+
+glm::dvec4 Eye::mean(const Samples& samples, const std::array<Color, kMostSamples>& behind) const {
+  glm::dvec4 sum(0.0);
+  for (std::uint32_t s = 0; s < options_.samples; ++s) {
+    const Color color = over(samples[s], behind[s]);
+    sum += glm::dvec4(color[0], color[1], color[2], color[3]);
+  }
+  return sum / static_cast<double>(options_.samples);
+}
+
+bool sameOrder(const std::vector<PixelSurface>& a, const std::vector<PixelSurface>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const PixelSurface& x, const PixelSurface& y) {
+    return x.hit.number == y.hit.number && x.hidden == y.hidden;
+  });
 }
 
 Sight Eye::look(const glm::dvec2& pixel, bool centre, std::vector<RayHit>& hits) const {
   const PictureRay ray = pictureRay(options_.view, pixel, {options_.width, options_.height});
-  rays_.allHits(ray, hits);
-  const Surfaces surfaces = gather(hits);
-  const std::optional<Fragment>& opaque = surfaces.opaque;
-  const glm::dvec4 behind =
-      opaque ? glm::dvec4(shadeHit(ray, *opaque->hit, glm::dvec3(opaque->base)), 1.0) : behindEverything(ray);
-  const auto colorOf = [&](const Fragment& fragment) {
-    return glm::clamp(shadeHit(ray, *fragment.hit, glm::dvec3(fragment.base)), 0.0, 1.0);
-  };
+  const PixelSurfaces surfaces = finder_.find(pixel, hits);
+  const std::array<Color, kMostSamples> behind = opaqueColors(ray, surfaces);
 
   Sight sight;
-  Blend exact;
-  Blend rounded;
-  for (const Fragment& fragment : surfaces.visible) {
-    if (fragment.storedAlpha > 0.0) ++sight.layers;
-    if ((centre ? std::max(exact.left(), rounded.left()) : exact.left()) < kOpaqueEnough) continue;
-    const glm::dvec3 color = colorOf(fragment);
-    exact.add(color, std::clamp(fragment.base.a, 0.0, 1.0));
-    if (centre) rounded.add(storeColor(color), fragment.storedAlpha);
-  }
-  sight.exact = exact.over(behind);
+  for (const PixelSurface& surface : surfaces.transparent) sight.layers += storedCount(ray, surface);
+  PixelList stored{coding_, {}, {}, 0};
+  sight.exact = mean(blend(ray, surfaces.transparent, centre ? &stored : nullptr), behind);
   if (!centre) return sight;
-  sight.rounded = rounded.over(behind);
-  sight.tiesSwapped = sight.exact;
-  if (!sameOrder(surfaces.visible, surfaces.tiesSwapped)) {
-    Blend swapped;
-    for (const Fragment& fragment : surfaces.tiesSwapped) {
-      if (swapped.left() < kOpaqueEnough) break;
-      swapped.add(colorOf(fragment), std::clamp(fragment.base.a, 0.0, 1.0));
-    }
-    sight.tiesSwapped = swapped.over(behind);
-  }
+  const Color rounded = resolvePixel(stored, behind);
+  sight.rounded = {rounded[0], rounded[1], rounded[2], rounded[3]};
+  const std::vector<PixelSurface> swapped = swapTies(surfaces.transparent);
+  sight.tiesSwapped =
+      sameOrder(surfaces.transparent, swapped) ? sight.exact : mean(blend(ray, swapped, nullptr), behind);
   return sight;
 }
 

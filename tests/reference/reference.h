@@ -1,5 +1,6 @@
-// The renderer in double precision: one ray a pixel, every surface on it, shaded, sorted and blended. It is written
-// from docs/shading.md and the glTF specification and shares nothing with the GPU renderer but the scene and the view.
+// The renderer in double precision: one ray a sample, every surface on it, shaded, sorted and blended. It is written
+// from docs/shading.md and the glTF specification and shares nothing with the GPU renderer but the scene and the view;
+// what the node formats round it has from src/core/node.h, which is written without the shaders too.
 #pragma once
 
 #include <array>
@@ -12,6 +13,7 @@
 #include "../../tool/image/picture.h"
 #include "../../tool/scene/camera.h"
 #include "../../tool/scene/scene.h"
+#include "vitrail/layout.h"
 
 namespace vitrail::tool::reference {
 
@@ -21,6 +23,8 @@ struct ReferenceOptions {
   View view;
   Background background;
   std::optional<float> opacity; // X-ray view: every material is blended with this factor
+  std::uint32_t samples = 1;    // 1, 2, 4 or 8, at Vulkan's standard positions; the picture is their mean
+  std::uint32_t nodeFormat = layout::VITRAIL_FORMAT_STANDARD; // what `rounded` is stored as
 };
 
 // A picture in both forms: linear with premultiplied alpha, and as 8-bit sRGB with straight alpha.
@@ -29,21 +33,23 @@ struct ReferencePicture {
   Picture picture;
 };
 
-// How many fragments a pixel's list may have: the least and the most that any ray within 1/256 pixel of its centre met.
+// How many fragments a pixel's list may have: the least and the most that any rays within 1/256 pixel of its samples
+// met.
 struct LayerRange {
   std::uint32_t least = 0;
   std::uint32_t most = 0;
 };
 
 struct Reference {
-  ReferencePicture exact;   // no rounding anywhere
-  ReferencePicture rounded; // transparent colour and alpha as the node format `standard` stores them, then blended
-  // Fragments of each pixel that a list holds: transparent, not hidden, with a stored alpha above 0.
+  ReferencePicture exact;   // no rounding anywhere; transparent colours clamped as the node format clamps them
+  ReferencePicture rounded; // transparent fragments as the node format stores them, then sorted and blended
+  // Fragments of each pixel that a list holds: transparent, seen at a sample, and not stored as nothing.
   std::vector<std::uint32_t> layers;
   std::vector<LayerRange> layerRanges;
   // 1 where a renderer that is right may differ: the `exact` picture changes by more than 0.5/255 in a channel on the
-  // sRGB curve where the ray moves diagonally by 1/256 pixel (Vulkan snaps corners to a grid that fine), or where
-  // surfaces at almost the same depth (1e-6 of it) change places. Elsewhere 0.
+  // sRGB curve where the rays move diagonally by 1/256 pixel (Vulkan snaps corners to a grid that fine), or where
+  // surfaces at almost the same depth (1e-6 of it; with `compact` nodes what their codes cannot tell apart) change
+  // places. Elsewhere 0.
   std::vector<std::uint8_t> edge;
 };
 

@@ -55,7 +55,7 @@ glm::dvec3 shade(const Surface& surface) {
   const double rough = std::clamp(surface.roughness, 0.045, 1.0);
   const double metal = std::clamp(surface.metallic, 0.0, 1.0);
   const glm::dvec3 f0 = glm::mix(glm::dvec3(0.04), surface.base, metal);
-  const glm::dvec3 diffuse = (1.0 - metal) * surface.base;
+  const glm::dvec3 diffuse = (1.0 - surface.transmission) * (1.0 - metal) * surface.base;
   const double a = rough * rough;
 
   glm::dvec3 direct(0.0);

@@ -18,9 +18,10 @@ struct Surface {
   glm::dvec3 emissive{0.0};
   double metallic = 1.0;
   double roughness = 1.0;
+  double transmission = 0.0; // t of the section "Transmission"
 };
 
-// The linear colour of the section "Colour", with an occlusion of 1.
+// The linear colour of the section "Colour", and C of "Transmission", with an occlusion of 1.
 glm::dvec3 shade(const Surface& surface);
 
 // The sky in a unit direction, linear.

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <set>
 #include <thread>
@@ -82,8 +83,10 @@ TEST(Cli, HelpPagesAndVersion) {
 
 TEST(Cli, TheHelpPageNamesEveryOption) {
   const std::string help = vitrail({"render", "--help"}).out;
-  for (const char* option : {"--scene", "--count", "--seed", "--size", "--camera", "--orbit", "--opacity",
-                             "--background", "--output", "-o", "--json", "--quiet", "--device", "--validate"}) {
+  for (const char* option : {"--scene",   "--count",      "--seed",         "--size",    "--camera",       "--orbit",
+                             "--opacity", "--background", "--output",       "-o",        "--json",         "--quiet",
+                             "--device",  "--validate",   "--method",       "--samples", "--msaa-resolve", "--nodes",
+                             "--resolve", "--layers",     "--memory-budget"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
 }
@@ -131,7 +134,26 @@ TEST(Cli, WrongUsageIsOneLineAndExitCode2) {
       {with({"--count", "1e3"}), "--count"},
       {with({"--count", "4000000000"}), "1 to 20000"},
       {with({"--seed", "-1"}), "--seed"},
-      {with({"--nodes", "hdr"}), "--nodes"},
+      {with({"--nodes", "fat"}), "compact"},
+      {with({"--method", "sorted"}), "unsorted"},
+      {with({"--samples", "3"}), "1, 2, 4 or 8"},
+      {with({"--samples", "0"}), "--samples"},
+      {with({"--samples", "many"}), "--samples"},
+      {with({"--msaa-resolve", "both"}), "per-sample"},
+      {with({"--msaa-resolve", "per-sample"}), "--samples 2, 4 or 8"},
+      {with({"--msaa-resolve", "per-sample", "--samples", "4", "--resolve", "compute"}), "--resolve fragment"},
+      {with({"--samples", "8", "--nodes", "compact"}), "at most 4 samples"},
+      {with({"--resolve", "default"}), "--resolve"},
+      {with({"--layers", "0"}), "--layers"},
+      {with({"--layers", "-1"}), "--layers"},
+      {with({"--memory-budget", "0"}), "--memory-budget"},
+      {with({"--memory-budget", "0.5"}), "--memory-budget"},
+      {with({"--method", "unsorted", "--nodes", "hdr"}), "unsorted has no choice"},
+      {with({"--method", "unsorted", "--layers", "4"}), "unsorted has no choice"},
+      {with({"--method", "unsorted", "--resolve", "compute"}), "unsorted has no choice"},
+      {with({"--method", "insertion", "--nodes", "compact"}), "insertion has no choice"},
+      {with({"--method", "insertion", "--samples", "4"}), "one sample"},
+      {with({"--method", "unsorted", "--memory-budget", "1"}), "--memory-budget"},
       {with({"--size"}), "--size"},
   };
   for (const auto& [arguments, reason] : cases) {
@@ -180,7 +202,7 @@ TEST(Cli, InfoAndScenesListWhatThereIs) {
   EXPECT_NE(info.out.find("driver"), std::string::npos);
   const ProcessResult scenes = vitrail({"scenes"});
   EXPECT_EQ(scenes.exitCode, 0);
-  for (const char* name : {"spheres", "planes", "interlocked", "mannequins", "hairball", "smoke"}) {
+  for (const char* name : {"spheres", "planes", "interlocked", "mannequins", "hairball", "smoke", "flames"}) {
     EXPECT_NE(scenes.out.find(name), std::string::npos) << name;
   }
 }
@@ -209,7 +231,12 @@ TEST(Cli, APictureAndItsReport) {
   EXPECT_EQ(json.at("width"), 96);
   EXPECT_EQ(json.at("height"), 64);
   EXPECT_EQ(json.at("samples"), 1);
+  EXPECT_EQ(json.at("nodes"), "standard");
+  EXPECT_TRUE(json.at("resolve") == "compute" || json.at("resolve") == "fragment") << json.at("resolve");
+  EXPECT_EQ(json.at("msaa_resolve"), nullptr);
   EXPECT_EQ(json.at("exact"), true);
+  EXPECT_EQ(json.at("approximate_pixels"), 0);
+  EXPECT_EQ(json.at("tiles"), 1);
   const auto& fragments = json.at("fragments");
   EXPECT_GT(fragments.at("requested"), 0);
   EXPECT_EQ(fragments.at("stored"), fragments.at("requested"));
@@ -219,11 +246,200 @@ TEST(Cli, APictureAndItsReport) {
   EXPECT_LE(json.at("layers").at("mean"), json.at("layers").at("max"));
   EXPECT_GE(json.at("memory").at("nodes_bytes").get<std::uint64_t>(), 12 * fragments.at("stored").get<std::uint64_t>());
   EXPECT_EQ(json.at("memory").at("heads_bytes"), 96 * 64 * 4);
-  EXPECT_GE(json.at("memory").at("peak_bytes"), json.at("memory").at("nodes_bytes"));
+  EXPECT_GT(json.at("memory").at("total_bytes"), json.at("memory").at("nodes_bytes"));
+  EXPECT_GE(json.at("memory").at("peak_bytes"), json.at("memory").at("total_bytes"));
   for (const char* pass : {"opaque", "clear", "collect", "resolve", "encode"}) {
     EXPECT_GE(json.at("passes_ms").at(pass).get<double>(), 0.0) << pass;
   }
   EXPECT_GT(json.at("frame_ms"), 0.0);
+}
+
+// A picture and what its report says.
+struct Drawn {
+  ReadPng png;
+  nlohmann::json report;
+};
+
+// Draws a small picture with some options, under the validation layer.
+Drawn draw(const Words& options, const std::string& scene = "interlocked", const std::string& size = "96x64") {
+  std::string command;
+  for (const std::string& option : options) command += " " + option;
+  SCOPED_TRACE(scene + command);
+  const TemporaryFolder folder;
+  Words arguments = {"render", "--scene", scene, "--size", size, "--background", "transparent", "--validate"};
+  arguments.insert(arguments.end(), {"-o", "a.png", "--json", "a.json"});
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  const ProcessResult result = vitrail(arguments, in(folder));
+  EXPECT_EQ(result.exitCode, 0) << result.error;
+  if (result.exitCode != 0) return {};
+  return {readPng(folder.file("a.png")), nlohmann::json::parse(readText(folder.path() / "a.json"))};
+}
+
+int largestDifference(const ReadPng& a, const ReadPng& b) {
+  if (a.rgba.size() != b.rgba.size()) return 256;
+  int largest = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) largest = std::max(largest, std::abs(a.rgba[i] - b.rgba[i]));
+  return largest;
+}
+
+TEST(Cli, BothResolvesGiveOnePicture) {
+  for (const char* samples : {"1", "4"}) {
+    const Drawn compute = draw({"--samples", samples, "--resolve", "compute"});
+    const Drawn fragment = draw({"--samples", samples, "--resolve", "fragment"});
+    EXPECT_EQ(compute.report.at("resolve"), "compute");
+    EXPECT_EQ(fragment.report.at("resolve"), "fragment");
+    EXPECT_LE(largestDifference(compute.png, fragment.png), 1) << samples << " samples";
+    EXPECT_EQ(compute.report.at("fragments"), fragment.report.at("fragments"));
+  }
+}
+
+TEST(Cli, BothMsaaResolvesGiveOnePicture) {
+  const Drawn one = draw({});
+  const Drawn pixels = draw({"--samples", "4"});
+  const Drawn samples = draw({"--samples", "4", "--msaa-resolve", "per-sample"});
+  EXPECT_EQ(pixels.report.at("samples"), 4);
+  EXPECT_EQ(pixels.report.at("msaa_resolve"), "per-pixel");
+  EXPECT_EQ(samples.report.at("msaa_resolve"), "per-sample");
+  EXPECT_EQ(samples.report.at("resolve"), "fragment");
+  EXPECT_TRUE(samples.report.at("passes_ms").contains("box_filter"));
+  EXPECT_FALSE(pixels.report.at("passes_ms").contains("box_filter"));
+  EXPECT_LE(largestDifference(pixels.png, samples.png), 1);
+  EXPECT_GT(largestDifference(pixels.png, one.png), 20) << "edges are smoother";
+  EXPECT_GT(pixels.report.at("fragments").at("stored"), one.report.at("fragments").at("stored"));
+}
+
+TEST(Cli, NodeFormatsDifferInTheirRounding) {
+  const Drawn standard = draw({});
+  const Drawn hdr = draw({"--nodes", "hdr"});
+  const Drawn compact = draw({"--nodes", "compact"});
+  const auto nodeBytes = [](const Drawn& drawn) {
+    return drawn.report.at("memory").at("nodes_bytes").get<std::uint64_t>();
+  };
+  EXPECT_EQ(hdr.report.at("nodes"), "hdr");
+  EXPECT_EQ(compact.report.at("nodes"), "compact");
+  EXPECT_EQ(3 * nodeBytes(hdr), 4 * nodeBytes(standard)); // 16 bytes a node and 12
+  EXPECT_EQ(3 * nodeBytes(compact), 2 * nodeBytes(standard));
+  EXPECT_LE(largestDifference(standard.png, hdr.png), 10); // where alpha is small, colours divided by it
+  EXPECT_GT(largestDifference(standard.png, hdr.png), 0);
+  EXPECT_LE(largestDifference(standard.png, compact.png), 60);
+  EXPECT_GT(largestDifference(standard.png, compact.png), 3);
+}
+
+TEST(Cli, ACapThatIsHitIsReported) {
+  const Drawn all = draw({});
+  const auto deepest = all.report.at("layers").at("max").get<std::uint32_t>();
+  const Drawn capped = draw({"--layers", "2"});
+  EXPECT_EQ(capped.report.at("exact"), false);
+  EXPECT_GT(capped.report.at("approximate_pixels"), 0);
+  EXPECT_GT(largestDifference(all.png, capped.png), 0);
+  const Drawn roomy = draw({"--layers", std::to_string(deepest)});
+  EXPECT_EQ(roomy.report.at("exact"), true);
+  EXPECT_EQ(roomy.report.at("approximate_pixels"), 0);
+  EXPECT_EQ(largestDifference(all.png, roomy.png), 0);
+}
+
+TEST(Cli, EveryMemoryBudgetGivesTheSamePicture) {
+  const Words ways[] = {{"--samples", "1"},
+                        {"--resolve", "fragment"},
+                        {"--samples", "4"},
+                        {"--samples", "4", "--msaa-resolve", "per-sample"}};
+  for (Words options : ways) {
+    const Drawn whole = draw(options, "smoke", "256x192");
+    EXPECT_EQ(whole.report.at("tiles"), 1);
+    options.insert(options.end(), {"--memory-budget", ""});
+    std::vector<std::uint32_t> tiles;
+    for (const std::uint32_t budget : {1U, 2U, 4U}) {
+      options.back() = std::to_string(budget);
+      const Drawn tiled = draw(options, "smoke", "256x192");
+      EXPECT_TRUE(tiled.png.rgba == whole.png.rgba) << options[1] << " within " << budget << " MiB";
+      EXPECT_EQ(tiled.report.at("exact"), true);
+      EXPECT_EQ(tiled.report.at("fragments"), whole.report.at("fragments"));
+      EXPECT_EQ(tiled.report.at("layers"), whole.report.at("layers"));
+      const std::uint64_t bytes = std::uint64_t{budget} << 20U;
+      EXPECT_LE(tiled.report.at("memory").at("total_bytes").get<std::uint64_t>(), bytes + 256U) << "and statistics";
+      tiles.push_back(tiled.report.at("tiles"));
+    }
+    EXPECT_GE(tiles.front(), 2U);
+    EXPECT_EQ(tiles.back(), 1U);
+  }
+}
+
+// Where transparent surfaces cover only a part of the picture, or none of it, tiles cover only that part.
+TEST(Cli, AMemoryBudgetForLittleOrNothing) {
+  const Words away = {"--orbit", "0,0,0.02"};
+  Words budget = away;
+  budget.insert(budget.end(), {"--memory-budget", "1"});
+  const Drawn small = draw(budget);
+  EXPECT_TRUE(small.png.rgba == draw(away).png.rgba);
+  EXPECT_LT(small.report.at("memory").at("heads_bytes"), 96 * 64 * 4);
+
+  const TemporaryFolder folder;
+  const std::string opaque = std::string(VITRAIL_TEST_CORPUS) + "/good/tangents.gltf";
+  for (const char* samples : {"1", "4"}) {
+    const Words whole = {"render", opaque, "--size", "96x64", "--samples", samples, "--validate", "-o", "whole.png"};
+    Words tiled = whole;
+    tiled.back() = "tiled.png";
+    tiled.insert(tiled.end(), {"--memory-budget", "1"});
+    for (const Words& arguments : {whole, tiled}) {
+      const ProcessResult result = vitrail(arguments, in(folder));
+      EXPECT_EQ(result.exitCode, 0) << result.error;
+    }
+    EXPECT_EQ(readText(folder.path() / "tiled.png"), readText(folder.path() / "whole.png"));
+  }
+}
+
+TEST(Cli, UnsortedBlendsInTheOrderOfSubmission) {
+  const Drawn exact = draw({});
+  for (const char* samples : {"1", "4"}) {
+    const Drawn unsorted = draw({"--method", "unsorted", "--samples", samples});
+    EXPECT_EQ(unsorted.report.at("method"), "unsorted");
+    EXPECT_EQ(unsorted.report.at("exact"), false);
+    for (const char* none : {"fragments", "layers", "nodes", "resolve", "msaa_resolve"}) {
+      EXPECT_EQ(unsorted.report.at(none), nullptr) << none;
+    }
+    EXPECT_EQ(unsorted.report.at("memory").at("nodes_bytes"), 0);
+    const auto& passes = unsorted.report.at("passes_ms");
+    EXPECT_TRUE(passes.contains("opaque") && passes.contains("blend") && passes.contains("encode")) << passes;
+    EXPECT_EQ(passes.contains("box_filter"), std::string(samples) == "4");
+    EXPECT_FALSE(passes.contains("collect")) << passes;
+    EXPECT_GT(largestDifference(unsorted.png, exact.png), 20) << "the scene has no right order";
+  }
+  // Where the order does not matter it is the same picture, up to the rounding of what is stored.
+  EXPECT_LE(largestDifference(draw({"--method", "unsorted"}, "flames").png, draw({"--nodes", "hdr"}, "flames").png), 1);
+}
+
+// Sample counts are the device's: those of lavapipe are 1 and 4.
+TEST(Cli, ASampleCountThatTheDeviceLacksIsRefusedByName) {
+  const std::string info = vitrail({"info"}).out;
+  const std::size_t at = info.find("samples");
+  ASSERT_NE(at, std::string::npos) << info;
+  const std::string line = info.substr(at, info.find('\n', at) - at);
+  for (const std::string samples : {"2", "4", "8"}) {
+    if (line.find(samples) != std::string::npos) continue;
+    expectRefusal(kTool, {"render", "--scene", "interlocked", "-o", "a.png", "--samples", samples}, 1,
+                  "not " + samples);
+  }
+}
+
+// Panes that tint what is behind them: as the hardware blends it, for the panes stand in the right order in the file.
+TEST(Cli, TransmissionTintsWhatIsBehind) {
+  const std::string model = std::string(VITRAIL_TEST_CORPUS) + "/good/transmission.gltf";
+  const TemporaryFolder folder;
+  const auto picture = [&](const Words& options) {
+    Words arguments = {"render", model, "--size", "160x60", "--validate", "-o", "a.png"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProcessResult result = vitrail(arguments, in(folder));
+    EXPECT_EQ(result.exitCode, 0) << result.error;
+    return readPng(folder.file("a.png"));
+  };
+  const ReadPng blended = picture({"--method", "unsorted"});
+  EXPECT_LE(largestDifference(picture({}), blended), 2);
+  EXPECT_LE(largestDifference(picture({"--nodes", "hdr"}), blended), 1);
+  EXPECT_LE(largestDifference(picture({"--resolve", "fragment"}), blended), 2);
+  // The clear pane before the white background, at the left: blue and bright.
+  const std::uint8_t* pixel = &blended.rgba[(std::size_t{22} * 160 + 33) * 4];
+  EXPECT_LT(pixel[0] + 40, pixel[2]) << int{pixel[0]} << " " << int{pixel[1]} << " " << int{pixel[2]};
+  EXPECT_GT(pixel[2], 200);
 }
 
 TEST(Cli, TheSamePictureTenTimes) {

@@ -138,8 +138,9 @@ TEST(Builtin, NamesTheKnownScenesForAnUnknownOne) {
     make("cube");
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "there is no scene \"cube\"; the scenes are spheres, planes, interlocked, mannequins, hairball, smoke");
+    EXPECT_EQ(
+        std::string(error.what()),
+        "there is no scene \"cube\"; the scenes are spheres, planes, interlocked, mannequins, hairball, smoke, flames");
   }
 }
 
@@ -171,6 +172,8 @@ double offGrid(double linear) {
   const double srgb = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
   return std::abs(255.0 * srgb - std::round(255.0 * srgb));
 }
+
+TEST(Builtin, PlanesAre32WhereNobodySaysHowMany) { EXPECT_EQ(make("planes").draws.size(), 32U); }
 
 TEST(Builtin, PlanesAreOnTheGrid) {
   for (const std::uint32_t count : {32U, 5000U}) {
@@ -251,6 +254,17 @@ TEST(Builtin, SmokeFacesTheDefaultCameraInPlanesOfItsOwn) {
   EXPECT_FALSE(scene.images.empty());
   for (const Image& image : scene.images) {
     for (std::size_t i = 0; i < image.width; ++i) EXPECT_EQ(image.rgba[4 * i + 3], 0U); // clear at the border
+  }
+}
+
+TEST(Builtin, FlamesAreSmokeThatAddsLight) {
+  const Scene smoke = make("smoke");
+  const Scene flames = make("flames");
+  ASSERT_EQ(flames.draws.size(), smoke.draws.size());
+  for (std::size_t i = 0; i < flames.draws.size(); ++i) {
+    EXPECT_EQ(flames.draws[i].transform, smoke.draws[i].transform);
+    EXPECT_EQ(flames.materials[flames.draws[i].material].blend, BlendMode::Additive);
+    EXPECT_EQ(smoke.materials[smoke.draws[i].material].blend, BlendMode::Over);
   }
 }
 

@@ -1,88 +1,177 @@
-// The core: node packing, pool sizes, the reference resolve, each against values worked out by hand.
+// Pool sizes and the reference resolve, against values worked out by hand.
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cmath>
-#include <limits>
+#include <random>
 
-#include "core/node.h"
 #include "core/pool.h"
 #include "core/reference_resolve.h"
 
 namespace vitrail::tests {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using namespace layout;
 
-TEST(Node, EightBitColoursSurviveExactly) {
-  for (std::uint32_t v = 0; v < 256; ++v) {
-    const std::uint32_t bits = v | (v << 8U) | (v << 16U) | (v << 24U);
-    EXPECT_EQ(packColor(unpackColor(bits)), bits);
+TEST(Pool, BoundsAreTheHeaders) {
+  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_STANDARD, 1), 0xfffffffeU);
+  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_STANDARD, 2), (1U << 28U) - 2);
+  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_STANDARD, 4), (1U << 28U) - 2);
+  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_STANDARD, 8), (1U << 24U) - 2);
+  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_HDR, 1), 0xfffffffeU);
+  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_HDR, 8), (1U << 24U) - 2);
+  for (const std::uint32_t samples : {1U, 2U, 4U}) {
+    EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_COMPACT, samples), (1U << 24U) - 2);
   }
-}
-
-TEST(Node, TheCurveIsSrgbs) {
-  EXPECT_NEAR(srgbToLinear(0.5), 0.21404114, 1e-8);
-  EXPECT_NEAR(srgbToLinear(0.04), 0.04 / 12.92, 1e-12);
-  EXPECT_NEAR(linearToSrgb(0.5), 0.73535698, 1e-8);
-}
-
-TEST(Node, ColoursOutsideTheRangeAreClamped) {
-  EXPECT_EQ(packColor({2.0, -1.0, 0.0, 7.0}), 0xff0000ffU);
-  EXPECT_EQ(packColor({kInfinity, -kInfinity, kNan, 1.0}), 0xff0000ffU);
-  EXPECT_EQ(packColor({1.0, 1.0, 1.0, kNan}), 0x00ffffffU);
-}
-
-TEST(Node, DepthKeysGrowAwayFromTheViewer) {
-  const auto key = [](float depth, bool nearestIsOne) {
-    return depthKey(packDepth(depth, nearestIsOne), nearestIsOne);
-  };
-  const float depths[] = {0.0F, 1e-30F, 0.1F, 0.5F, std::nextafter(0.5F, 1.0F), 1.0F};
-  for (std::size_t i = 1; i < std::size(depths); ++i) {
-    EXPECT_LT(key(depths[i - 1], false), key(depths[i], false));
-    EXPECT_GT(key(depths[i - 1], true), key(depths[i], true));
-  }
-  EXPECT_EQ(key(-0.0F, false), key(0.0F, false));
-  EXPECT_EQ(key(-5.0F, false), key(0.0F, false));
-  EXPECT_EQ(key(5.0F, false), key(1.0F, false));
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(key(nan, false), key(1.0F, false));
-  EXPECT_EQ(key(nan, true), key(0.0F, true));
+  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_COMPACT, 8), 0U);
+  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_STANDARD, 3), 0U);
+  EXPECT_EQ(maxNodeIndexCount(3, 1), 0U);
 }
 
 TEST(Pool, SizesDoNotOverflow) {
-  EXPECT_EQ(nodePoolBytes(0), 12U);
-  EXPECT_EQ(nodePoolBytes(1), 12U);
-  EXPECT_EQ(nodePoolBytes(0xfffffffeU), 0xfffffffeULL * 12U);
-  EXPECT_EQ(headBytes(65536, 65536), 4ULL * 65536U * 65536U);
-  EXPECT_EQ(nodesThatFit(11), 0U);
-  EXPECT_EQ(nodesThatFit(std::uint64_t{1} << 27U), 11184810U);
-  EXPECT_EQ(nodesThatFit(~std::uint64_t{0}), 0xfffffffeU);
+  EXPECT_EQ(nodePoolBytes(VITRAIL_FORMAT_STANDARD, 0), 12U);
+  EXPECT_EQ(nodePoolBytes(VITRAIL_FORMAT_COMPACT, 1), 8U);
+  EXPECT_EQ(nodePoolBytes(VITRAIL_FORMAT_HDR, 0xfffffffeU), 0xfffffffeULL * 16U);
+  EXPECT_EQ(headBytes(0xffffffffU), 4ULL * 0xffffffffU);
+  EXPECT_EQ(sumBytes(0xffffffffU), 20ULL * 0xffffffffU);
+  EXPECT_EQ(listBytes(0xffffffffU, 0xffffffffU, VITRAIL_SHORT_LIST), 0xffffffffU / 17U * 4ULL);
+  EXPECT_EQ(listBytes(100, 33 * 50 + 32, VITRAIL_MEDIUM_LIST), 50U * 4U);
+  EXPECT_EQ(listBytes(40, 33 * 50 + 32, VITRAIL_MEDIUM_LIST), 40U * 4U);
+  EXPECT_EQ(listBytes(40, 0, VITRAIL_MEDIUM_LIST), 4U);
+}
+
+TEST(Pool, PartsAreAlignedAndDoNotOverlap) {
+  for (const std::uint64_t alignment : {256U, 4096U}) {
+    for (const std::uint32_t pixels : {1U, 1000U, 1920U * 1080U, 0xffffffffU}) {
+      for (const std::uint32_t capacity : {0U, 1U, 12345U, 0xfffffffeU}) {
+        for (const bool keepSums : {false, true}) {
+          const StorageLayout storage = layoutStorage(pixels, capacity, VITRAIL_FORMAT_HDR, keepSums, alignment);
+          std::uint64_t end = 0;
+          for (const StoragePart& part : {storage.parameters, storage.control, storage.heads, storage.mediumLists,
+                                          storage.longLists, storage.sums, storage.nodes}) {
+            EXPECT_EQ(part.offset % alignment, 0U);
+            EXPECT_GE(part.offset, end);
+            EXPECT_LT(part.offset, end + alignment);
+            EXPECT_GE(part.size, 4U);
+            end = part.offset + part.size;
+          }
+          EXPECT_EQ(storage.total, end);
+          EXPECT_EQ(storage.parameters.size, 48U);
+          EXPECT_EQ(storage.control.size, sizeof(VitrailControl));
+          EXPECT_EQ(storage.sums.size, keepSums ? std::max<std::uint64_t>(16, 20ULL * pixels) : 16U);
+        }
+      }
+    }
+  }
+}
+
+TEST(Pool, TheCapacityForABudgetIsTheLargestThatFits) {
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 2000; ++i) {
+    const auto format = static_cast<std::uint32_t>(random() % 3);
+    const std::uint32_t samples = 1U << (random() % 4);
+    const auto pixels = static_cast<std::uint32_t>(random() >> (32 + random() % 32));
+    const std::uint64_t bytes = random() >> (random() % 50 + 14);
+    const bool keepSums = random() % 2 == 0;
+    const std::uint32_t most = maxNodeIndexCount(format, samples);
+    const std::uint32_t fits = nodeCapacityFor(bytes, pixels, format, samples, keepSums, 256);
+    ASSERT_LE(fits, most);
+    const auto total = [&](std::uint32_t n) { return layoutStorage(pixels, n, format, keepSums, 256).total; };
+    ASSERT_TRUE(fits == 0 || total(fits) <= bytes);
+    ASSERT_TRUE(fits == most || total(fits + 1) > bytes);
+  }
+  EXPECT_EQ(nodeCapacityFor(~0ULL, 1, VITRAIL_FORMAT_STANDARD, 1, true, 256), 0xfffffffeU);
+  EXPECT_EQ(nodeCapacityFor(0, 1, VITRAIL_FORMAT_STANDARD, 1, true, 256), 0U);
+}
+
+NodeWords node(const NodeCoding& coding, const Fragment& fragment) { return packNode(coding, fragment).value(); }
+
+void expectColor(const Color& got, const Color& expected) {
+  for (unsigned i = 0; i < 4; ++i) EXPECT_NEAR(got[i], expected[i], 1e-12) << "channel " << i;
 }
 
 TEST(ReferenceResolve, TwoLayersByHand) {
   // Half red at 0.25 in front of half green at 0.75 over blue: 128/255 is the stored half.
   const double a = 128.0 / 255.0;
-  const StoredFragment red = {packColor({1.0, 0.0, 0.0, 0.5}), packDepth(0.25F, false)};
-  const StoredFragment green = {packColor({0.0, 1.0, 0.0, 0.5}), packDepth(0.75F, false)};
-  const Color blue = {0.0, 0.0, 1.0, 1.0};
-  for (const auto& list : {std::array{red, green}, std::array{green, red}}) {
-    const Color near = resolveReference(list, blue, false);
-    EXPECT_NEAR(near[0], a, 1e-12);
-    EXPECT_NEAR(near[1], (1 - a) * a, 1e-12);
-    EXPECT_NEAR(near[2], (1 - a) * (1 - a), 1e-12);
-    EXPECT_NEAR(near[3], 1.0, 1e-12);
-    const Color reversed = resolveReference(list, blue, true); // now 0.75 is nearer
-    EXPECT_NEAR(reversed[0], (1 - a) * a, 1e-12);
-    EXPECT_NEAR(reversed[1], a, 1e-12);
+  const std::array<Color, 1> blue = {Color{0.0, 0.0, 1.0, 1.0}};
+  for (const bool nearestIsOne : {false, true}) {
+    PixelList pixel;
+    pixel.coding.nearestIsOne = nearestIsOne;
+    const NodeWords red = node(pixel.coding, {{1.0, 0.0, 0.0, 0.5}, 0.25F});
+    const NodeWords green = node(pixel.coding, {{0.0, 1.0, 0.0, 0.5}, 0.75F});
+    for (const auto& list : {std::vector{red, green}, std::vector{green, red}}) {
+      pixel.nodes = list;
+      const double front = a;
+      const double back = (1 - a) * a;
+      expectColor(resolvePixel(pixel, blue),
+                  {nearestIsOne ? back : front, nearestIsOne ? front : back, (1 - a) * (1 - a), 1.0});
+    }
   }
 }
 
 TEST(ReferenceResolve, NothingChangesNothing) {
-  const Color behind = {0.1, 0.2, 0.3, 0.4};
-  const Color result = resolveReference({}, behind, false);
-  for (unsigned i = 0; i < 4; ++i) EXPECT_NEAR(result[i], behind[i], 1e-15);
+  const std::array<Color, 1> behind = {Color{0.1, 0.2, 0.3, 0.4}};
+  expectColor(resolvePixel({}, behind), behind[0]);
+}
+
+// hdr at alpha 1/3 = 21845/65535, which 16 bits hold exactly.
+TEST(ReferenceResolve, EveryBlendModeByHand) {
+  const double a = 1.0 / 3.0;
+  const Color d = {0.5, 0.25, 1.0, 0.75};
+  const auto resolve = [&](std::uint32_t blend) {
+    PixelList pixel;
+    pixel.coding.format = VITRAIL_FORMAT_HDR;
+    pixel.nodes = {node(pixel.coding, {{4.0, 0.5, 0.0, a}, 0.5F, blend, 1})};
+    return resolvePixel(pixel, std::span(&d, 1));
+  };
+  expectColor(resolve(VITRAIL_OVER), {4 * a + d[0] * 2 * a, 0.5 * a + d[1] * 2 * a, d[2] * 2 * a, a + d[3] * 2 * a});
+  expectColor(resolve(VITRAIL_PREMULTIPLIED), {4 + d[0] * 2 * a, 0.5 + d[1] * 2 * a, d[2] * 2 * a, a + d[3] * 2 * a});
+  expectColor(resolve(VITRAIL_ADDITIVE), {4 * a + d[0], 0.5 * a + d[1], d[2], d[3]});
+  expectColor(resolve(VITRAIL_MULTIPLY), {(2 * a + 4 * a) * d[0], (2 * a + 0.5 * a) * d[1], 2 * a * d[2], d[3]});
+}
+
+TEST(ReferenceResolve, EachSampleBlendsWhatCoversIt) {
+  PixelList pixel;
+  pixel.coding.samples = 4;
+  const Fragment red = {{1.0, 0.0, 0.0, 1.0}, 0.2F, VITRAIL_OVER, 0x3};
+  const Fragment green = {{0.0, 1.0, 0.0, 1.0}, 0.6F, VITRAIL_OVER, 0x6};
+  pixel.nodes = {node(pixel.coding, green), node(pixel.coding, red)};
+  const std::array<Color, 4> behind = {Color{}, Color{}, Color{}, Color{0.0, 0.0, 1.0, 1.0}};
+  expectColor(resolvePixel(pixel, behind), {0.5, 0.25, 0.25, 1.0});
+  // The opaque depth hides red nowhere, green where it is nearer than it, not where it is as near.
+  const std::array<float, 4> opaque = {0.2F, 0.3F, 0.6F, 0.0F};
+  pixel.opaqueDepth = opaque;
+  expectColor(resolvePixel(pixel, behind), {0.5, 0.25, 0.25, 1.0});
+  const std::array<float, 4> nearer = {0.2F, 0.1F, 0.5999F, 0.0F};
+  pixel.opaqueDepth = nearer;
+  expectColor(resolvePixel(pixel, behind), {0.25, 0.0, 0.25, 0.5});
+}
+
+// A bound of one: the second and the third layer become their weighted average, with the right transmittance.
+TEST(ReferenceResolve, LayersBeyondTheBoundAreAveraged) {
+  PixelList pixel;
+  pixel.coding.format = VITRAIL_FORMAT_HDR;
+  const double a = 1.0 / 3.0;
+  pixel.nodes = {node(pixel.coding, {{0.0, 0.0, 1.0, 1.0 / 5.0}, 0.9F}), node(pixel.coding, {{0.0, 1.0, 0.0, a}, 0.8F}),
+                 node(pixel.coding, {{1.0, 0.0, 0.0, a}, 0.1F})};
+  const Blended exact = resolveSample(pixel, 0);
+  expectColor(exact.color, {a, 2.0 / 3 * a, 4.0 / 9 / 5, 1 - 4.0 / 9 * 4 / 5});
+  pixel.maxLayers = 1;
+  const Blended bounded = resolveSample(pixel, 0);
+  const double opacity = 1 - 2.0 / 3 * 4 / 5;
+  const double share = opacity / (1.0 / 3 + 1.0 / 5);
+  expectColor(bounded.color, {a, 2.0 / 3 * share / 3, 2.0 / 3 * share / 5, 1 - 4.0 / 9 * 4 / 5});
+  expectColor(bounded.transmittance, exact.transmittance);
+  pixel.maxLayers = 3;
+  expectColor(resolveSample(pixel, 0).color, exact.color);
+  pixel.maxLayers = 2; // the last one alone is its own average
+  expectColor(resolveSample(pixel, 0).color, exact.color);
+}
+
+TEST(ReferenceResolve, TheAverageOfOtherModes) {
+  const std::array<Fragment, 2> lights = {Fragment{{1.0, 0.0, 0.0, 0.5}, 0.0F, VITRAIL_ADDITIVE, 1},
+                                          Fragment{{0.0, 1.0, 0.0, 1.0}, 0.0F, VITRAIL_MULTIPLY, 1}};
+  const Blended sum = weightedAverage(lights);
+  expectColor(sum.color, {0.5, 0.0, 0.0, 0.0});
+  expectColor(sum.transmittance, {0.0, 1.0, 0.0, 1.0});
 }
 
 } // namespace

@@ -101,6 +101,8 @@ const std::map<std::string, std::string>& expectedMessages() {
       {"material_range.gltf", "mesh 0: primitives[0].material is 0, but materials has 0 elements"},
       {"material_texture_range.gltf",
        "material 0: pbrMetallicRoughness.baseColorTexture.index is 1, but textures has 1 element"},
+      {"material_transmission_range.gltf",
+       "material 0: extensions.KHR_materials_transmission.transmissionTexture.index is 1, but textures has 1 element"},
       {"mesh_mode.gltf", "mesh 0 primitive 0: mode is 7, which is none"},
       {"mesh_points_only.gltf", "the file holds no triangles"},
       {"no_asset.gltf", "the JSON has no asset, so it is not glTF"},

@@ -1,4 +1,5 @@
 // The values that glTF files load to: one small file of the corpus a feature.
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -219,6 +220,27 @@ TEST(LoadGltf, MaterialsTexturesAndSamplers) {
   EXPECT_FALSE(sampler.minLinear);
   EXPECT_TRUE(sampler.mipLinear);
   EXPECT_TRUE(sampler.mipmaps);
+}
+
+TEST(LoadGltf, Transmission) {
+  const Scene scene = loadGood("transmission.gltf");
+  const auto named = [&](const std::string& name) {
+    return *std::ranges::find(scene.materials, name, &Material::name);
+  };
+  EXPECT_EQ(named("clear").transmission, 1.0F);
+  EXPECT_EQ(named("clear").transmissionTexture.image, -1);
+  EXPECT_TRUE(isTransparent(named("clear"))) << "in any alphaMode";
+  EXPECT_EQ(named("clear").alphaMode, AlphaMode::Opaque);
+  EXPECT_EQ(named("half").transmission, 0.5F);
+  EXPECT_EQ(named("textured").transmission, 0.9F);
+  EXPECT_EQ(named("textured").transmissionTexture.image, 1);
+  EXPECT_TRUE(isTransparent(named("cut")));
+  EXPECT_EQ(named("cut").alphaMode, AlphaMode::Mask);
+  EXPECT_EQ(named("wall").transmission, 0.0F);
+  EXPECT_FALSE(isTransparent(named("wall")));
+  Material unlit = named("clear");
+  unlit.unlit = true;
+  EXPECT_FALSE(isTransparent(unlit)) << "KHR_materials_unlit leaves only the base colour";
 }
 
 TEST(LoadGltf, TextureTransformsScaleThenTurnThenMove) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <tuple>
 
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -13,6 +14,7 @@
 #include "../reference/compare.h"
 #include "../reference/rays.h"
 #include "../reference/shading.h"
+#include "../reference/surfaces.h"
 #include "../reference/test_scenes.h"
 
 namespace vitrail::tool::reference {
@@ -337,6 +339,172 @@ TEST(ReferencePictureTest, PerspectiveClipsByViewDepth) {
   EXPECT_EQ(renderReference(scene, options).layers[0], 2U);
 }
 
+const Rectangle kAll{glm::vec2(-9.0F), glm::vec2(9.0F), 0.0F};
+
+// Red of alpha 1/2 adds half of red; the picture's alpha stays.
+TEST(ReferenceBlendModes, AdditiveSurfacesAddTheirLight) {
+  Scene scene;
+  Material flame = unlitMaterial({1.0F, 0.0F, 0.0F, 0.5F});
+  flame.blend = BlendMode::Additive;
+  addRectangle(scene, kAll, flame);
+  ReferenceOptions options = straightOptions(1, 1);
+  options.background.srgb = {0.0F, 0.0F, 1.0F};
+  expectNear(renderReference(scene, options).exact.linear[0], {0.5, 0.0, 1.0}, 1e-7);
+  options.background.kind = Background::Kind::Transparent;
+  const Reference reference = renderReference(scene, options);
+  expectNear(reference.exact.linear[0], {0.5, 0.0, 0.0}, 1e-7);
+  EXPECT_EQ(reference.exact.linear[0].a, 0.0);
+  expectNear(reference.rounded.linear[0], {128.0 / 255, 0.0, 0.0}, 1e-12);
+  scene.materials[0].alphaMode = AlphaMode::Opaque; // only blended surfaces add
+  expectNear(renderReference(scene, options).exact.linear[0], {1.0, 0.0, 0.0}, 1e-7);
+}
+
+Material glass() {
+  Material material;
+  material.transmission = 0.75F;
+  material.metallic = 0.25F;
+  material.roughness = 0.5F;
+  material.baseColor = {0.25F, 0.5F, 0.75F, 1.0F};
+  return material;
+}
+
+// C + q * base * d, and with an X-ray factor k: k * C + mix(1, q * base, k) * d.
+TEST(ReferenceBlendModes, TransmissionTintsWhatIsBehind) {
+  Scene scene;
+  addRectangle(scene, kAll, glass());
+  Surface surface;
+  surface.toLight = glm::normalize(glm::dvec3(-0.4, 0.7, 0.6));
+  surface.base = {0.25, 0.5, 0.75};
+  surface.metallic = 0.25;
+  surface.roughness = 0.5;
+  surface.transmission = 0.75;
+  const glm::dvec3 c = shade(surface);
+  const double q = 0.75 * 0.75;
+  ReferenceOptions options = straightOptions(1, 1);
+  options.background.srgb = {1.0F, 0.0F, 1.0F};
+  const glm::dvec3 d(1.0, 0.0, 1.0);
+  Reference reference = renderReference(scene, options);
+  expectNear(reference.exact.linear[0], c + q * surface.base * d, 1e-7);
+  EXPECT_EQ(reference.layers[0], 2U);
+  // Stored: alpha 1 - q = 0.4375 is 112/255, and the tint whole.
+  EXPECT_NEAR(reference.rounded.linear[0].a, 1.0, 1e-12);
+  options.background.kind = Background::Kind::Transparent;
+  EXPECT_NEAR(renderReference(scene, options).rounded.linear[0].a, 112.0 / 255, 1e-12);
+  options.background.kind = Background::Kind::Color;
+  options.opacity = 0.5F;
+  reference = renderReference(scene, options);
+  expectNear(reference.exact.linear[0], 0.5 * c + (0.5 + 0.5 * q * surface.base) * d, 1e-7);
+}
+
+// Two panes at different depths: the tint of the front one applies to the reflection of the one behind it.
+TEST(ReferenceBlendModes, PanesKeepTheirFragmentsTogether) {
+  Scene scene;
+  Material front = glass();
+  front.roughness = 1.0F;
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), -1.0F}, glass());
+  addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), 1.0F}, front);
+  const auto colorOf = [&](double roughness) {
+    Surface surface;
+    surface.toLight = glm::normalize(glm::dvec3(-0.4, 0.7, 0.6));
+    surface.base = {0.25, 0.5, 0.75};
+    surface.metallic = 0.25;
+    surface.roughness = roughness;
+    surface.transmission = 0.75;
+    return shade(surface);
+  };
+  const glm::dvec3 tint = 0.75 * 0.75 * glm::dvec3(0.25, 0.5, 0.75);
+  const Reference reference = renderReference(scene, straightOptions(1, 1)); // over white
+  expectNear(reference.exact.linear[0], colorOf(1.0) + tint * (colorOf(0.5) + tint), 1e-7);
+  EXPECT_EQ(reference.layers[0], 4U);
+}
+
+TEST(ReferenceBlendModes, UnlitSurfacesDoNotTransmit) {
+  Scene scene;
+  Material material = unlitMaterial({0.0F, 1.0F, 0.0F, 1.0F}, AlphaMode::Opaque);
+  material.transmission = 1.0F;
+  addRectangle(scene, kAll, material);
+  const Reference reference = renderReference(scene, straightOptions(1, 1));
+  expectPixel(reference.exact, 0, {0, 255, 0, 255});
+  EXPECT_EQ(reference.layers[0], 0U);
+}
+
+TEST(ReferenceNodeFormats, EachRoundsAndClampsInItsOwnWay) {
+  Scene scene;
+  addRectangle(scene, kAll, unlitMaterial({4.0F, 0.5F, 0.0F, 0.5F}));
+  ReferenceOptions options = straightOptions(1, 1);
+  options.background.srgb = glm::vec3(0.0F);
+  Reference reference = renderReference(scene, options);
+  EXPECT_NEAR(reference.exact.linear[0].r, 0.5, 1e-7); // clamped to 1
+  options.nodeFormat = layout::VITRAIL_FORMAT_COMPACT;
+  reference = renderReference(scene, options);
+  EXPECT_NEAR(reference.rounded.linear[0].r, 32.0 / 63, 1e-12);
+  EXPECT_NEAR(reference.rounded.linear[0].g, 32.0 / 63 * decodeSrgb(46.0 / 63), 1e-12); // 0.7353570 * 63 = 46.33
+  options.nodeFormat = layout::VITRAIL_FORMAT_HDR;
+  reference = renderReference(scene, options);
+  EXPECT_NEAR(reference.exact.linear[0].r, 2.0, 1e-7);
+  EXPECT_NEAR(reference.rounded.linear[0].r, 4.0 * 32768 / 65535, 1e-12);
+}
+
+TEST(ReferenceSamples, PositionsAreTheStandardOnes) {
+  for (const std::uint32_t samples : {1U, 2U, 4U, 8U}) {
+    glm::dvec2 sum(0.0);
+    for (std::uint32_t s = 0; s < samples; ++s) {
+      sum += standardSamplePosition(samples, s);
+      for (std::uint32_t other = 0; other < s; ++other) { // no two in one row or column
+        EXPECT_NE(standardSamplePosition(samples, s).x, standardSamplePosition(samples, other).x);
+        EXPECT_NE(standardSamplePosition(samples, s).y, standardSamplePosition(samples, other).y);
+      }
+    }
+    EXPECT_NEAR(sum.x / samples, 0.5, samples == 8 ? 0.04 : 1e-12);
+  }
+  EXPECT_EQ(standardSamplePosition(4, 1), glm::dvec2(0.875, 0.375));
+  EXPECT_EQ(standardSamplePosition(8, 7), glm::dvec2(0.9375, 0.0625));
+}
+
+// A rectangle over the left part of a pixel, up to `edge`, in pixels of a picture of one.
+Rectangle leftOf(float edge, float z) { return {glm::vec2(-9.0F), glm::vec2(2.0F * edge - 1.0F, 9.0F), z}; }
+
+TEST(ReferenceSamples, ASurfaceCoversWhatLiesInside) {
+  for (const auto& [samples, edge, share] :
+       {std::tuple(1U, 0.6F, 1.0), std::tuple(2U, 0.6F, 0.5), std::tuple(4U, 0.6F, 0.5), std::tuple(4U, 0.2F, 0.25),
+        std::tuple(4U, 0.7F, 0.75), std::tuple(8U, 0.1F, 0.125), std::tuple(8U, 0.6F, 0.625)}) {
+    Scene scene;
+    addRectangle(scene, leftOf(edge, 0.0F), unlitMaterial({1.0F, 1.0F, 1.0F, 0.5F}));
+    ReferenceOptions options = straightOptions(1, 1);
+    options.background.srgb = glm::vec3(0.0F);
+    options.samples = samples;
+    const Reference reference = renderReference(scene, options);
+    EXPECT_NEAR(reference.exact.linear[0].r, 0.5 * share, 1e-7) << samples << " samples, edge " << edge;
+    EXPECT_NEAR(reference.rounded.linear[0].r, 128.0 / 255 * share, 1e-12) << samples << " samples, edge " << edge;
+    EXPECT_EQ(reference.layers[0], 1U);
+    EXPECT_EQ(int{reference.edge[0]}, 0);
+  }
+}
+
+// Green glass behind an opaque red rectangle over samples 0 and 2: those stay red, the others are green over blue.
+TEST(ReferenceSamples, EachSampleHasItsOwnOpaqueSurface) {
+  Scene scene;
+  addRectangle(scene, leftOf(0.5F, 1.0F), unlitMaterial({1.0F, 0.0F, 0.0F, 1.0F}, AlphaMode::Opaque));
+  addRectangle(scene, kAll, unlitMaterial({0.0F, 1.0F, 0.0F, 0.5F}));
+  ReferenceOptions options = straightOptions(1, 1);
+  options.background.srgb = {0.0F, 0.0F, 1.0F};
+  options.samples = 4;
+  expectNear(renderReference(scene, options).exact.linear[0], {0.5, 0.25, 0.25}, 1e-7);
+}
+
+// Only the sample at x = 0.875 is covered, and the colour is that of the centre, beyond the surface's edge.
+TEST(ReferenceSamples, SurfacesAreShadedAtTheCentre) {
+  Scene scene;
+  addRectangle(scene, {glm::vec2(0.4F, -9.0F), glm::vec2(2.4F, 9.0F), 0.0F}, unlitMaterial(glm::vec4(1.0F)));
+  for (Vertex& vertex : scene.meshes[0].vertices) {
+    vertex.color = glm::vec4(glm::vec3(0.5F + 0.1F * vertex.position.x), 1.0F); // 0.5 at the centre, x = 0
+  }
+  ReferenceOptions options = straightOptions(1, 1);
+  options.background.srgb = glm::vec3(0.0F);
+  options.samples = 4;
+  expectNear(renderReference(scene, options).exact.linear[0], glm::dvec3(0.125), 1e-7);
+}
+
 TEST(ReferenceCompare, SeparatesEdgesFromTheRest) {
   Reference reference;
   reference.edge = {0, 1, 0};
@@ -363,6 +531,9 @@ TEST(ReferencePictureTest, TexturesBeyondItAreRefused) {
   Scene scene;
   addRectangle(scene, {}, unlitMaterial(glm::vec4(1.0F)));
   scene.materials[0].normalTexture.image = 0;
+  EXPECT_THROW(renderReference(scene, straightOptions(1, 1)), std::invalid_argument);
+  scene.materials[0].normalTexture.image = -1;
+  scene.materials[0].transmissionTexture.image = 0;
   EXPECT_THROW(renderReference(scene, straightOptions(1, 1)), std::invalid_argument);
 }
 

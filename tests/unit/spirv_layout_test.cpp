@@ -1,38 +1,47 @@
-// The structures that C++ and GLSL share: the strides and offsets of the compiled shaders equal those of the compiler.
+// The structures that C++ and GLSL share: the strides and offsets of all compiled shaders equal those of the compiler.
 #include <gtest/gtest.h>
 
 #include <spirv/unified1/spirv.hpp>
 
 #include <cstddef>
 #include <map>
-#include <span>
+#include <set>
 #include <utility>
 #include <vector>
 
-#include "shaders/points.frag.h"
-#include "shaders/resolve_long_rgba16f.h"
-#include "shaders/resolve_rgba16f.h"
-#include "shaders/resolve_rgba32f.h"
+#include "shaders/points_address.frag.h"
+#include "shaders/points_post_depth.frag.h"
+#include "shaders/points_post_depth_address.frag.h"
+#include "shaders/points_simple.frag.h"
+#include "shaders/shader_code.h"
 #include "vitrail/layout.h"
 
 namespace vitrail::tests {
 namespace {
 
 using Words = std::span<const std::uint32_t>;
+using Offsets = std::vector<std::size_t>;
+
+struct Pointer {
+  std::uint32_t storageClass = 0;
+  std::uint32_t pointee = 0;
+};
 
 // What the test needs of a SPIR-V module: types, and the decorations that lay buffers out.
 struct Module {
   std::map<std::uint32_t, std::vector<std::uint32_t>> structs;              // id: member types
   std::map<std::uint32_t, std::uint32_t> runtimeArrays;                     // id: element type
-  std::map<std::uint32_t, std::uint32_t> pointers;                          // id: pointee
+  std::map<std::uint32_t, Pointer> pointers;                                // id
   std::map<std::uint32_t, std::uint32_t> strides;                           // array id: ArrayStride
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> offsets; // struct id, member: Offset
+  std::map<std::uint32_t, std::uint32_t> sets;                              // variable id: DescriptorSet
   std::map<std::uint32_t, std::uint32_t> bindings;                          // variable id: Binding
   std::map<std::uint32_t, std::uint32_t> variables;                         // variable id: pointer type
 };
 
 void readDecoration(Module& module, Words op) {
   if (op[2] == spv::DecorationArrayStride) module.strides[op[1]] = op[3];
+  if (op[2] == spv::DecorationDescriptorSet) module.sets[op[1]] = op[3];
   if (op[2] == spv::DecorationBinding) module.bindings[op[1]] = op[3];
 }
 
@@ -49,7 +58,7 @@ Module parse(Words code) {
         module.runtimeArrays[op[1]] = op[2];
         break;
       case spv::OpTypePointer:
-        module.pointers[op[1]] = op[3];
+        module.pointers[op[1]] = {op[2], op[3]};
         break;
       case spv::OpVariable:
         module.variables[op[2]] = op[1];
@@ -68,48 +77,143 @@ Module parse(Words code) {
   return module;
 }
 
-// The type of the only member of the block at a binding of set 0; the colour image shares binding 0 and is no struct.
-std::uint32_t blockMember(const Module& module, std::uint32_t binding) {
+// The types of the first members of all blocks at a binding of set 0; blocks of several formats share one.
+std::set<std::uint32_t> blockMembers(const Module& module, std::uint32_t binding) {
+  std::set<std::uint32_t> members;
   for (const auto& [variable, number] : module.bindings) {
-    if (number != binding) continue;
-    const auto block = module.structs.find(module.pointers.at(module.variables.at(variable)));
-    if (block != module.structs.end()) return block->second.at(0);
+    if (number != binding || module.sets.at(variable) != 0) continue;
+    members.insert(module.structs.at(module.pointers.at(module.variables.at(variable)).pointee).at(0));
   }
-  ADD_FAILURE() << "no block at binding " << binding;
-  return 0;
+  return members;
 }
 
-void expectOffsets(const Module& module, std::uint32_t type, const std::vector<std::size_t>& offsets) {
-  ASSERT_EQ(module.structs.at(type).size(), offsets.size());
-  for (std::uint32_t i = 0; i < offsets.size(); ++i)
-    EXPECT_EQ(module.offsets.at({type, i}), offsets[i]) << "member " << i;
+// The same of all blocks that are reached by address.
+std::set<std::uint32_t> addressedMembers(const Module& module) {
+  std::set<std::uint32_t> members;
+  for (const auto& [id, pointer] : module.pointers) {
+    const auto block = module.structs.find(pointer.pointee);
+    if (pointer.storageClass != spv::StorageClassPhysicalStorageBuffer || block == module.structs.end()) continue;
+    if (module.runtimeArrays.contains(block->second.at(0))) members.insert(block->second.at(0));
+  }
+  return members;
 }
 
-void expectLayout(Words code) {
+Offsets offsetsOf(const Module& module, std::uint32_t type) {
+  Offsets offsets;
+  if (!module.structs.contains(type)) return offsets; // a word
+  for (std::uint32_t i = 0; i < module.structs.at(type).size(); ++i) offsets.push_back(module.offsets.at({type, i}));
+  return offsets;
+}
+
+const Offsets& controlOffsets() {
+  using layout::VitrailControl;
+  static const Offsets offsets = {offsetof(VitrailControl, stored),
+                                  offsetof(VitrailControl, missingLow),
+                                  offsetof(VitrailControl, missingHigh),
+                                  offsetof(VitrailControl, layersMax),
+                                  offsetof(VitrailControl, coveredPixels),
+                                  offsetof(VitrailControl, cutPixels),
+                                  offsetof(VitrailControl, approximatePixels),
+                                  offsetof(VitrailControl, mediumLists),
+                                  offsetof(VitrailControl, mediumGroupsX),
+                                  offsetof(VitrailControl, mediumGroupsY),
+                                  offsetof(VitrailControl, mediumGroupsZ),
+                                  offsetof(VitrailControl, longLists),
+                                  offsetof(VitrailControl, longGroupsX),
+                                  offsetof(VitrailControl, longGroupsY),
+                                  offsetof(VitrailControl, longGroupsZ),
+                                  offsetof(VitrailControl, overflowGroupsX),
+                                  offsetof(VitrailControl, overflowGroupsY),
+                                  offsetof(VitrailControl, overflowGroupsZ)};
+  return offsets;
+}
+
+const Offsets& parameterOffsets() {
+  using layout::VitrailParameters;
+  static const Offsets offsets = {offsetof(VitrailParameters, x),        offsetof(VitrailParameters, y),
+                                  offsetof(VitrailParameters, width),    offsetof(VitrailParameters, height),
+                                  offsetof(VitrailParameters, capacity), offsetof(VitrailParameters, format),
+                                  offsetof(VitrailParameters, samples),  offsetof(VitrailParameters, nearestIsOne),
+                                  offsetof(VitrailParameters, keepSums), offsetof(VitrailParameters, unused),
+                                  offsetof(VitrailParameters, nodesLow), offsetof(VitrailParameters, nodesHigh)};
+  return offsets;
+}
+
+// What the pool is an array of, by size: links, the nodes of 8 bytes (standard without its link, and compact), and hdr.
+const std::map<std::size_t, Offsets>& nodeOffsets() {
   using namespace layout;
-  const Module module = parse(code);
-  expectOffsets(module, blockMember(module, 0),
-                {offsetof(VitrailParameters, width), offsetof(VitrailParameters, height),
-                 offsetof(VitrailParameters, capacity), offsetof(VitrailParameters, nearestIsOne)});
-  expectOffsets(
-      module, blockMember(module, 1),
-      {offsetof(VitrailControl, stored), offsetof(VitrailControl, missingLow), offsetof(VitrailControl, missingHigh),
-       offsetof(VitrailControl, layersMax), offsetof(VitrailControl, coveredPixels),
-       offsetof(VitrailControl, cutPixels), offsetof(VitrailControl, longLists), offsetof(VitrailControl, groupsX),
-       offsetof(VitrailControl, groupsY), offsetof(VitrailControl, groupsZ)});
-  EXPECT_EQ(module.strides.at(blockMember(module, 2)), sizeof(uint));
-  const std::uint32_t nodes = blockMember(module, 3);
-  EXPECT_EQ(module.strides.at(nodes), sizeof(VitrailNode));
-  expectOffsets(module, module.runtimeArrays.at(nodes),
-                {offsetof(VitrailNode, color), offsetof(VitrailNode, depth), offsetof(VitrailNode, next)});
+  static_assert(sizeof(VitrailNodeStandard) == sizeof(VitrailNodeCompact));
+  static_assert(offsetof(VitrailNodeStandard, words) == offsetof(VitrailNodeCompact, words));
+  static const std::map<std::size_t, Offsets> offsets = {
+      {sizeof(layout::uint), {}},
+      {sizeof(VitrailNodeCompact), {offsetof(VitrailNodeCompact, words)}},
+      {sizeof(VitrailNodeHdr), {offsetof(VitrailNodeHdr, words)}},
+  };
+  return offsets;
 }
 
-TEST(SpirvLayout, CollectEqualsTheStructs) { expectLayout(shaders::points_frag); }
+// All three formats are there, and each is laid out as its struct.
+void expectNodes(const Module& module, const std::set<std::uint32_t>& arrays) {
+  std::set<std::size_t> strides;
+  for (const std::uint32_t array : arrays) {
+    const std::size_t stride = module.strides.at(array);
+    strides.insert(stride);
+    ASSERT_TRUE(nodeOffsets().contains(stride)) << "no node has " << stride << " bytes";
+    EXPECT_EQ(offsetsOf(module, module.runtimeArrays.at(array)), nodeOffsets().at(stride));
+  }
+  EXPECT_EQ(strides.size(), nodeOffsets().size());
+}
 
-TEST(SpirvLayout, ResolveEqualsTheStructs) {
-  expectLayout(shaders::resolve_rgba16f);
-  expectLayout(shaders::resolve_rgba32f);
-  expectLayout(shaders::resolve_long_rgba16f);
+void expectShared(const Module& module) {
+  for (const std::uint32_t type : blockMembers(module, 0)) EXPECT_EQ(offsetsOf(module, type), parameterOffsets());
+  for (const std::uint32_t type : blockMembers(module, 1)) EXPECT_EQ(offsetsOf(module, type), controlOffsets());
+  for (const std::uint32_t binding : {2U, 4U, 5U, 6U}) { // head pointers, sums, lists
+    for (const std::uint32_t array : blockMembers(module, binding)) {
+      EXPECT_EQ(module.strides.at(array), sizeof(layout::uint)) << "binding " << binding;
+    }
+  }
+  EXPECT_EQ(blockMembers(module, 0).size(), 1U);
+  EXPECT_EQ(blockMembers(module, 1).size(), 1U);
+}
+
+void expectLayout(Words code, bool byAddress) {
+  const Module module = parse(code);
+  expectShared(module);
+  expectNodes(module, byAddress ? addressedMembers(module) : blockMembers(module, 3));
+}
+
+TEST(SpirvLayout, CollectEqualsTheStructs) {
+  expectLayout(shaders::points_simple_frag, false);
+  expectLayout(shaders::points_post_depth_frag, false);
+  expectLayout(shaders::points_address_frag, true);
+  expectLayout(shaders::points_post_depth_address_frag, true);
+}
+
+void expectKernels(bool byAddress, bool networks) {
+  for (const ColorImage color : {ColorImage::Rgba16f, ColorImage::Rgba32f}) {
+    for (const bool multisampled : {false, true}) {
+      for (const Kernel kernel :
+           {Kernel::Resolve, Kernel::ResolveMedium, Kernel::ResolveLong, Kernel::ResolveOverflow}) {
+        SCOPED_TRACE(static_cast<int>(kernel));
+        expectLayout(kernelCode(kernel, color, multisampled, byAddress, networks), byAddress);
+      }
+    }
+  }
+  for (const auto resolve : {FragmentResolve::Single, FragmentResolve::SingleDual, FragmentResolve::PerSample,
+                             FragmentResolve::PerSampleDual, FragmentResolve::PerSampleDepth,
+                             FragmentResolve::PerSampleDualDepth, FragmentResolve::PerPixel}) {
+    SCOPED_TRACE(static_cast<int>(resolve));
+    expectLayout(fragmentCode(resolve, byAddress, networks), byAddress);
+  }
+  expectLayout(kernelCode(Kernel::SortLong, ColorImage::Rgba16f, false, byAddress, networks), byAddress);
+  expectShared(parse(kernelCode(Kernel::SortFind, ColorImage::Rgba16f, false, byAddress, networks)));
+  expectShared(parse(kernelCode(Kernel::ClearSums, ColorImage::Rgba16f, false, byAddress, networks)));
+}
+
+TEST(SpirvLayout, EveryKernelEqualsTheStructs) {
+  for (const bool byAddress : {false, true}) {
+    for (const bool networks : {false, true}) expectKernels(byAddress, networks);
+  }
 }
 
 } // namespace

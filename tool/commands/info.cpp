@@ -40,11 +40,14 @@ void printDevice(const DeviceSummary& device) {
     line("renders", fmt::format("no, it lacks {}", device.missing));
     return;
   }
-  const std::uint64_t pool = std::min({device.maxBindingBytes, device.maxAllocationBytes, device.memoryBytes});
+  std::uint64_t pool = std::min(device.maxAllocationBytes, device.memoryBytes);
+  if (!device.features.bufferDeviceAddress) pool = std::min(pool, device.maxBindingBytes);
   line("renders", "yes, exactly");
   line("memory", sizeText(device.memoryBytes));
-  line("fragments", fmt::format("at most {:.1f} M in one picture ({} in one buffer)",
+  line("fragments", fmt::format("any number, {:.1f} M at once ({}): pictures with more are drawn in tiles",
                                 static_cast<double>(pool) / kNodeBytes / 1e6, sizeText(pool)));
+  line("samples", fmt::format("{} a pixel{}", sampleCountsText(device.features.sampleCounts),
+                              device.features.postDepthCoverage ? "" : ", without post-depth coverage"));
   // Mesa's CPU driver ends a shader's loops after a number of turns (docs/resolve.md).
   const bool loopsEnd = device.driver.find("llvmpipe") != std::string::npos;
   line("layers", loopsEnd ? "at most about 15,000 in one pixel" : "any number in one pixel");

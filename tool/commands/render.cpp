@@ -55,11 +55,12 @@ RenderResult renderScene(const RenderArguments& arguments, const Scene& scene) {
   options.height = arguments.height;
   options.view = chooseView(arguments, scene);
   options.background = arguments.background.value_or(scene.background.value_or(Background{}));
+  if (arguments.memoryBudget) options.memoryBudget = std::uint64_t{*arguments.memoryBudget} << 20U;
 
   Gpu gpu({arguments.device, arguments.validate});
   RenderResult result;
   {
-    Renderer renderer(gpu, scene, arguments.opacity);
+    Renderer renderer(gpu, scene, arguments.opacity, DrawOrder::Forward, arguments.method);
     result = renderer.render(options);
   }
   gpu.close(); // what was not destroyed by now is a validation error

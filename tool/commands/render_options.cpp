@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -35,6 +36,21 @@ How to look at it:
                         0,90 the top; ZOOM 2 shows it twice as large
   --opacity A           X-ray: makes every material translucent, 0.004 to 1
   --background B        a colour as #rrggbb (sRGB), sky, or transparent (a PNG with alpha)
+
+How to blend it:
+  --method M            linked-list (default): exact. For comparisons: unsorted, plain blending in
+                        the order of the file, wrong wherever a nearer surface comes first;
+                        insertion, lists as most published samples sort them
+  --samples N           1 (default), 2, 4 or 8 samples a pixel, as the device offers
+  --msaa-resolve R      per-pixel (default): the samples are blended and averaged at once.
+                        per-sample: each is blended into a multisampled picture. The same picture
+  --nodes F             how a fragment is stored: standard (default, 12 bytes), compact (8 bytes,
+                        coarser colours and depths), hdr (16 bytes, brighter than white)
+  --resolve R           where the lists are sorted: compute or fragment shaders (default: the faster
+                        one of the device). The same picture
+  --layers N            blends only the nearest N surfaces of a pixel exactly (default: all)
+  --memory-budget MIB   for fragments, at least 1; a picture that needs more is drawn in tiles, the
+                        same picture (default: what the device can give)
 
 Where to:
   -o, --output FILE     the picture, .png; it appears whole or not at all
@@ -142,6 +158,50 @@ void addCount(CLI::App& command, const std::string& name, std::optional<std::uin
   });
 }
 
+// A choice by name. `names` is what to say where there is none of that name.
+template <typename Choice>
+void addChoice(CLI::App& command, const std::string& name, const char* names, Choice& target,
+               std::optional<Choice> (*named)(std::string_view)) {
+  command.add_option_function<std::string>(name, [name, names, &target, named](const std::string& text) {
+    const std::optional<Choice> choice = named(text);
+    if (!choice) throw CLI::ValidationError(name, fmt::format("'{}' is none of {}", text, names));
+    target = *choice;
+  });
+}
+
+// A whole number from 1.
+template <typename Target>
+void addPositive(CLI::App& command, const std::string& name, Target& target) {
+  command.add_option_function<std::string>(name, [name, &target](const std::string& text) {
+    const auto value = parse<std::uint32_t>(text);
+    if (!value || *value < 1) throw CLI::ValidationError(name, fmt::format("'{}' is not a whole number from 1", text));
+    target = *value;
+  });
+}
+
+void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
+  MethodOptions& method = arguments.method;
+  command.add_option("--method", method.name);
+  addPositive(command, "--samples", method.samples);
+  addPositive(command, "--layers", method.maxLayers);
+  addPositive(command, "--memory-budget", arguments.memoryBudget);
+  addChoice(command, "--nodes", "standard, compact and hdr", method.nodes, nodeFormatNamed);
+  addChoice(command, "--resolve", "compute and fragment", method.resolve, resolveNamed);
+  addChoice(command, "--msaa-resolve", "per-pixel and per-sample", method.msaaResolve, msaaResolveNamed);
+}
+
+void checkMethod(const RenderArguments& arguments) {
+  try {
+    checkMethodOptions(arguments.method);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  const std::string lists = MethodOptions{}.name;
+  if (arguments.memoryBudget && arguments.method.name != lists) {
+    throw UsageError(fmt::format("--memory-budget is of the method {}: {} has none", lists, arguments.method.name));
+  }
+}
+
 } // namespace
 
 void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
@@ -163,6 +223,7 @@ void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
   text("--orbit", setOrbit);
   text("--background", setBackground);
   text("--opacity", setOpacity);
+  addMethodOptions(command, arguments);
 }
 
 void checkRenderArguments(const RenderArguments& arguments) {
@@ -176,6 +237,7 @@ void checkRenderArguments(const RenderArguments& arguments) {
   }
   if (arguments.camera && arguments.orbit)
     throw UsageError("--camera and --orbit exclude each other: give one of them");
+  checkMethod(arguments);
   if (arguments.output.empty()) throw UsageError("no output: add -o picture.png");
   const std::filesystem::path output(arguments.output);
   std::string extension = output.extension().string();

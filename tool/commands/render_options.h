@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "../methods/method_options.h"
 #include "../scene/camera.h"
 #include "../scene/scene.h"
 
@@ -24,6 +25,8 @@ struct RenderArguments {
   std::optional<Orbit> orbit;
   std::optional<float> opacity;
   std::optional<Background> background;
+  MethodOptions method;
+  std::optional<std::uint32_t> memoryBudget; // MiB
   std::string device;
   std::string json; // empty: no report
   bool validate = false;

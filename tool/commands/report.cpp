@@ -15,12 +15,25 @@ std::string countText(std::uint64_t count) {
   return fmt::format("{}", count);
 }
 
+// A text, or null where there is none.
+nlohmann::ordered_json textOrNull(const std::string& text) {
+  return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
+}
+
 } // namespace
 
 std::string toJson(const FrameReport& report) {
   using Json = nlohmann::ordered_json;
   Json passes = Json::object();
   for (const auto& [name, milliseconds] : report.passesMs) passes[name] = milliseconds;
+  Json fragments; // null: the method does not count them
+  Json layers;
+  if (report.counted) {
+    fragments = {{"requested", report.fragmentsRequested},
+                 {"stored", report.fragmentsStored},
+                 {"missing", report.fragmentsMissing}};
+    layers = {{"max", report.layersMax}, {"mean", report.layersMean}};
+  }
   const Json json = {
       {"device", report.device},
       {"api", report.api},
@@ -28,14 +41,19 @@ std::string toJson(const FrameReport& report) {
       {"width", report.width},
       {"height", report.height},
       {"samples", report.samples},
+      {"nodes", textOrNull(report.nodes)},
+      {"resolve", textOrNull(report.resolve)},
+      {"msaa_resolve", textOrNull(report.msaaResolve)},
       {"exact", report.exact},
-      {"fragments",
-       {{"requested", report.fragmentsRequested},
-        {"stored", report.fragmentsStored},
-        {"missing", report.fragmentsMissing}}},
-      {"layers", {{"max", report.layersMax}, {"mean", report.layersMean}}},
+      {"fragments", fragments},
+      {"layers", layers},
+      {"approximate_pixels", report.approximatePixels},
+      {"tiles", report.tiles},
       {"memory",
-       {{"nodes_bytes", report.nodesBytes}, {"heads_bytes", report.headsBytes}, {"peak_bytes", report.peakBytes}}},
+       {{"nodes_bytes", report.nodesBytes},
+        {"heads_bytes", report.headsBytes},
+        {"total_bytes", report.totalBytes},
+        {"peak_bytes", report.peakBytes}}},
       {"passes_ms", passes},
       {"frame_ms", report.frameMs},
   };
@@ -43,9 +61,16 @@ std::string toJson(const FrameReport& report) {
 }
 
 std::string toSummary(const FrameReport& report) {
-  return fmt::format("{}x{}, {} transparent fragments, {} deep, {}, {:.1f} ms on {}", report.width, report.height,
-                     countText(report.fragmentsStored), report.layersMax, report.exact ? "exact" : "not exact",
-                     report.frameMs, report.device);
+  std::string text = fmt::format("{}x{}, ", report.width, report.height);
+  if (report.samples > 1) text += fmt::format("{} samples, ", report.samples);
+  if (report.counted) {
+    text += fmt::format("{} transparent fragments, {} deep, {}, ", countText(report.fragmentsStored), report.layersMax,
+                        report.exact ? "exact" : "not exact");
+  } else {
+    text += fmt::format("{}, not exact, ", report.method);
+  }
+  if (report.tiles > 1) text += fmt::format("{} tiles, ", report.tiles);
+  return text + fmt::format("{:.1f} ms on {}", report.frameMs, report.device);
 }
 
 } // namespace vitrail::tool

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "features.h"
 #include "vk.h"
 
 namespace vitrail::tool {
@@ -237,6 +238,7 @@ DeviceSummary summarize(VkPhysicalDevice device, std::uint32_t index) {
   summary.maxBindingBytes = properties.properties.limits.maxStorageBufferRange;
   summary.maxAllocationBytes = maintenance3.maxMemoryAllocationSize;
   summary.memoryBytes = largestLocalHeap(device);
+  if (summary.missing.empty()) summary.features = supportedFeatures(device);
   summary.timestamps = hasTimestamps(device);
   return summary;
 }
@@ -312,6 +314,7 @@ struct Gpu::Impl {
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t queueFamily = 0;
   VkPhysicalDeviceProperties properties{};
+  GpuFeatures features;
   VkPhysicalDeviceMemoryProperties memoryProperties{};
   std::uint64_t maxAllocation = 0;
   std::atomic<std::uint64_t> memory{0};
@@ -354,13 +357,21 @@ void Gpu::Impl::createDevice() {
   auto features13 = vkStruct<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
   features13.dynamicRendering = VK_TRUE;
   features13.synchronization2 = VK_TRUE;
-  auto features = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
-  features.pNext = &features13;
-  features.features.fragmentStoresAndAtomics = VK_TRUE;
-  features.features.fullDrawIndexUint32 = supported.fullDrawIndexUint32; // for meshes beyond 16.7 M vertices
+  auto features12 = vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+  features12.pNext = &features13;
+  features12.bufferDeviceAddress = features.bufferDeviceAddress ? VK_TRUE : VK_FALSE;
+  auto enabled = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
+  enabled.pNext = &features12;
+  enabled.features.fragmentStoresAndAtomics = VK_TRUE;
+  enabled.features.dualSrcBlend = features.dualSourceBlending ? VK_TRUE : VK_FALSE;
+  enabled.features.sampleRateShading = features.sampleRateShading ? VK_TRUE : VK_FALSE;
+  enabled.features.fullDrawIndexUint32 = supported.fullDrawIndexUint32; // for meshes beyond 16.7 M vertices
 
+  const char* const postDepthCoverage = VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME;
   auto info = vkStruct<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
-  info.pNext = &features;
+  info.pNext = &enabled;
+  info.enabledExtensionCount = features.postDepthCoverage ? 1 : 0;
+  info.ppEnabledExtensionNames = &postDepthCoverage;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queueInfo;
   check(vkCreateDevice(physicalDevice, &info, nullptr, &device), "vkCreateDevice");
@@ -379,6 +390,7 @@ Gpu::Gpu(const GpuOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->queueFamily = findQueueFamily(impl_->physicalDevice).value(); // choose() made sure that there is one
   vkGetPhysicalDeviceProperties(impl_->physicalDevice, &impl_->properties);
   vkGetPhysicalDeviceMemoryProperties(impl_->physicalDevice, &impl_->memoryProperties);
+  impl_->features = supportedFeatures(impl_->physicalDevice);
   impl_->createDevice();
 }
 
@@ -390,6 +402,7 @@ VkDevice Gpu::device() const { return impl_->device; }
 VkQueue Gpu::queue() const { return impl_->queue; }
 std::uint32_t Gpu::queueFamily() const { return impl_->queueFamily; }
 const VkPhysicalDeviceProperties& Gpu::properties() const { return impl_->properties; }
+const GpuFeatures& Gpu::features() const { return impl_->features; }
 const VkPhysicalDeviceMemoryProperties& Gpu::memoryProperties() const { return impl_->memoryProperties; }
 
 std::uint64_t Gpu::maxAllocation() const { return impl_->maxAllocation; }

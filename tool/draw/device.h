@@ -9,6 +9,8 @@
 
 #include <volk.h>
 
+#include "features.h"
+
 namespace vitrail::tool {
 
 // A device, driver or memory that cannot do what was asked: what() is one line that says what and what to do.
@@ -28,7 +30,8 @@ struct DeviceSummary {
   std::uint64_t maxBindingBytes = 0;    // what one shader can reach of one buffer (maxStorageBufferRange)
   std::uint64_t maxAllocationBytes = 0; // the largest single allocation (maxMemoryAllocationSize)
   std::uint64_t memoryBytes = 0;        // the largest device-local heap
-  bool timestamps = false;              // false: passes are not timed
+  GpuFeatures features;
+  bool timestamps = false; // false: passes are not timed
 };
 
 struct GpuOptions {
@@ -39,8 +42,8 @@ struct GpuOptions {
   bool validate = false;
 };
 
-// Instance, device and one queue with graphics and compute, made for Vulkan 1.3 with dynamic rendering and
-// synchronization2.
+// Instance, device and one queue with graphics and compute, made for Vulkan 1.3 with dynamic rendering,
+// synchronization2 and those of GpuFeatures that the device has.
 class Gpu {
  public:
   explicit Gpu(const GpuOptions& options);
@@ -54,6 +57,8 @@ class Gpu {
   VkQueue queue() const;
   std::uint32_t queueFamily() const;
   const VkPhysicalDeviceProperties& properties() const;
+  // What the device was made with.
+  const GpuFeatures& features() const;
   const VkPhysicalDeviceMemoryProperties& memoryProperties() const;
   // The largest single allocation, in bytes.
   std::uint64_t maxAllocation() const;

@@ -30,8 +30,6 @@ glm::dvec3 farMiddle(const Scene& scene) {
   return glm::length(middle) > 8.0 * glm::length(high - low) ? middle : glm::dvec3(0.0);
 }
 
-bool isTransparent(const Material& material, bool all) { return all || material.alphaMode == AlphaMode::Blend; }
-
 // Counts the vertices or indices of a scene without wrapping round.
 void checkCount(std::uint64_t count, std::uint64_t limit, const char* what) {
   if (count > limit) throw GpuError(fmt::format("the model has {} {}; at most {} can be drawn", count, what, limit));
@@ -77,11 +75,13 @@ shaders::MaterialData makeMaterialData(const Material& material, std::optional<f
   data.alphaCutoff = material.alphaCutoff;
   data.alphaFromBase = material.alphaMode == AlphaMode::Blend ? 1.0F : 0.0F;
   data.opacity = opacity.value_or(1.0F);
+  data.transmission = material.transmission;
   data.slots[shaders::SLOT_BASE_COLOR] = makeSlotData(material.baseColorTexture);
   data.slots[shaders::SLOT_METALLIC_ROUGHNESS] = makeSlotData(material.metallicRoughnessTexture);
   data.slots[shaders::SLOT_NORMAL] = makeSlotData(material.normalTexture);
   data.slots[shaders::SLOT_OCCLUSION] = makeSlotData(material.occlusionTexture);
   data.slots[shaders::SLOT_EMISSIVE] = makeSlotData(material.emissiveTexture);
+  data.slots[shaders::SLOT_TRANSMISSION] = makeSlotData(material.transmissionTexture);
   return data;
 }
 
@@ -90,12 +90,27 @@ std::uint32_t featuresOf(const Scene& scene, const Material& material, bool vert
   if (material.unlit) features = (features & 1U << shaders::SLOT_BASE_COLOR) | shaders::FEATURE_UNLIT;
   if (material.alphaMode == AlphaMode::Mask) features |= shaders::FEATURE_MASK;
   if (vertexColors) features |= shaders::FEATURE_VERTEX_COLOR;
+  const bool transmissive = material.transmission > 0.0F && !material.unlit;
+  if (transmissive) features |= shaders::FEATURE_TRANSMISSION;
+  if (!transmissive) features &= ~(1U << shaders::SLOT_TRANSMISSION);
+  if (!transmissive && material.blend == BlendMode::Additive) features |= shaders::FEATURE_ADDITIVE;
   return features;
 }
 
 bool hasVertexColors(const Mesh& mesh) {
   return std::any_of(mesh.vertices.begin(), mesh.vertices.end(),
                      [](const Vertex& vertex) { return vertex.color != glm::vec4(1.0F); });
+}
+
+// The box around a mesh's triangles.
+Bounds boundsOf(const Mesh& mesh) {
+  const glm::vec3& first = mesh.vertices[mesh.indices.front()].position;
+  Bounds bounds{first, first};
+  for (const std::uint32_t index : mesh.indices) {
+    bounds.min = glm::min(bounds.min, mesh.vertices[index].position);
+    bounds.max = glm::max(bounds.max, mesh.vertices[index].position);
+  }
+  return bounds;
 }
 
 std::vector<std::uint32_t> usedMaterials(const Scene& scene) {
@@ -129,13 +144,14 @@ GpuScene::GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
   uploadDraws(uploader, scene);
   textures_ = std::make_unique<MaterialTextures>(gpu, uploader, scene, usedMaterials(scene));
   listDraws(scene, ranges, opacity.has_value(), order);
+  placeBoxes(scene, opacity.has_value());
 }
 
 // A mesh that is drawn both opaque and transparent has its indices twice where their orders differ.
 std::vector<GpuScene::MeshRange> GpuScene::placeMeshes(const Scene& scene, bool allTransparent, DrawOrder order) {
   std::vector<MeshRange> ranges(scene.meshes.size());
   for (const Draw& draw : scene.draws) {
-    const bool transparent = isTransparent(scene.materials.at(draw.material), allTransparent);
+    const bool transparent = allTransparent || isTransparent(scene.materials.at(draw.material));
     MeshRange& range = ranges.at(draw.mesh);
     (transparent ? range.transparent : range.opaque) = true;
   }
@@ -205,7 +221,7 @@ void GpuScene::listDraws(const Scene& scene, const std::vector<MeshRange>& range
     const Draw& source = scene.draws[i];
     const Material& material = scene.materials[source.material];
     const MeshRange& range = ranges[source.mesh];
-    const bool transparent = isTransparent(material, allTransparent);
+    const bool transparent = allTransparent || isTransparent(material);
     GpuDraw draw;
     draw.dataOffset = i * kUniformStride;
     draw.materialOffset = source.material * kUniformStride;
@@ -229,6 +245,17 @@ void GpuScene::listDraws(const Scene& scene, const std::vector<MeshRange>& range
     ordered.push_back(transparent_[i]);
   }
   transparent_ = std::move(ordered);
+}
+
+void GpuScene::placeBoxes(const Scene& scene, bool allTransparent) {
+  std::vector<std::optional<Bounds>> known(scene.meshes.size());
+  for (const Draw& draw : scene.draws) {
+    const Mesh& mesh = scene.meshes[draw.mesh];
+    if (mesh.indices.empty() || !(allTransparent || isTransparent(scene.materials[draw.material]))) continue;
+    std::optional<Bounds>& box = known[draw.mesh];
+    if (!box) box = boundsOf(mesh);
+    boxes_.push_back({*box, makeDrawData(draw, origin_).model});
+  }
 }
 
 } // namespace vitrail::tool

@@ -30,6 +30,12 @@ struct GpuDraw {
   VkCullModeFlags cullMode = VK_CULL_MODE_NONE;
 };
 
+// The box around a mesh, and where a draw puts it.
+struct PlacedBox {
+  Bounds box;
+  glm::mat4 model{1.0F}; // from the mesh's space to the GPU's
+};
+
 class GpuScene {
  public:
   // With `opacity` every material is transparent. `order` is that of the transparent draws. Throws GpuError.
@@ -37,8 +43,9 @@ class GpuScene {
 
   const std::vector<GpuDraw>& opaqueDraws() const { return opaque_; } // opaque and alpha-masked
   const std::vector<GpuDraw>& transparentDraws() const { return transparent_; }
-  const GpuBuffer& vertices() const { return vertices_; }   // of Vertex
-  const GpuBuffer& indices() const { return indices_; }     // 32-bit
+  const std::vector<PlacedBox>& transparentBoxes() const { return boxes_; } // of those draws, in any order
+  const GpuBuffer& vertices() const { return vertices_; }                   // of Vertex
+  const GpuBuffer& indices() const { return indices_; }                     // 32-bit
   const GpuBuffer& drawData() const { return drawData_; }   // of shaders::DrawData, kUniformStride apart
   const GpuBuffer& materials() const { return materials_; } // of shaders::MaterialData, kUniformStride apart
   // The point of the world that is the GPU's (0, 0, 0): near the scene, so that a model far from the world's own origin
@@ -62,6 +69,7 @@ class GpuScene {
   void uploadMaterials(Uploader& uploader, const Scene& scene, std::optional<float> opacity);
   void uploadDraws(Uploader& uploader, const Scene& scene);
   void listDraws(const Scene& scene, const std::vector<MeshRange>& ranges, bool allTransparent, DrawOrder order);
+  void placeBoxes(const Scene& scene, bool allTransparent);
 
   Gpu& gpu_;
   glm::dvec3 origin_{0.0};
@@ -74,6 +82,7 @@ class GpuScene {
   std::unique_ptr<MaterialTextures> textures_;
   std::vector<GpuDraw> opaque_;
   std::vector<GpuDraw> transparent_;
+  std::vector<PlacedBox> boxes_;
 };
 
 } // namespace vitrail::tool

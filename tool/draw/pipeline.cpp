@@ -59,14 +59,55 @@ VkPipelineDynamicStateCreateInfo dynamicState(bool surface) {
   return info;
 }
 
-VkPipelineDepthStencilStateCreateInfo depthState(VkCompareOp test, bool write) {
-  auto info =
+VkPipelineDepthStencilStateCreateInfo depthState(const GraphicsPipelineInfo& info) {
+  auto state =
       vkStruct<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
-  info.depthTestEnable = test != VK_COMPARE_OP_NEVER ? VK_TRUE : VK_FALSE;
-  info.depthCompareOp = test;
-  info.depthWriteEnable = write ? VK_TRUE : VK_FALSE;
-  return info;
+  state.depthTestEnable = info.depthTest != VK_COMPARE_OP_NEVER ? VK_TRUE : VK_FALSE;
+  state.depthCompareOp = info.depthTest;
+  state.depthWriteEnable = info.depthWrite ? VK_TRUE : VK_FALSE;
+  state.stencilTestEnable = info.stencil ? VK_TRUE : VK_FALSE;
+  if (info.stencil) state.front = state.back = *info.stencil;
+  return state;
 }
+
+VkPipelineColorBlendAttachmentState blendState(const GraphicsPipelineInfo& info) {
+  if (info.blend) return *info.blend;
+  VkPipelineColorBlendAttachmentState state{};
+  state.colorWriteMask =
+      VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+  return state;
+}
+
+VkPipelineRenderingCreateInfo renderingState(const GraphicsPipelineInfo& info) {
+  auto state = vkStruct<VkPipelineRenderingCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
+  state.colorAttachmentCount = info.colorFormat != VK_FORMAT_UNDEFINED ? 1 : 0;
+  state.pColorAttachmentFormats = &info.colorFormat;
+  state.depthAttachmentFormat = info.depthFormat;
+  if (info.depthFormat == VK_FORMAT_D32_SFLOAT_S8_UINT) state.stencilAttachmentFormat = info.depthFormat;
+  return state;
+}
+
+// Specialization constants in Vulkan's words.
+class Constants {
+ public:
+  explicit Constants(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& constants) {
+    for (const auto& [id, value] : constants) {
+      entries_.push_back({id, static_cast<std::uint32_t>(values_.size() * sizeof(value)), sizeof(value)});
+      values_.push_back(value);
+    }
+    info_ = {static_cast<std::uint32_t>(entries_.size()), entries_.data(), values_.size() * sizeof(std::uint32_t),
+             values_.data()};
+  }
+  Constants(const Constants&) = delete;
+  Constants& operator=(const Constants&) = delete;
+
+  const VkSpecializationInfo* get() const { return &info_; }
+
+ private:
+  std::vector<VkSpecializationMapEntry> entries_;
+  std::vector<std::uint32_t> values_;
+  VkSpecializationInfo info_{};
+};
 
 VkPipelineRasterizationStateCreateInfo rasterization() {
   auto info =
@@ -110,11 +151,10 @@ Unique<VkPipeline> makeComputePipeline(Gpu& gpu, VkPipelineLayout layout, std::s
 Unique<VkPipeline> makeGraphicsPipeline(Gpu& gpu, const GraphicsPipelineInfo& info) {
   const Unique<VkShaderModule> vertex = makeModule(gpu, info.vertexShader, info.name + " vertex shader");
   const Unique<VkShaderModule> fragment = makeModule(gpu, info.fragmentShader, info.name + " fragment shader");
-  const VkSpecializationMapEntry entry{0, 0, sizeof(info.features)};
-  const VkSpecializationInfo specialization{1, &entry, sizeof(info.features), &info.features};
+  const Constants constants(info.constants);
   std::array<VkPipelineShaderStageCreateInfo, 2> stages{stageInfo(VK_SHADER_STAGE_VERTEX_BIT, vertex.get()),
                                                         stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment.get())};
-  if (info.surface) stages[0].pSpecializationInfo = stages[1].pSpecializationInfo = &specialization;
+  stages[0].pSpecializationInfo = stages[1].pSpecializationInfo = constants.get();
 
   const auto vertices = vertexInput(info.surface);
   auto assembly =
@@ -126,20 +166,14 @@ Unique<VkPipeline> makeGraphicsPipeline(Gpu& gpu, const GraphicsPipelineInfo& in
   const auto raster = rasterization();
   auto multisample =
       vkStruct<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
-  multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  const auto depth = depthState(info.depthTest, info.depthWrite);
-  VkPipelineColorBlendAttachmentState attachment{};
-  attachment.colorWriteMask =
-      VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  const std::uint32_t colors = info.colorFormat != VK_FORMAT_UNDEFINED ? 1 : 0;
+  multisample.rasterizationSamples = info.samples;
+  const auto depth = depthState(info);
+  const VkPipelineColorBlendAttachmentState attachment = blendState(info);
+  const auto rendering = renderingState(info);
   auto blend = vkStruct<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
-  blend.attachmentCount = colors;
+  blend.attachmentCount = rendering.colorAttachmentCount;
   blend.pAttachments = &attachment;
   const auto dynamic = dynamicState(info.surface);
-  auto rendering = vkStruct<VkPipelineRenderingCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
-  rendering.colorAttachmentCount = colors;
-  rendering.pColorAttachmentFormats = &info.colorFormat;
-  rendering.depthAttachmentFormat = VK_FORMAT_D32_SFLOAT;
 
   auto create = vkStruct<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
   create.pNext = &rendering;
@@ -164,9 +198,9 @@ Unique<VkPipeline> makeGraphicsPipeline(Gpu& gpu, const GraphicsPipelineInfo& in
 VkPipeline SurfacePipelines::get(std::uint32_t features) {
   const auto found = pipelines_.find(features);
   if (found != pipelines_.end()) return found->second.get();
-  GraphicsPipelineInfo info = base_;
-  info.features = features;
-  info.name = fmt::format("{} (features {:#x})", base_.name, features);
+  GraphicsPipelineInfo info = describe_(features);
+  info.constants.emplace_back(0, features);
+  info.name = fmt::format("{} (features {:#x})", info.name, features);
   return pipelines_.emplace(features, makeGraphicsPipeline(gpu_, info)).first->second.get();
 }
 

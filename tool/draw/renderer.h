@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../image/picture.h"
+#include "../methods/method_options.h"
 #include "../scene/camera.h"
 #include "../scene/scene.h"
 #include "device.h"
@@ -26,6 +27,9 @@ struct RenderOptions {
   // Fixes the node pool and renders once, whether or not it overflows. Default: the pool is made as large as the frame
   // needs, and the frame is rendered again where the first guess was too small.
   std::optional<std::uint32_t> nodeCapacity;
+  // Bytes that the method may keep for fragments, at least 64 KiB: a frame that needs more is drawn in tiles. The
+  // picture is the same. Default: what the device can give.
+  std::optional<std::uint64_t> memoryBudget;
 };
 
 // What `--json` reports about a frame.
@@ -36,18 +40,27 @@ struct FrameReport {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t samples = 1;
+  std::string nodes;       // "compact", "standard", "hdr"; empty where the method has no choice
+  std::string resolve;     // "compute", "fragment"; empty where the method has none
+  std::string msaaResolve; // "per-pixel", "per-sample"; empty at one sample and where `resolve` is
   bool exact = false;
+  bool counted = false; // whether the method counts fragments: else the counts and layers are 0
   std::uint64_t fragmentsRequested = 0;
   std::uint64_t fragmentsStored = 0;
   std::uint64_t fragmentsMissing = 0;
+  std::uint32_t approximatePixels = 0;
   std::uint32_t layersMax = 0;
   double layersMean = 0.0; // over pixels that hold at least one fragment; 0 where there are none
+  std::uint32_t tiles = 1; // areas that were collected and resolved one after the other
   std::uint64_t nodesBytes = 0;
   std::uint64_t headsBytes = 0;
-  std::uint64_t peakBytes = 0; // the most device memory that the tool and the library held at once
-  // GPU time, in order: opaque, clear, collect, resolve, encode. Empty, and frameMs 0, on devices without timestamps.
+  std::uint64_t totalBytes = 0; // all that the method keeps for the picture: nodes, heads, lists, counters
+  std::uint64_t peakBytes = 0;  // the most device memory that the tool and the library held at once
+  // GPU time, in order. With fragment lists: opaque, clear, collect, resolve, encode; unsorted: opaque, blend, encode;
+  // a multisampled picture has box_filter before encode. Summed over tiles. Empty, and frameMs 0, on devices without
+  // timestamps.
   std::vector<std::pair<std::string, double>> passesMs;
-  double frameMs = 0.0; // GPU time from the first pass's start to the last one's end
+  double frameMs = 0.0; // GPU time of all passes
 };
 
 struct RenderResult {
@@ -58,14 +71,20 @@ struct RenderResult {
 // Holds one scene on the GPU. The Gpu outlives it; the scene need not.
 class Renderer {
  public:
-  // With `opacity`, every material is blended with that factor (X-ray view).
-  Renderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity = {}, DrawOrder order = DrawOrder::Forward);
+  // With `opacity`, every material is blended with that factor (X-ray view). The method options have passed
+  // checkMethodOptions(). Throws GpuError (device.h), also where the device does not offer them.
+  Renderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity = {}, DrawOrder order = DrawOrder::Forward,
+           const MethodOptions& method = {});
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  // Renders one picture and waits for it. Throws GpuError (device.h).
+  // Renders one picture and waits for it. Throws GpuError.
   RenderResult render(const RenderOptions& options);
+
+  // The same without the encode pass and without a picture, for measurements: repeated calls draw one frame each, with
+  // all that earlier calls of the same options made. Throws GpuError.
+  FrameReport measure(const RenderOptions& options);
 
  private:
   struct Impl;

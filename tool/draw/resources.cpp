@@ -108,7 +108,7 @@ GpuImage::GpuImage(Gpu& gpu, const GpuImageInfo& info, const std::string& name) 
   create.extent = {info.extent.width, info.extent.height, 1};
   create.mipLevels = info.mipLevels;
   create.arrayLayers = 1;
-  create.samples = VK_SAMPLE_COUNT_1_BIT;
+  create.samples = info.samples;
   create.tiling = VK_IMAGE_TILING_OPTIMAL;
   create.usage = info.usage;
   create.sharingMode = VK_SHARING_MODE_EXCLUSIVE;

@@ -20,7 +20,7 @@ class MaterialTextures {
   // Uploads what the materials named in `used` (indices, each once) sample.
   MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& scene, const std::vector<std::uint32_t>& used);
 
-  // Five combined image samplers, by slot; the slots that a material leaves empty hold a white texel.
+  // A combined image sampler for each slot; the slots that a material leaves empty hold a white texel.
   VkDescriptorSetLayout layout() const { return layout_.get(); }
 
   // The set of a material that was named in `used`.

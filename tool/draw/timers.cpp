@@ -1,5 +1,6 @@
 #include "timers.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <stdexcept>
 
@@ -25,6 +26,8 @@ Timers::Timers(Gpu& gpu, std::uint32_t maxPasses) : gpu_(gpu), maxStamps_(maxPas
   setDebugName(gpu.device(), VK_OBJECT_TYPE_QUERY_POOL, pool, "pass times");
 }
 
+void Timers::startFrame() { frame_.clear(); }
+
 void Timers::cmdStart(VkCommandBuffer commands) {
   names_.clear();
   stamps_ = 0;
@@ -45,19 +48,22 @@ void Timers::cmdStamp(VkCommandBuffer commands) {
   vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, pool_.get(), stamps_++);
 }
 
-std::vector<std::pair<std::string, double>> Timers::milliseconds() const {
-  std::vector<std::pair<std::string, double>> result;
-  if (stamps_ == 0) return result;
+void Timers::addSubmission() {
+  if (stamps_ == 0) return;
   std::vector<std::uint64_t> ticks(stamps_);
   check(vkGetQueryPoolResults(gpu_.device(), pool_.get(), 0, stamps_, ticks.size() * sizeof(std::uint64_t),
                               ticks.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT),
         "vkGetQueryPoolResults");
   const double msPerTick = static_cast<double>(gpu_.properties().limits.timestampPeriod) * 1e-6;
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    const std::uint64_t elapsed = (ticks[i + 1] - ticks[i]) & mask_;
-    result.emplace_back(names_[i], static_cast<double>(elapsed) * msPerTick);
+    const double elapsed = static_cast<double>((ticks[i + 1] - ticks[i]) & mask_) * msPerTick;
+    const auto known = std::ranges::find(frame_, names_[i], &std::pair<std::string, double>::first);
+    if (known == frame_.end()) {
+      frame_.emplace_back(names_[i], elapsed);
+    } else {
+      known->second += elapsed;
+    }
   }
-  return result;
 }
 
 } // namespace vitrail::tool

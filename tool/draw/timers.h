@@ -12,16 +12,20 @@ namespace vitrail::tool {
 
 class Timers {
  public:
-  // For at most `maxPasses` passes. Where the queue has no timestamps every call does nothing.
+  // For at most `maxPasses` passes in a submission. Where the queue has no timestamps every call does nothing.
   Timers(Gpu& gpu, std::uint32_t maxPasses);
 
-  // Starts a frame. Outside a rendering scope.
+  // Starts a frame, whose passes may come in several submissions.
+  void startFrame();
+  // Starts a submission. Outside a rendering scope.
   void cmdStart(VkCommandBuffer commands);
   // The pass `name` ends here, and the next one starts. Outside a rendering scope.
   void cmdEndPass(VkCommandBuffer commands, const std::string& name);
+  // Adds the submission's passes to the frame's, once the GPU has executed it. A pass that comes again is summed.
+  void addSubmission();
 
-  // The passes' milliseconds, in order, once the GPU has executed the frame; empty without timestamps.
-  std::vector<std::pair<std::string, double>> milliseconds() const;
+  // The frame's passes in milliseconds, in the order in which they came first; empty without timestamps.
+  const std::vector<std::pair<std::string, double>>& milliseconds() const { return frame_; }
 
  private:
   void cmdStamp(VkCommandBuffer commands);
@@ -31,7 +35,8 @@ class Timers {
   std::uint64_t mask_ = 0; // the bits of a timestamp that count; 0: none
   Unique<VkQueryPool> pool_;
   std::uint32_t stamps_ = 0;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_; // of the submission's passes
+  std::vector<std::pair<std::string, double>> frame_;
 };
 
 } // namespace vitrail::tool

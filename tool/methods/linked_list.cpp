@@ -1,18 +1,22 @@
 #include "linked_list.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "../draw/picture_images.h"
 #include "../draw/vk.h"
 #include "shaders/collect.frag.h"
+#include "shaders/collect_address.frag.h"
+#include "shaders/collect_coverage.frag.h"
+#include "shaders/collect_coverage_address.frag.h"
 
 namespace vitrail::tool {
 
 namespace {
-
-constexpr VitrailNodeFormat kFormat = VITRAIL_NODE_STANDARD;
 
 // The first guess where nobody fixed the pool: most models that are looked at have fewer fragments than this a pixel
 // of the whole picture.
@@ -23,115 +27,244 @@ void remember(VitrailLogSeverity severity, const char* message, void* reason) {
   if (severity == VITRAIL_LOG_ERROR) *static_cast<std::string*>(reason) = message;
 }
 
-// A device's name without the parenthesis that drivers append.
-std::string shortName(const Gpu& gpu) {
-  const std::string name = gpu.properties().deviceName;
-  return name.substr(0, name.find(" ("));
+std::uint32_t libraryFeatures(const GpuFeatures& features) {
+  std::uint32_t bits = 0;
+  if (features.bufferDeviceAddress) bits |= VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS;
+  if (features.dualSourceBlending) bits |= VITRAIL_FEATURE_DUAL_SRC_BLEND;
+  if (features.sampleRateShading) bits |= VITRAIL_FEATURE_SAMPLE_RATE_SHADING;
+  return bits;
 }
 
-// In units that a person reads: 950, 13.2 K, 151 M.
-std::string shortCount(std::uint64_t count) {
-  double value = static_cast<double>(count);
-  const char* unit = "";
-  for (const char* next : {" K", " M", " G"}) {
-    if (value < 1000.0) break;
-    value /= 1000.0;
-    unit = next;
-  }
-  return value < 100.0 && *unit != '\0' ? fmt::format("{:.1f}{}", value, unit) : fmt::format("{:.0f}{}", value, unit);
+VkSampleCountFlagBits flagOf(std::uint32_t samples) {
+  return static_cast<VkSampleCountFlagBits>(samples); // a flag's value is its count
 }
 
-std::uint64_t mebibytes(std::uint64_t bytes) { return (bytes + (1U << 19U)) >> 20U; }
+std::uint64_t pixelsOf(VkExtent2D extent) { return std::uint64_t{extent.width} * extent.height; }
+
+bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
+  return a.extent.width == b.extent.width && a.extent.height == b.extent.height && a.color == b.color &&
+         a.opaque == b.opaque && a.depth == b.depth && a.nodeCapacity == b.nodeCapacity &&
+         a.memoryBudget == b.memoryBudget && a.surfaces == b.surfaces;
+}
 
 } // namespace
 
-LinkedList::LinkedList(Gpu& gpu) : gpu_(gpu) {
+LinkedList::LinkedList(Gpu& gpu, const MethodOptions& options) : gpu_(gpu), options_(options) {
+  const GpuFeatures& features = gpu.features();
   VitrailContextDesc desc{};
   desc.instance = gpu.instance();
   desc.physicalDevice = gpu.physicalDevice();
   desc.device = gpu.device();
   desc.getInstanceProcAddr = vkGetInstanceProcAddr;
+  desc.features = libraryFeatures(features);
   desc.log = remember;
   desc.logUser = &reason_;
   check(Context::create(desc, context_), "vitrailCreateContext");
+
+  needs_.perSample = options.samples > 1 && options.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
+  if (needs_.perSample && !features.sampleRateShading) {
+    throw GpuError(
+        fmt::format("{} does not shade samples one by one: use --msaa-resolve per-pixel", gpu.properties().deviceName));
+  }
+  if (options_.resolve == VITRAIL_RESOLVE_DEFAULT) {
+    VitrailTargetDesc target = targetDesc();
+    const VkImageView anyView = VK_NULL_HANDLE;
+    target.views = {1, &anyView, nullptr, nullptr}; // the colour image can be written by compute
+    options_.resolve = context_.defaultResolve(target);
+  }
+  const bool drawn = options_.resolve == VITRAIL_RESOLVE_FRAGMENT;
+  needs_.blending = drawn ? Blending::InScope : Blending::Compute;
+  needs_.stencil = drawn && (options.samples == 1 || needs_.perSample) && features.stencil;
+  needs_.sampledDepth = options.samples > 1 && !features.postDepthCoverage;
 }
 
 LinkedList::~LinkedList() { gpu_.memoryFreed(counted_); }
 
-std::span<const std::uint32_t> LinkedList::collectShader() const { return shaders::collect_frag; }
+SurfaceDrawing LinkedList::surface(std::uint32_t /*features*/) const {
+  const bool coverage = options_.samples > 1 && gpu_.features().postDepthCoverage;
+  const bool address = gpu_.features().bufferDeviceAddress;
+  SurfaceDrawing drawing;
+  if (coverage && address) drawing.fragmentShader = shaders::collect_coverage_address_frag;
+  if (coverage && !address) drawing.fragmentShader = shaders::collect_coverage_frag;
+  if (!coverage && address) drawing.fragmentShader = shaders::collect_address_frag;
+  if (!coverage && !address) drawing.fragmentShader = shaders::collect_frag;
 
-void LinkedList::setTarget(const MethodTarget& target) {
-  const bool same = target_ && target.color == wanted_.color && target.nodeCapacity == wanted_.nodeCapacity &&
-                    target.extent.width == wanted_.extent.width && target.extent.height == wanted_.extent.height;
-  if (same) return;
-  wanted_ = target;
-  const std::uint32_t largest = context_.maxNodeCapacity(kFormat);
-  const std::uint64_t pixels = std::uint64_t{target.extent.width} * target.extent.height;
-  const std::uint64_t guess = std::min<std::uint64_t>({kNodesPerPixel * pixels, kLargestGuess, largest});
-  createTarget(target.nodeCapacity.value_or(static_cast<std::uint32_t>(guess)));
+  const VitrailTargetDesc desc = targetDesc();
+  VitrailSpecialization specialization{};
+  vitrailCollectSpecialization(&desc, &specialization);
+  for (std::size_t i = 0; i < std::size(specialization.entries); ++i) {
+    drawing.constants.emplace_back(specialization.entries[i].constantID, specialization.data[i]);
+  }
+  if (needs_.stencil) vitrailStencilMark(&drawing.stencil);
+  return drawing;
 }
 
-void LinkedList::createTarget(std::uint32_t nodeCapacity) {
-  releaseTarget(); // first: the old pool and the new one need not fit together
+// All but the memory and the images.
+VitrailTargetDesc LinkedList::targetDesc() const {
   VitrailTargetDesc desc{};
   desc.extent = wanted_.extent;
-  desc.nodeFormat = kFormat;
+  desc.samples = flagOf(options_.samples);
+  desc.nodeFormat = options_.nodes;
   desc.depthOrder = VITRAIL_DEPTH_NEAREST_IS_ONE;
-  desc.nodeCapacity = nodeCapacity;
-  desc.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-  desc.colorViewCount = 1;
-  desc.colorViews = &wanted_.color;
+  desc.resolve = options_.resolve;
+  desc.msaaResolve = options_.msaaResolve;
+  desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
+  desc.maxLayers = options_.maxLayers;
+  desc.overflow = VITRAIL_OVERFLOW_SKIP; // the picture is drawn again, with a larger pool or in tiles
+  desc.colorFormat = PictureImages::kColorFormat;
+  if (needs_.stencil) {
+    desc.scope.stencilFormat = PictureImages::depthFormat(true);
+    desc.scope.stencilMark = VK_TRUE;
+  }
   desc.framesInFlight = 1;
-  check(Target::create(context_, desc, target_), "vitrailCreateTarget");
-  const VitrailMemory memory = target_.memory();
-  counted_ = memory.nodeBytes + memory.headBytes + memory.otherBytes;
+  return desc;
+}
+
+void LinkedList::setTarget(const MethodTarget& target) {
+  if (wanted_.color != VK_NULL_HANDLE && sameTarget(target, wanted_)) return;
+  releaseTarget();
+  wanted_ = target;
+  expected_ = 0;
+  budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
+  inTiles_ = target.memoryBudget.has_value() && !target.nodeCapacity;
+  if (inTiles_) return; // startPicture() knows how large the tiles are
+  if (target.nodeCapacity) {
+    if (createWholeTarget(*target.nodeCapacity)) return;
+    check(VK_ERROR_OUT_OF_DEVICE_MEMORY, "vitrailCreateTarget");
+  }
+  const std::uint64_t largest = context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
+  const std::uint64_t guess = std::min({kNodesPerPixel * pixelsOf(target.extent), kLargestGuess, largest});
+  inTiles_ = !createWholeTarget(target.surfaces ? static_cast<std::uint32_t>(guess) : 0);
+}
+
+bool LinkedList::createWholeTarget(std::uint32_t nodeCapacity) {
+  VitrailTargetDesc desc = targetDesc();
+  desc.nodeCapacity = nodeCapacity;
+  return createTarget(desc);
+}
+
+// False where the device has no memory for it.
+bool LinkedList::createTarget(const VitrailTargetDesc& desc) {
+  if (target_ && made_.nodeCapacity == desc.nodeCapacity && made_.areaPixels == desc.areaPixels) {
+    return true; // the images are the same until releaseTarget()
+  }
+  target_ = Target(); // first: the old pool and the new one need not fit together
+  gpu_.memoryFreed(std::exchange(counted_, 0));
+  VitrailTargetDesc full = desc;
+  full.views.count = 1;
+  full.views.color = &wanted_.color;
+  if (options_.samples > 1 && !needs_.perSample) full.views.opaque = &wanted_.opaque;
+  if (needs_.sampledDepth) full.views.depth = &wanted_.depth;
+  const VkResult result = Target::create(context_, full, target_);
+  if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) return false; // the reason stays, in case that it ends the program
+  check(result, "vitrailCreateTarget");
+  reason_.clear();
+  made_ = desc;
+  counted_ = target_.memory().totalBytes;
   gpu_.memoryAllocated(counted_);
+  return true;
 }
 
 void LinkedList::releaseTarget() {
   target_ = Target();
+  plan_ = TilePlan();
+  wanted_ = {};
   gpu_.memoryFreed(std::exchange(counted_, 0));
 }
 
-void LinkedList::cmdClear(VkCommandBuffer commands, std::uint64_t frame) { target_.begin(commands, {frame}); }
-
-MethodStats LinkedList::stats(std::uint64_t frame) const {
-  VitrailStats stats{};
-  check(target_.readStats(frame, stats), "vitrailReadStats");
-  const VitrailMemory memory = target_.memory();
-  MethodStats result;
-  result.exact = stats.exact != 0;
-  result.fragmentsRequested = stats.fragmentsRequested;
-  result.fragmentsStored = stats.fragmentsStored;
-  result.fragmentsMissing = stats.fragmentsMissing;
-  result.cutPixels = stats.cutPixels;
-  result.layersMax = stats.layersMax;
-  result.layersMean = stats.coveredPixels > 0
-                          ? static_cast<double>(stats.fragmentsStored) / static_cast<double>(stats.coveredPixels)
-                          : 0.0;
-  result.nodesBytes = memory.nodeBytes;
-  result.headsBytes = memory.headBytes;
-  return result;
+void LinkedList::startPicture(std::span<const VitrailBounds> bounds) {
+  stats_ = {};
+  stats_.tiles = 0;
+  stats_.exact = true;
+  coveredPixels_ = 0;
+  if (inTiles_) planTiles(bounds);
 }
 
-bool LinkedList::grow(const MethodStats& stats) {
-  if (wanted_.nodeCapacity) return false;
-  const std::uint32_t largest = context_.maxNodeCapacity(kFormat);
-  if (stats.fragmentsRequested > largest) {
-    const std::uint64_t nodeBytes = vitrailNodePoolSize(kFormat, 1);
-    throw GpuError(fmt::format(
-        "the picture needs {} fragments ({} MiB of nodes); {} can bind at most {} MiB at once: use a smaller --size",
-        shortCount(stats.fragmentsRequested), mebibytes(stats.fragmentsRequested * nodeBytes), shortName(gpu_),
-        mebibytes(largest * nodeBytes)));
+void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
+  plan_ = TilePlan();
+  const bool everyPixel = options_.samples > 1 && !needs_.perSample; // is written by the resolve
+  if (bounds.empty() && !everyPixel) return;                         // nothing to draw
+  VitrailTilePlanDesc desc{};
+  desc.extent = wanted_.extent;
+  desc.samples = flagOf(options_.samples);
+  desc.nodeFormat = options_.nodes;
+  desc.boundsCount = everyPixel ? 0 : static_cast<std::uint32_t>(bounds.size());
+  desc.bounds = bounds.data();
+  desc.expectedFragments = expected_;
+  // The device may have less memory left than it says that it can give: then less is tried.
+  for (;;) {
+    desc.memoryBudget = budget_;
+    check(TilePlan::create(context_, desc, plan_), "vitrailCreateTilePlan");
+    VitrailTargetDesc target = targetDesc();
+    plan_.prepare(target);
+    if (createTarget(target)) return;
+    budget_ = vitrailNodePoolSize(options_.nodes, target.nodeCapacity) / 2;
   }
-  createTarget(static_cast<std::uint32_t>(stats.fragmentsRequested));
-  return true;
+}
+
+std::optional<VkRect2D> LinkedList::nextTile() {
+  VkRect2D tile{};
+  if (!plan_ || !plan_.next(tile)) return std::nullopt;
+  return tile;
+}
+
+void LinkedList::cmdBegin(VkCommandBuffer commands, std::uint64_t frame, const VkRect2D& area) {
+  target_.begin(commands, {frame, area});
+}
+
+bool LinkedList::finishArea(std::uint64_t frame) {
+  VitrailStats stats{};
+  check(target_.readStats(frame, stats), "vitrailReadStats");
+  if (inTiles_) {
+    check(plan_.finish(stats), "vitrailFinishTile");
+    if (stats.fragmentsMissing == 0) add(stats); // else its parts come next
+    expected_ = stats_.fragmentsRequested;
+    return true;
+  }
+  add(stats);
+  if (stats.fragmentsMissing == 0 || wanted_.nodeCapacity) return true;
+  grow(stats.fragmentsRequested);
+  return false;
+}
+
+// Makes room for a picture of so many fragments: a larger pool, or tiles where the device has none that large.
+void LinkedList::grow(std::uint64_t fragments) {
+  const bool canBe = fragments <= context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
+  if (canBe && createWholeTarget(static_cast<std::uint32_t>(fragments))) return;
+  inTiles_ = true;
+  expected_ = fragments;
+}
+
+void LinkedList::add(const VitrailStats& stats) {
+  ++stats_.tiles;
+  stats_.exact = stats_.exact && stats.exact != 0;
+  stats_.fragmentsRequested += stats.fragmentsRequested;
+  stats_.fragmentsStored += stats.fragmentsStored;
+  stats_.fragmentsMissing += stats.fragmentsMissing;
+  stats_.approximatePixels += stats.approximatePixels;
+  stats_.cutPixels += stats.cutPixels;
+  stats_.layersMax = std::max(stats_.layersMax, stats.layersMax);
+  coveredPixels_ += stats.coveredPixels;
+}
+
+MethodStats LinkedList::stats() const {
+  MethodStats result = stats_;
+  if (coveredPixels_ > 0) {
+    result.layersMean = static_cast<double>(stats_.fragmentsStored) / static_cast<double>(coveredPixels_);
+  }
+  if (!target_) return result; // nothing was drawn
+  const VitrailMemory memory = target_.memory();
+  result.nodesBytes = memory.nodeBytes;
+  result.headsBytes = memory.headBytes;
+  result.totalBytes = memory.totalBytes;
+  return result;
 }
 
 void LinkedList::check(VkResult result, const char* call) const {
   if (result == VK_SUCCESS) return;
   const std::string reason = reason_.empty() ? fmt::format("{} failed: {}", call, resultName(result)) : reason_;
-  throw GpuError(result == VK_ERROR_OUT_OF_DEVICE_MEMORY ? reason + ": use a smaller --size" : reason);
+  if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY) throw GpuError(reason);
+  throw GpuError(reason + (wanted_.memoryBudget ? ": use a larger --memory-budget" : ": use a smaller --size"));
 }
 
 } // namespace vitrail::tool

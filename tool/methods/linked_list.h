@@ -1,4 +1,8 @@
 // Per-pixel linked lists: exact transparency through libvitrail, as any host embeds it.
+//
+// A picture is drawn whole where that fits: with a fixed number of nodes once, whatever becomes of it; else into a pool
+// that grows until the picture fits. A picture that does not fit into the memory budget, or by default into what the
+// device can hold, is drawn in tiles.
 #pragma once
 
 #include <string>
@@ -13,31 +17,52 @@ namespace vitrail::tool {
 class LinkedList final : public Method {
  public:
   // Throws GpuError.
-  explicit LinkedList(Gpu& gpu);
+  LinkedList(Gpu& gpu, const MethodOptions& options);
   ~LinkedList() override;
 
   std::string_view name() const override { return "linked-list"; }
-  std::span<const std::uint32_t> collectShader() const override;
-  VkDescriptorSetLayout collectLayout() const override { return context_.descriptorSetLayout(); }
-  VkDescriptorSet collectSet() const override { return target_.descriptorSet(); }
+  std::string_view nodes() const override { return nameOf(options_.nodes); }
+  MethodNeeds needs() const override { return needs_; }
+  SurfaceDrawing surface(std::uint32_t features) const override;
+  VkDescriptorSetLayout surfaceLayout() const override { return context_.descriptorSetLayout(); }
+  VkDescriptorSet surfaceSet() const override { return target_.descriptorSet(); }
   void setTarget(const MethodTarget& target) override;
   void releaseTarget() override;
-  void cmdClear(VkCommandBuffer commands, std::uint64_t frame) override;
+
+  void startPicture(std::span<const VitrailBounds> bounds) override;
+  bool inTiles() const override { return inTiles_; }
+  std::optional<VkRect2D> nextTile() override;
+  void cmdBegin(VkCommandBuffer commands, std::uint64_t frame, const VkRect2D& area) override;
   void cmdCollected(VkCommandBuffer commands) override { target_.collected(commands); }
   void cmdResolve(VkCommandBuffer commands) override { target_.resolve(commands); }
-  MethodStats stats(std::uint64_t frame) const override;
-  bool grow(const MethodStats& stats) override;
+  void cmdEnd(VkCommandBuffer commands) override { target_.end(commands); }
+  bool finishArea(std::uint64_t frame) override;
+  MethodStats stats() const override;
 
  private:
-  void createTarget(std::uint32_t nodeCapacity);
+  VitrailTargetDesc targetDesc() const;
+  bool createTarget(const VitrailTargetDesc& desc);
+  bool createWholeTarget(std::uint32_t nodeCapacity);
+  void planTiles(std::span<const VitrailBounds> bounds);
+  void grow(std::uint64_t fragments);
+  void add(const VitrailStats& stats);
   void check(VkResult result, const char* call) const;
 
   Gpu& gpu_;
+  MethodOptions options_;
+  MethodNeeds needs_;
   std::string reason_; // what the library last logged
   Context context_;
   Target target_;
+  TilePlan plan_;            // where inTiles_
+  VitrailTargetDesc made_{}; // what target_ was made for; its pointers are not kept
   MethodTarget wanted_;
-  std::uint64_t counted_ = 0; // the target's bytes, as the Gpu counts them
+  std::uint64_t budget_ = 0; // bytes for a tile
+  bool inTiles_ = false;
+  std::uint64_t expected_ = 0; // the fragments of the last picture, 0 where that is not known
+  std::uint64_t counted_ = 0;  // the target's bytes, as the Gpu counts them
+  MethodStats stats_;          // of the present picture's areas so far
+  std::uint64_t coveredPixels_ = 0;
 };
 
 } // namespace vitrail::tool

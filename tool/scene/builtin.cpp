@@ -13,15 +13,17 @@
 namespace vitrail::tool {
 namespace {
 
-constexpr std::array<BuiltinScene, 6> scenes{{
+constexpr std::array<BuiltinScene, 7> scenes{{
     {"spheres", "glass balls of random colours and opacities in a cube", "spheres", 64, 20000, makeSpheres},
-    {"planes", "parallel panes that fill the picture, stored in random order", "panes", 8, 5000, makePlanes},
+    {"planes", "parallel panes that fill the picture, stored in random order", "panes", 32, 5000, makePlanes},
     {"interlocked", "panes and rings that pass through each other: no object order is right", "objects", 12, 5000,
      makeInterlocked},
     {"mannequins", "translucent figures and opaque teapots under a sky", "figures", 36, 1024, makeMannequins},
     {"hairball", "thousands of thin curved tubes around a core, over 100 layers deep", "tubes", 4000, 20000,
      makeHairball},
     {"smoke", "soft textured billboards, many deep", "billboards", 200, 20000, makeSmoke},
+    {"flames", "the billboards of smoke as light without a body: they add up and hide nothing", "billboards", 200,
+     20000, makeFlames},
 }};
 
 } // namespace

@@ -17,6 +17,7 @@ Scene makeInterlocked(std::uint32_t count, std::uint32_t seed);
 Scene makeMannequins(std::uint32_t count, std::uint32_t seed);
 Scene makeHairball(std::uint32_t count, std::uint32_t seed);
 Scene makeSmoke(std::uint32_t count, std::uint32_t seed);
+Scene makeFlames(std::uint32_t count, std::uint32_t seed);
 
 // The linear colour of an HSV one on the sRGB curve. The hue counts turns, of any number.
 glm::vec3 colorFromHue(float hue, float saturation, float value);

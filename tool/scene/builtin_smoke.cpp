@@ -1,5 +1,5 @@
 // A plume of smoke made of soft textured billboards that face the default camera: large, faint and many deep, with
-// fragments whose alpha comes from a texture.
+// fragments whose alpha comes from a texture. Flames are the same plume with additive materials.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -134,6 +134,19 @@ Scene makeSmoke(std::uint32_t count, std::uint32_t seed) {
     Material material = puffMaterial(height, across, random);
     material.name = "puff " + std::to_string(i);
     scene.draws.push_back({mesh, addMaterial(scene, std::move(material)), glm::scale(transform, glm::vec3(size))});
+  }
+  return scene;
+}
+
+Scene makeFlames(std::uint32_t count, std::uint32_t seed) {
+  Scene scene = makeSmoke(count, seed);
+  scene.name = "flames";
+  for (const Draw& draw : scene.draws) {
+    Material& material = scene.materials[draw.material];
+    const float height = std::clamp(draw.transform[3].y / 2.6F, 0.0F, 1.0F);
+    const glm::vec3 color = glm::mix(glm::vec3(1.0F, 0.62F, 0.25F), glm::vec3(0.75F, 0.16F, 0.08F), height);
+    material.baseColor = glm::vec4(linearFromSrgb(color), 0.4F * material.baseColor.a);
+    material.blend = BlendMode::Additive;
   }
   return scene;
 }

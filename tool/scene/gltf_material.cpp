@@ -42,6 +42,15 @@ glm::mat3 textureTransform(const tinygltf::Value& extension) {
   return translate * rotate * stretch;
 }
 
+// A texture of an extension, which the library leaves as plain JSON.
+tinygltf::TextureInfo textureInfo(const tinygltf::Value& object) {
+  tinygltf::TextureInfo info;
+  info.index = object.Get("index").GetNumberAsInt();
+  if (object.Has("texCoord")) info.texCoord = object.Get("texCoord").GetNumberAsInt();
+  if (object.Has("extensions")) info.extensions = object.Get("extensions").Get<tinygltf::Value::Object>();
+  return info;
+}
+
 Wrap wrapOf(int value, const std::string& where) {
   switch (value) {
     case TINYGLTF_TEXTURE_WRAP_REPEAT:
@@ -66,7 +75,7 @@ AlphaMode alphaModeOf(const std::string& text, const std::string& where) {
 void renameTexCoordSets(GltfMaterial& result, const std::string& where) {
   Material& material = result.material;
   const std::array slots{&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
-                         &material.occlusionTexture, &material.emissiveTexture};
+                         &material.occlusionTexture, &material.emissiveTexture,          &material.transmissionTexture};
   std::vector<std::uint32_t> sets;
   for (const TextureSlot* slot : slots)
     if (slot->image >= 0 && std::ranges::find(sets, slot->texCoord) == sets.end()) sets.push_back(slot->texCoord);
@@ -163,6 +172,14 @@ TextureSlot GltfMaterialReader::slot(const TextureInfo& info, const std::string&
   return slot;
 }
 
+void GltfMaterialReader::readTransmission(Material& material, const tinygltf::Value& extension,
+                                          const std::string& where) {
+  if (extension.Has("transmissionFactor"))
+    material.transmission = clampedFactor(extension.Get("transmissionFactor").GetNumberAsDouble());
+  if (extension.Has("transmissionTexture"))
+    material.transmissionTexture = slot(textureInfo(extension.Get("transmissionTexture")), where);
+}
+
 GltfMaterial GltfMaterialReader::read(std::size_t index) {
   const tinygltf::Material& source = document_.model.materials[index];
   const std::string where = objectName("material", index, source.name);
@@ -195,6 +212,8 @@ GltfMaterial GltfMaterialReader::read(std::size_t index) {
     material.emissive[c] =
         static_cast<float>(std::min(clampedFactor(source.emissiveFactor[static_cast<std::size_t>(c)]) * strength,
                                     static_cast<double>(std::numeric_limits<float>::max())));
+  const auto transmission = source.extensions.find("KHR_materials_transmission");
+  if (transmission != source.extensions.end()) readTransmission(material, transmission->second, where);
   renameTexCoordSets(result, where);
   return result;
 }

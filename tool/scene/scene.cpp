@@ -20,6 +20,10 @@ std::vector<glm::vec3> usedPositions(const Mesh& mesh) {
 
 } // namespace
 
+bool isTransparent(const Material& material) {
+  return material.alphaMode == AlphaMode::Blend || (material.transmission > 0.0F && !material.unlit);
+}
+
 void visitPositions(const Scene& scene, const std::function<void(std::span<const glm::vec3>)>& visit) {
   std::vector<std::vector<glm::vec3>> positions(scene.meshes.size());
   std::vector<glm::vec3> placed;

@@ -60,10 +60,17 @@ struct TextureSlot {
 
 enum class AlphaMode { Opaque, Mask, Blend };
 
+// What a blended surface does to the light behind it.
+enum class BlendMode {
+  Over,    // covers it, by alpha
+  Additive // adds to it and hides nothing
+};
+
 // glTF's metallic-roughness material; docs/shading.md states how it is shaded.
 struct Material {
   std::string name;
   AlphaMode alphaMode = AlphaMode::Opaque;
+  BlendMode blend = BlendMode::Over; // of AlphaMode::Blend
   float alphaCutoff = 0.5F;
   bool doubleSided = false; // transparent surfaces are always drawn two-sided
   bool unlit = false;       // KHR_materials_unlit: the base colour is the result
@@ -73,12 +80,17 @@ struct Material {
   glm::vec3 emissive{0.0F}; // emissiveFactor * emissiveStrength
   float normalScale = 1.0F;
   float occlusionStrength = 1.0F;
-  TextureSlot baseColorTexture;         // sRGB colour, linear alpha
+  float transmission = 0.0F;    // KHR_materials_transmission: the share of the light behind that passes through, tinted
+  TextureSlot baseColorTexture; // sRGB colour, linear alpha
   TextureSlot metallicRoughnessTexture; // g = roughness, b = metallic
   TextureSlot normalTexture;
-  TextureSlot occlusionTexture; // r
-  TextureSlot emissiveTexture;  // sRGB
+  TextureSlot occlusionTexture;    // r
+  TextureSlot emissiveTexture;     // sRGB
+  TextureSlot transmissionTexture; // r
 };
+
+// Whether light passes through a surface: it is blended, or lit and transmissive.
+bool isTransparent(const Material& material);
 
 // One mesh placed in the world with a material.
 struct Draw {

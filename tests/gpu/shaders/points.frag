@@ -5,5 +5,6 @@
 #include "vitrail/collect.glsl"
 
 layout(location = 0) flat in vec4 color;
+layout(location = 1) flat in uint blend;
 
-void main() { vitrailCollect(color); }
+void main() { vitrailCollect(color, blend); }

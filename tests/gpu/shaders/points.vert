@@ -2,11 +2,14 @@
 #version 460
 
 layout(location = 0) in vec3 position; // clip space
-layout(location = 1) in vec4 color;    // linear, straight alpha
+layout(location = 1) in vec4 color;    // linear
+layout(location = 2) in uint blend;
 layout(location = 0) flat out vec4 outColor;
+layout(location = 1) flat out uint outBlend;
 
 void main() {
   gl_Position = vec4(position, 1.0);
   gl_PointSize = 1.0;
   outColor = color;
+  outBlend = blend;
 }

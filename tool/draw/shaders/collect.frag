@@ -6,4 +6,12 @@
 
 #include "surface.glsl"
 
-void main() { vitrailCollect(shadeSurface()); }
+void main() {
+  Surface surface = shadeSurface();
+  if (has(FEATURE_TRANSMISSION)) {
+    vitrailCollect(reflectionOf(surface), VITRAIL_PREMULTIPLIED);
+    vitrailCollect(filterOf(surface), VITRAIL_MULTIPLY);
+  } else {
+    vitrailCollect(vec4(surface.color, surface.alpha), has(FEATURE_ADDITIVE) ? VITRAIL_ADDITIVE : VITRAIL_OVER);
+  }
+}

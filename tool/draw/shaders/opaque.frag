@@ -9,5 +9,5 @@ const float LARGEST_HALF = 65504.0;
 
 void main() {
   // An infinite colour would turn into NaN where a transparent surface covers it.
-  outColor = vec4(min(shadeSurface().rgb, LARGEST_HALF), 1.0);
+  outColor = vec4(min(shadeSurface().color, LARGEST_HALF), 1.0);
 }

@@ -18,12 +18,15 @@ const uint SLOT_METALLIC_ROUGHNESS = 1u;
 const uint SLOT_NORMAL = 2u;
 const uint SLOT_OCCLUSION = 3u;
 const uint SLOT_EMISSIVE = 4u;
-const uint SLOT_COUNT = 5u;
+const uint SLOT_TRANSMISSION = 5u;
+const uint SLOT_COUNT = 6u;
 
 // What a surface's pipeline is specialized for: bit i is slot i's texture, and the rest below.
-const uint FEATURE_UNLIT = 32u;
-const uint FEATURE_MASK = 64u;          // fragments below the cutoff are discarded
-const uint FEATURE_VERTEX_COLOR = 128u; // without it colours are exact: interpolating a constant rounds
+const uint FEATURE_UNLIT = 64u;
+const uint FEATURE_MASK = 128u;         // fragments below the cutoff are discarded
+const uint FEATURE_VERTEX_COLOR = 256u; // without it colours are exact: interpolating a constant rounds
+const uint FEATURE_TRANSMISSION = 512u; // light passes through, tinted
+const uint FEATURE_ADDITIVE = 1024u;    // adds its light to what is behind it
 
 // What all draws of a frame share (std140).
 struct FrameData {
@@ -59,7 +62,7 @@ struct MaterialData {
   float alphaCutoff;
   float alphaFromBase; // 1: alpha is the base colour's; 0: alpha is 1
   float opacity;       // multiplies alpha
-  float unused;
+  float transmission;
   SlotData slots[SLOT_COUNT];
 };
 
@@ -67,7 +70,7 @@ struct MaterialData {
 static_assert(sizeof(FrameData) == 176);
 static_assert(sizeof(DrawData) == 112);
 static_assert(sizeof(SlotData) == 32);
-static_assert(sizeof(MaterialData) == 224);
+static_assert(sizeof(MaterialData) == 256);
 } // namespace vitrail::tool::shaders
 #endif
 

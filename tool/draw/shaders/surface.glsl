@@ -13,6 +13,7 @@ layout(set = 1, binding = 1) uniform sampler2D metallicRoughnessTexture;
 layout(set = 1, binding = 2) uniform sampler2D normalTexture;
 layout(set = 1, binding = 3) uniform sampler2D occlusionTexture;
 layout(set = 1, binding = 4) uniform sampler2D emissiveTexture;
+layout(set = 1, binding = 5) uniform sampler2D transmissionTexture;
 
 layout(location = 0) in vec3 inPosition;
 layout(location = 1) in vec3 inNormal;
@@ -71,14 +72,15 @@ float grazing(float c) {
   return x * x * x * x * x;
 }
 
-vec3 lit(vec3 base, float metallic, float roughness, float occlusion, vec3 n, vec3 v) {
+// What a surface reflects. `scattered` is the share of the diffuse light that does not pass through it.
+vec3 lit(vec3 base, float metallic, float scattered, float roughness, float occlusion, vec3 n, vec3 v) {
   vec3 l = frame.toLight.xyz;
   vec3 h = direction(l + v, n);
   float nv = max(dot(n, v), 0.0001);
   float nl = max(dot(n, l), 0.0);
   float a2 = roughness * roughness * roughness * roughness;
   vec3 f0 = mix(vec3(0.04), base, metallic);
-  vec3 diffuse = (1.0 - metallic) * base;
+  vec3 diffuse = scattered * (1.0 - metallic) * base;
 
   vec3 direct = vec3(0.0);
   if (nl > 0.0) {
@@ -91,13 +93,22 @@ vec3 lit(vec3 base, float metallic, float roughness, float occlusion, vec3 n, ve
   return direct + occlusion * (hemisphere(n) * diffuse + hemisphere(reflected) * ambientFresnel);
 }
 
-// Linear colour and straight alpha. Discards what the mask cuts away, after every texture has been sampled:
-// what kFeatures decides is uniform, so the derivatives are defined.
-vec4 shadeSurface() {
+// A surface at one pixel, as docs/shading.md states it.
+struct Surface {
+  vec3 color;  // linear
+  float alpha; // how much of the surface is there
+  vec3 tint;   // of what passes through
+  float passes; // the share of the light behind that passes; 0 without FEATURE_TRANSMISSION
+};
+
+// Discards what the mask cuts away, after every texture has been sampled: what kFeatures decides is uniform, so the
+// derivatives are defined.
+Surface shadeSurface() {
   vec4 base = material.baseColor;
   vec3 metallicRoughness = vec3(1.0);
   vec3 normalSample = vec3(0.5, 0.5, 1.0);
   float occlusionSample = 1.0;
+  float transmission = has(FEATURE_TRANSMISSION) ? material.transmission : 0.0;
   vec3 emissive = material.emissive.rgb;
   if (has(FEATURE_VERTEX_COLOR)) base *= inColor;
   if (hasTexture(SLOT_BASE_COLOR)) base *= texture(baseColorTexture, inTexCoords[SLOT_BASE_COLOR]);
@@ -107,17 +118,33 @@ vec4 shadeSurface() {
   if (hasTexture(SLOT_NORMAL)) normalSample = texture(normalTexture, inTexCoords[SLOT_NORMAL]).rgb;
   if (hasTexture(SLOT_OCCLUSION)) occlusionSample = texture(occlusionTexture, inTexCoords[SLOT_OCCLUSION]).r;
   if (hasTexture(SLOT_EMISSIVE)) emissive *= texture(emissiveTexture, inTexCoords[SLOT_EMISSIVE]).rgb;
+  if (hasTexture(SLOT_TRANSMISSION)) {
+    transmission *= texture(transmissionTexture, inTexCoords[SLOT_TRANSMISSION]).r;
+  }
 
   if (has(FEATURE_MASK) && base.a < material.alphaCutoff) discard;
   float alpha = material.opacity * mix(1.0, base.a, material.alphaFromBase);
-  if (has(FEATURE_UNLIT)) return vec4(base.rgb, alpha);
+  if (has(FEATURE_UNLIT)) return Surface(base.rgb, alpha, vec3(1.0), 0.0);
 
   vec3 v = viewDirection();
   vec3 n = surfaceNormal(normalSample, v);
   float roughness = clamp(material.roughness * metallicRoughness.g, 0.045, 1.0);
   float metallic = clamp(material.metallic * metallicRoughness.b, 0.0, 1.0);
   float occlusion = 1.0 + material.occlusionStrength * (occlusionSample - 1.0);
-  return vec4(lit(base.rgb, metallic, roughness, occlusion, n, v) + emissive, alpha);
+  transmission = clamp(transmission, 0.0, 1.0);
+  vec3 color = lit(base.rgb, metallic, 1.0 - transmission, roughness, occlusion, n, v) + emissive;
+  return Surface(color, alpha, base.rgb, transmission * (1.0 - metallic));
+}
+
+// The two fragments of a transmissive surface, the first in front of the second: what it reflects, premultiplied, and
+// the filter for what is behind.
+vec4 reflectionOf(Surface surface) {
+  return vec4(surface.alpha * surface.color, surface.alpha * (1.0 - surface.passes));
+}
+vec4 filterOf(Surface surface) {
+  float through = surface.alpha * surface.passes;
+  float all = 1.0 - surface.alpha + through;
+  return vec4(surface.tint, all > 0.0 ? through / all : 0.0);
 }
 
 #endif

@@ -1,0 +1,86 @@
+// Reaches a target's node pool, in any format, through a binding or, where the including shader defines
+// VITRAIL_BUFFER_REFERENCE, through its address, which has no limit of size. Before the include, define
+//
+//   VITRAIL_POOL_SET, VITRAIL_POOL_BINDING   where the pool is bound
+//   uint vitrailPoolCapacity()               its nodes
+//   uvec2 vitrailPoolAddress()               its address (VITRAIL_BUFFER_REFERENCE only)
+//
+// A node is handled as four words, as in node.glsl: `w` is the word that holds `next`.
+#ifndef VITRAIL_POOL_GLSL
+#define VITRAIL_POOL_GLSL
+
+#include "node.glsl"
+
+#ifdef VITRAIL_BUFFER_REFERENCE
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer VitrailStandardNodes { VitrailNodeStandard nodes[]; };
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer VitrailLinks { uint links[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer VitrailCompactNodes { VitrailNodeCompact nodes[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer VitrailHdrNodes { VitrailNodeHdr nodes[]; };
+
+// Behind 8 bytes a node.
+uvec2 vitrailLinksAddress() {
+  uvec2 pool = vitrailPoolAddress();
+  uint carry;
+  uint low = uaddCarry(pool.x, vitrailPoolCapacity() << 3, carry);
+  return uvec2(low, pool.y + (vitrailPoolCapacity() >> 29) + carry);
+}
+#define VITRAIL_STANDARD(index) VitrailStandardNodes(vitrailPoolAddress()).nodes[index].words
+#define VITRAIL_LINK(index) VitrailLinks(vitrailLinksAddress()).links[index]
+#define VITRAIL_COMPACT(index) VitrailCompactNodes(vitrailPoolAddress()).nodes[index].words
+#define VITRAIL_HDR(index) VitrailHdrNodes(vitrailPoolAddress()).nodes[index].words
+#else
+layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailStandardBlock { VitrailNodeStandard vitrailStandardNodes[]; };
+layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailLinkBlock { uint vitrailLinks[]; };
+layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailCompactBlock { VitrailNodeCompact vitrailCompactNodes[]; };
+layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailHdrBlock { VitrailNodeHdr vitrailHdrNodes[]; };
+#define VITRAIL_STANDARD(index) vitrailStandardNodes[index].words
+#define VITRAIL_LINK(index) vitrailLinks[2u * vitrailPoolCapacity() + index]
+#define VITRAIL_COMPACT(index) vitrailCompactNodes[index].words
+#define VITRAIL_HDR(index) vitrailHdrNodes[index].words
+#endif
+
+void vitrailStoreNode(uint index, uvec4 node, VitrailLayout nodes) {
+  if (nodes.format == VITRAIL_FORMAT_STANDARD) {
+    VITRAIL_STANDARD(index) = node.xy;
+    VITRAIL_LINK(index) = node.w;
+  } else if (nodes.format == VITRAIL_FORMAT_COMPACT) {
+    VITRAIL_COMPACT(index) = node.xw;
+  } else {
+    VITRAIL_HDR(index) = node;
+  }
+}
+
+uvec4 vitrailLoadNode(uint index, VitrailLayout nodes) {
+  if (nodes.format == VITRAIL_FORMAT_STANDARD) {
+    uint link = VITRAIL_LINK(index); // first: the next node waits for it
+    return uvec4(VITRAIL_STANDARD(index), 0u, link);
+  }
+  if (nodes.format == VITRAIL_FORMAT_COMPACT) {
+    uvec2 words = VITRAIL_COMPACT(index);
+    return uvec4(words.x, 0u, 0u, words.y);
+  }
+  return VITRAIL_HDR(index);
+}
+
+// Only the word that holds the index of the next node, and what shares it.
+uint vitrailLoadNext(uint index, VitrailLayout nodes) {
+  if (nodes.format == VITRAIL_FORMAT_STANDARD) return VITRAIL_LINK(index);
+  if (nodes.format == VITRAIL_FORMAT_COMPACT) return VITRAIL_COMPACT(index).y;
+  return VITRAIL_HDR(index).w;
+}
+
+// Links a node to another; what else its word holds stays.
+void vitrailStoreNext(uint index, uint next, VitrailLayout nodes) {
+  uint mask = vitrailNextMask(nodes);
+  uint word = next & mask;
+  if (mask != 0xffffffffu) word |= vitrailLoadNext(index, nodes) & ~mask;
+  if (nodes.format == VITRAIL_FORMAT_STANDARD) {
+    VITRAIL_LINK(index) = word;
+  } else if (nodes.format == VITRAIL_FORMAT_COMPACT) {
+    VITRAIL_COMPACT(index).y = word;
+  } else {
+    VITRAIL_HDR(index).w = word;
+  }
+}
+
+#endif

@@ -1,0 +1,35 @@
+// Counts pixels for the statistics, one atomic a work group.
+#ifndef VITRAIL_GROUP_COUNTS_GLSL
+#define VITRAIL_GROUP_COUNTS_GLSL
+
+#include "target.glsl"
+
+shared uint groupLayersMax;
+shared uint groupCovered;
+shared uint groupApproximate;
+
+void beginCounts() {
+  if (gl_LocalInvocationIndex == 0u) {
+    groupLayersMax = 0u;
+    groupCovered = 0u;
+    groupApproximate = 0u;
+  }
+  barrier();
+}
+
+// A pixel with a list, of which `layers` fragments were walked.
+void countPixel(uint layers) {
+  atomicMax(groupLayersMax, layers);
+  atomicAdd(groupCovered, 1u);
+  if (kMaxLayers != 0u && layers > kMaxLayers) atomicAdd(groupApproximate, 1u);
+}
+
+void endCounts() {
+  barrier();
+  if (gl_LocalInvocationIndex != 0u || groupCovered == 0u) return;
+  atomicMax(control.layersMax, groupLayersMax);
+  atomicAdd(control.coveredPixels, groupCovered);
+  if (groupApproximate > 0u) atomicAdd(control.approximatePixels, groupApproximate);
+}
+
+#endif

@@ -1,0 +1,41 @@
+// How the compute resolve writes the picture: one pixel of the colour image, from its list and the opaque colour.
+// VITRAIL_COLOR_FORMAT is the image's format.
+#ifndef VITRAIL_PICTURE_GLSL
+#define VITRAIL_PICTURE_GLSL
+
+#include "deep_lists.glsl"
+#include "samples.glsl"
+#include "vitrail/resolve.glsl"
+
+layout(set = 1, binding = 0, VITRAIL_COLOR_FORMAT) uniform image2D colorImage;
+
+uvec2 imagePixel(uint pixelIndex) {
+  return uvec2(parameters.x + pixelIndex % parameters.width, parameters.y + pixelIndex / parameters.width);
+}
+
+// Before a list of this pixel is looked at.
+void beginPixel(uvec2 pixel) {
+#ifdef VITRAIL_MULTISAMPLED
+  shownPixel = ivec2(pixel);
+#endif
+}
+
+void writePixel(uvec2 pixel, VitrailResolved r) {
+#ifdef VITRAIL_MULTISAMPLED
+  vec4 sum = vec4(0.0);
+#define VITRAIL_ADD_SAMPLE(s) if (s < kSamples) sum += over(r.pairs[s], texelFetch(opaqueImage, ivec2(pixel), s));
+  VITRAIL_EACH_SAMPLE(VITRAIL_ADD_SAMPLE)
+  imageStore(colorImage, ivec2(pixel), sum / float(kSamples));
+#else
+  imageStore(colorImage, ivec2(pixel), over(r.pairs[0], imageLoad(colorImage, ivec2(pixel))));
+#endif
+}
+
+void writeDeepPixel(uint pixelIndex, VitrailResolved r) {
+  writePixel(imagePixel(pixelIndex), r);
+  atomicMax(control.layersMax, r.layers);
+  if (!r.complete) atomicAdd(control.cutPixels, 1u);
+  if (kMaxLayers != 0u && r.layers > kMaxLayers) atomicAdd(control.approximatePixels, 1u);
+}
+
+#endif

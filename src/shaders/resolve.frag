@@ -1,0 +1,71 @@
+// The fragment resolve. Lists of up to 16 fragments are sorted here, longer ones lie sorted (sort_long.comp). One of
+//   (nothing)              one sample: blended over what is there
+//   VITRAIL_PER_SAMPLE     one invocation a sample: likewise
+//   VITRAIL_MULTISAMPLED   one invocation a pixel: written, from the multisampled opaque colour
+// and for the first two VITRAIL_DUAL_SOURCE: with a transmittance for each channel.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "samples.glsl"
+#include "missing.glsl"
+#include "vitrail/resolve_long.glsl"
+
+// Else the counters would be written for what the stencil mark rejects.
+layout(early_fragment_tests) in;
+
+#ifdef VITRAIL_DUAL_SOURCE
+layout(location = 0, index = 0) out vec4 outColor;
+layout(location = 0, index = 1) out vec4 outTransmittance;
+#else
+layout(location = 0) out vec4 outColor;
+#endif
+
+VitrailResolved resolveList(uint head) {
+  if (kMaxLayers != 0u && kMaxLayers <= VITRAIL_SHORT_LIST) return vitrailResolveCapped(head, nodesInUse());
+  VitrailResolved r = vitrailResolveShort(head, nodesInUse());
+  if (r.complete) return r;
+  r = vitrailBlendList(head, nodesInUse());
+  if (!r.complete) atomicAdd(control.cutPixels, 1u);
+  return r;
+}
+
+// Whether one number is the transmittance of all channels.
+bool isGrey(VitrailPair pair) { return pair.transmittance.rgb == vec3(pair.transmittance.a); }
+
+void writeResult(VitrailResolved r) {
+#if defined(VITRAIL_MULTISAMPLED)
+  vec4 sum = vec4(0.0);
+#define VITRAIL_ADD_SAMPLE(s) if (s < kSamples) sum += over(r.pairs[s], texelFetch(opaqueImage, shownPixel, s));
+  VITRAIL_EACH_SAMPLE(VITRAIL_ADD_SAMPLE)
+  outColor = sum / float(kSamples);
+#else
+  VitrailPair pair = r.pairs[0];
+  outColor = vec4(pair.color, 1.0 - pair.transmittance.a);
+#ifdef VITRAIL_DUAL_SOURCE
+  outTransmittance = pair.transmittance;
+#else
+  if (isGrey(pair)) return;
+  outColor.a = 1.0 - dot(pair.transmittance.rgb, vec3(1.0 / 3.0));
+  atomicAdd(control.approximatePixels, 1u);
+#endif
+#endif
+}
+
+void main() {
+  uvec2 pixel = uvec2(gl_FragCoord.xy);
+  uvec2 local = pixel - uvec2(parameters.x, parameters.y);
+  uint pixelIndex = local.y * parameters.width + local.x;
+  uint head = heads[pixelIndex];
+  VitrailResolved r = vitrailNothing();
+#ifdef VITRAIL_MULTISAMPLED
+  shownPixel = ivec2(pixel);
+#else
+  if (head == VITRAIL_END && !overflowed()) discard;
+#endif
+  if (overflowed()) {
+    if (parameters.keepSums == 0u) discard;
+    r = vitrailResolveSums(head, nodesInUse(), readMissing(pixelIndex));
+  } else if (head != VITRAIL_END) {
+    r = resolveList(head);
+  }
+  writeResult(r);
+}

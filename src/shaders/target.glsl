@@ -1,0 +1,39 @@
+// What every shader of the library binds of a target, and how it is specialized. With VITRAIL_NETWORKS set to 1 it sorts as
+// suits a GPU, with 0 as suits a CPU (vitrail/sort.glsl). The set is the one that collecting
+// shaders bind (vitrail/collect.glsl), with the lists of deep pixels beside it.
+#ifndef VITRAIL_TARGET_GLSL
+#define VITRAIL_TARGET_GLSL
+
+#ifdef VITRAIL_BUFFER_REFERENCE
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#endif
+
+#include "vitrail/layout.h"
+
+layout(constant_id = 0) const uint kFormat = VITRAIL_FORMAT_STANDARD;
+layout(constant_id = 1) const uint kSamples = 1u;
+layout(constant_id = 2) const bool kNearestIsOne = false;
+layout(constant_id = 3) const uint kMaxLayers = 0u;
+layout(constant_id = 4) const bool kTestDepth = false; // coverage has not passed the depth test
+
+layout(set = 0, binding = 0, std140) uniform ParametersBlock { VitrailParameters parameters; };
+layout(set = 0, binding = 1, std430) buffer ControlBlock { VitrailControl control; };
+layout(set = 0, binding = 2, std430) buffer HeadsBlock { uint heads[]; };
+layout(set = 0, binding = 4, std430) buffer SumsBlock { uint pixelSums[]; };
+
+uint vitrailPoolCapacity() { return parameters.capacity; }
+#ifdef VITRAIL_BUFFER_REFERENCE
+uvec2 vitrailPoolAddress() { return uvec2(parameters.nodesLow, parameters.nodesHigh); }
+#endif
+#define VITRAIL_POOL_SET 0
+#define VITRAIL_POOL_BINDING 3
+#include "vitrail/pool.glsl"
+
+VitrailLayout vitrailNodes() { return VitrailLayout(kFormat, kSamples, kNearestIsOne); }
+uint vitrailMaxLayers() { return kMaxLayers; }
+
+uint nodesInUse() { return min(control.stored, parameters.capacity); }
+bool overflowed() { return (control.missingLow | control.missingHigh) != 0u; }
+
+#endif

@@ -1,0 +1,40 @@
+#include "dispatch_compute.h"
+
+namespace vitrail {
+
+namespace {
+
+constexpr std::uint32_t kGroupSide = 8; // the local size of the kernels with one thread a pixel, in both directions
+
+void bindSet(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, std::uint32_t number, VkDescriptorSet set) {
+  target.context->vk.CmdBindDescriptorSets(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, target.context->resolveLayout,
+                                           number, 1, &set, 0, nullptr);
+}
+
+} // namespace
+
+void bindTargetSet(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
+  bindSet(commandBuffer, target, 0, target.storage.set);
+}
+
+void bindViewSet(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, std::uint32_t view) {
+  bindSet(commandBuffer, target, 1, target.storage.viewSets[view]);
+}
+
+void dispatchPixels(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline) {
+  const Dispatch& vk = target.context->vk;
+  const VkExtent2D extent = target.area.extent;
+  vk.CmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+  vk.CmdDispatch(commandBuffer, (extent.width + kGroupSide - 1) / kGroupSide,
+                 (extent.height + kGroupSide - 1) / kGroupSide, 1);
+}
+
+void dispatchIndirect(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline,
+                      std::size_t counter) {
+  const Dispatch& vk = target.context->vk;
+  const Storage& storage = target.storage;
+  vk.CmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+  vk.CmdDispatchIndirect(commandBuffer, storage.buffer, storage.offset + storage.layout.control.offset + counter);
+}
+
+} // namespace vitrail

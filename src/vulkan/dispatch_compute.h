@@ -1,0 +1,19 @@
+// The forms of compute dispatch that the recording calls use.
+#pragma once
+
+#include "target.h"
+
+namespace vitrail {
+
+// Binds the target's set, and the images of a view where the kernels that follow need them.
+void bindTargetSet(VkCommandBuffer commandBuffer, const VitrailTarget_T& target);
+void bindViewSet(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, std::uint32_t view);
+
+// One thread a pixel of the frame's area.
+void dispatchPixels(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline);
+
+// As many work groups as the counters say: `counter` is the offset of three words in VitrailControl.
+void dispatchIndirect(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline,
+                      std::size_t counter);
+
+} // namespace vitrail

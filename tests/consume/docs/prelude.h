@@ -1,0 +1,68 @@
+/* What the guides' blocks of code in C and C++ take as given: the host's own variables and functions. */
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <vitrail/vitrail.h>
+#include <vulkan/vulkan.h>
+
+#ifdef __cplusplus
+#include <vitrail/vitrail.hpp>
+void drawTransparent(VkCommandBuffer commands, VkDescriptorSet lists);
+extern "C" {
+#else
+void drawTransparent(VkCommandBuffer commands);
+#endif
+
+extern VkInstance instance;
+extern VkPhysicalDevice physicalDevice;
+extern VkDevice device;
+extern VkResult result;
+
+extern VitrailContextDesc contextDesc;
+extern VitrailContext context;
+extern VitrailTargetDesc targetDesc;
+extern VitrailTargetDesc desc;
+extern VitrailTarget target;
+extern VitrailBeginInfo begin;
+extern VitrailResolveInfo resolve;
+extern VitrailBounds bounds;
+extern uint64_t frame;
+extern uint32_t framesInFlight;
+extern bool hasPostDepthCoverage;
+
+extern VkExtent2D extent;
+extern VkExtent2D newExtent;
+extern VkFormat colorFormat;
+extern VkFormat depthStencilFormat;
+extern VkImage colorImage;
+extern VkImage hdrImage;
+extern VkImageView hdrView;
+extern VkImageView newView;
+extern VkImageView multisampledColorView;
+extern VkImageView multisampledDepthView;
+extern VkBuffer poolBuffer;
+extern VkDeviceSize firstFreeByte;
+
+extern VkRenderPass resolvePass;
+extern VkRenderingInfo colorAndDepth;
+extern VkRenderingInfo colorLoaded;
+extern VkDescriptorSetLayout materialSetLayout;
+extern VkPipelineLayout transparentLayout;
+extern VkPipelineShaderStageCreateInfo fragmentStage;
+extern VkPipelineDepthStencilStateCreateInfo depthStencil;
+extern VkCommandBuffer commands;
+
+void printReason(VitrailLogSeverity severity, const char* message, void* user);
+void warn(const char* format, ...);
+void imageBarrier(VkCommandBuffer commandBuffer, VkImage image, VkImageLayout oldLayout, VkImageLayout newLayout,
+                  VkPipelineStageFlags oldStages, VkAccessFlags oldAccess, VkPipelineStageFlags newStages,
+                  VkAccessFlags newAccess);
+void drawOpaque(VkCommandBuffer commandBuffer);
+void drawInterface(VkCommandBuffer commandBuffer);
+void drawTransparentFrame(VitrailTarget drawnTarget, const VitrailBeginInfo* info);
+void graphUsesBuffer(VkBuffer buffer, VkDeviceSize offset, VkDeviceSize size, VkPipelineStageFlags source,
+                     VkPipelineStageFlags destination);
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,0 +1,112 @@
+// Pictures that do not fit: whole scenes under memory budgets, drawn in tiles, are bit-identical to the untiled ones;
+// large pictures and pools work however small a device's bindings are.
+#include <cstdint>
+#include <string>
+
+#include "../../tool/scene/builtin.h"
+#include "../reference/test_scenes.h"
+#include "gpu_fixture.h"
+
+namespace vitrail::tool::test {
+namespace {
+
+using reference::addRectangle;
+using reference::straightView;
+using reference::unlitMaterial;
+
+constexpr std::uint64_t kMebibyte = 1 << 20;
+
+class BudgetTest : public GpuTest {
+ protected:
+  // Draws a scene without a budget and with ever larger ones, from 1 MiB on, until one tile holds it.
+  void expectSameBits(const Scene& scene, const RenderOptions& options, const MethodOptions& method = {}) {
+    SCOPED_TRACE(describe(method));
+    Renderer renderer(gpu(), scene, {}, DrawOrder::Forward, method);
+    const RenderResult whole = renderer.render(options);
+    EXPECT_EQ(whole.report.tiles, 1U);
+    std::uint32_t tiles = 2;
+    for (std::uint64_t budget = kMebibyte; tiles > 1; budget *= 4) {
+      RenderOptions bounded = options;
+      bounded.memoryBudget = budget;
+      const RenderResult result = renderer.render(bounded);
+      EXPECT_TRUE(result.picture.rgba == whole.picture.rgba) << budget << " bytes";
+      EXPECT_TRUE(result.report.exact) << budget << " bytes";
+      EXPECT_EQ(result.report.fragmentsRequested, whole.report.fragmentsRequested) << budget << " bytes";
+      EXPECT_EQ(result.report.layersMax, whole.report.layersMax) << budget << " bytes";
+      EXPECT_LE(result.report.totalBytes, budget + 4096); // statistics come on top
+      EXPECT_TRUE(budget > kMebibyte || result.report.tiles > 1);
+      tiles = result.report.tiles;
+      ASSERT_LT(budget, 1024 * kMebibyte);
+    }
+  }
+};
+
+TEST_F(BudgetTest, ScenesAreTheSameUnderEveryBudget) {
+  for (const char* name : {"spheres", "mannequins", "smoke"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = makeBuiltinScene(name, {});
+    expectSameBits(scene, usualOptions(scene, 320, 180));
+  }
+}
+
+TEST_F(BudgetTest, AndHoweverTheyAreDrawn) {
+  const Scene scene = makeBuiltinScene("spheres", {});
+  for (const MethodOptions& method : methodVariety(gpu())) expectSameBits(scene, usualOptions(scene, 320, 180), method);
+}
+
+// Panes that fill the picture, each of a colour of its own.
+Scene panes(int count) {
+  Scene scene;
+  for (int i = 0; i < count; ++i) {
+    const float t = static_cast<float>(i) / static_cast<float>(count);
+    addRectangle(scene, {glm::vec2(-9.0F), glm::vec2(9.0F), 4.0F - 8.0F * t},
+                 unlitMaterial({t, 1.0F - t, 0.5F, 0.2F + 0.3F * t}));
+  }
+  return scene;
+}
+
+RenderOptions paneOptions(std::uint32_t side) {
+  RenderOptions options;
+  options.width = side;
+  options.height = side;
+  options.view = straightView();
+  return options;
+}
+
+// 134 million fragments, 1.5 GiB of nodes.
+TEST_F(BudgetTest, ALargePictureOfEightLayersIsDrawnInTiles) {
+  const Scene scene = panes(8);
+  const RenderResult small = renderOnce(gpu(), scene, paneOptions(4));
+  RenderOptions options = paneOptions(4096);
+  options.memoryBudget = 256 * kMebibyte;
+  const RenderResult large = renderOnce(gpu(), scene, options);
+  EXPECT_TRUE(large.report.exact);
+  EXPECT_GT(large.report.tiles, 4U);
+  EXPECT_EQ(large.report.fragmentsStored, 8ULL * 4096 * 4096);
+  EXPECT_EQ(large.report.layersMax, 8U);
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < large.picture.rgba.size(); ++i) {
+    if (large.picture.rgba[i] != small.picture.rgba[i % 4]) ++different;
+  }
+  EXPECT_EQ(different, 0U);
+}
+
+// A pool beyond what one binding reaches on Mesa's CPU driver, 128 MiB.
+TEST_F(BudgetTest, APoolMayBeLargerThanABinding) {
+  if (!gpu().features().bufferDeviceAddress) GTEST_SKIP() << "this device has no buffer addresses";
+  const Scene scene = panes(4);
+  const RenderResult small = renderOnce(gpu(), scene, paneOptions(4));
+  const RenderResult large = renderOnce(gpu(), scene, paneOptions(2048));
+  EXPECT_TRUE(large.report.exact);
+  EXPECT_EQ(large.report.tiles, 1U);
+  EXPECT_EQ(large.report.fragmentsStored, 4ULL * 2048 * 2048);
+  EXPECT_GE(large.report.nodesBytes, 12ULL * 4 * 2048 * 2048);
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < large.picture.rgba.size(); ++i) {
+    if (large.picture.rgba[i] != small.picture.rgba[i % 4]) ++different;
+  }
+  EXPECT_EQ(different, 0U);
+}
+
+} // namespace
+} // namespace vitrail::tool::test

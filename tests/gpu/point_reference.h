@@ -1,0 +1,64 @@
+// What the point host must draw, in double precision, and the points that tests draw.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/reference_resolve.h"
+#include "point_host.h"
+
+namespace vitrail::tests {
+
+NodeCoding codingOf(const PointHostDesc& desc);
+
+// What a frame must be.
+struct Expected {
+  std::vector<Color> pixels;
+  std::uint64_t fragments = 0;
+  std::uint32_t layersMax = 0;
+  std::uint32_t coveredPixels = 0;
+};
+
+// `hasPostDepthCoverage`: whether the device has it; the host uses it where it may.
+Expected expectedFrame(const PointHostDesc& desc, std::span<const Point> points, bool hasPostDepthCoverage = true);
+
+// The largest difference of a channel, relative where the expected value is above 1. A NaN is infinitely far.
+double largestError(std::span<const FloatColor> got, std::span<const Color> expected);
+
+enum class Order { Forward, Reversed, Shuffled };
+std::vector<Point> ordered(std::vector<Point> points, Order order);
+
+// What random points may be.
+struct PointVariety {
+  bool blendModes = false; // all four, else over
+  bool coverage = false;   // any samples, else all
+  float brightest = 1.0F;
+};
+
+// Points for lists of the given lengths, list i on pixel i: random colours on the node format's own steps, so that
+// storing them loses nothing, and random depths, of which each tenth is that of the one before it. Alphas are such that
+// the last fragments of a list still show, where the format has such small ones.
+std::vector<Point> randomLists(const PointHostDesc& desc, const std::vector<std::uint32_t>& lengths, unsigned seed,
+                               const PointVariety& variety = {});
+
+// A way to resolve: fields of a host, and their names.
+struct Way {
+  std::string name;
+  VitrailResolve resolve = VITRAIL_RESOLVE_COMPUTE;
+  VitrailMsaaResolve msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
+  bool stencilMark = false;
+};
+void apply(const Way& way, PointHostDesc& desc);
+
+// All that there are on a device at a sample count.
+std::vector<Way> everyWay(const tool::Gpu& gpu, std::uint32_t samples);
+
+// Which of 2, 4 and 8 samples the device has.
+std::vector<std::uint32_t> sampleCounts(const tool::Gpu& gpu);
+
+// The node formats that go with a sample count.
+std::vector<VitrailNodeFormat> nodeFormats(std::uint32_t samples);
+
+} // namespace vitrail::tests

@@ -1,0 +1,265 @@
+// `vitrail bench` and the method insertion as a user meets them.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "png_reader.h"
+#include "process.h"
+
+namespace vitrail::tests {
+namespace {
+
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+const std::string kTool = VITRAIL_TEST_TOOL;
+const std::string kSanitizedTool = VITRAIL_TEST_SANITIZED_TOOL;
+
+ProcessResult vitrail(const TemporaryFolder& folder, Words arguments) {
+  arguments.insert(arguments.begin(), kTool);
+  ProcessOptions options;
+  options.folder = folder.path();
+  return run(arguments, options);
+}
+
+Json readJson(const std::string& path) {
+  std::ifstream file(path);
+  return Json::parse(file);
+}
+
+// A spread of at least one time above 0.
+void expectTimes(const Json& spread) {
+  EXPECT_GT(spread.at("median"), 0.0);
+  EXPECT_LE(spread.at("min"), spread.at("lower_quartile"));
+  EXPECT_LE(spread.at("lower_quartile"), spread.at("median"));
+  EXPECT_LE(spread.at("median"), spread.at("upper_quartile"));
+  EXPECT_LE(spread.at("upper_quartile"), spread.at("max"));
+}
+
+void expectMeasurement(const Json& measured) {
+  SCOPED_TRACE(measured.dump());
+  for (const auto& [pass, spread] : measured.at("passes_ms").items()) expectTimes(spread);
+  expectTimes(measured.at("cost_ms"));
+  expectTimes(measured.at("frame_ms"));
+  EXPECT_GT(measured.at("frame_ms").at("median"), measured.at("cost_ms").at("median"));
+  for (const char* name : {"cost_ratio", "frame_ratio", "fragments_per_second"}) {
+    const double value = measured.at(name).get<double>(); // null would throw
+    EXPECT_TRUE(std::isfinite(value) && value > 0.0) << name;
+  }
+  const bool baseline = measured.at("method") == "unsorted";
+  EXPECT_EQ(measured.at("exact"), !baseline);
+  if (baseline) {
+    EXPECT_DOUBLE_EQ(measured.at("cost_ratio"), 1.0);
+    for (const char* name : {"nodes", "resolve", "fragments", "layers", "floor_bytes", "floor_ms", "bandwidth_share"}) {
+      EXPECT_TRUE(measured.at(name).is_null()) << name;
+    }
+    return;
+  }
+  EXPECT_EQ(measured.at("nodes"), measured.at("method") == "linked-list" ? Json("standard") : Json(nullptr));
+  EXPECT_GT(measured.at("layers").at("max"), 1);
+  EXPECT_EQ(measured.at("tiles"), 1);
+  const double fragments = measured.at("fragments").at("requested");
+  EXPECT_EQ(measured.at("fragments").at("stored"), fragments);
+  EXPECT_EQ(measured.at("fragments").at("missing"), 0);
+  // At least a node in and out for every fragment, and no more than the heads and colours of all pixels beside them.
+  EXPECT_GT(measured.at("floor_bytes"), 24.0 * fragments);
+  EXPECT_LE(measured.at("floor_bytes"), 24.0 * fragments + 32.0 * 96 * 64);
+  EXPECT_GT(measured.at("floor_ms"), 0.0);
+  EXPECT_NEAR(measured.at("bandwidth_share").get<double>(),
+              measured.at("floor_ms").get<double>() / measured.at("cost_ms").at("median").get<double>(), 1e-9);
+}
+
+TEST(Bench, MeasuresAndReports) {
+  const TemporaryFolder folder;
+  const ProcessResult result = vitrail(folder, {"bench", "--scene", "interlocked,planes", "--count", "5,3", "--size",
+                                                "96x64", "--repeat", "2", "--warmup", "1", "--json", "a.json"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_EQ(result.error, ""); // no progress in a pipe
+  EXPECT_EQ(folder.names(), Words{"a.json"});
+  EXPECT_NE(result.out.find("planes --count 3"), std::string::npos) << result.out;
+
+  const Json json = readJson(folder.file("a.json"));
+  for (const char* name : {"device", "driver", "api"}) EXPECT_FALSE(json.at(name).get<std::string>().empty()) << name;
+  EXPECT_TRUE(json.at("cpu").is_boolean());
+  EXPECT_EQ(json.at("width"), 96);
+  EXPECT_EQ(json.at("height"), 64);
+  EXPECT_EQ(json.at("repeats"), 2);
+  EXPECT_EQ(json.at("warmups"), 1);
+  EXPECT_GT(json.at("bandwidth_gb_s"), 0.1);
+  ASSERT_EQ(json.at("scenes").size(), 2U);
+  EXPECT_EQ(json.at("scenes")[0].at("scene"), "interlocked");
+  EXPECT_EQ(json.at("scenes")[1].at("count"), 3);
+  EXPECT_GT(json.at("scenes")[1].at("triangles"), 0);
+  for (const Json& scene : json.at("scenes")) {
+    EXPECT_TRUE(scene.at("skipped").empty()) << scene.dump();
+    Words methods;
+    for (const Json& measured : scene.at("measurements")) {
+      methods.push_back(measured.at("method"));
+      expectMeasurement(measured);
+    }
+    EXPECT_EQ(methods, (Words{"unsorted", "linked-list", "insertion"}));
+  }
+  // Fragments per pixel and layer are the same whoever stores them.
+  const Json& planes = json.at("scenes")[1].at("measurements");
+  EXPECT_EQ(planes[1].at("fragments"), planes[2].at("fragments"));
+  EXPECT_EQ(planes[1].at("layers").at("max"), planes[2].at("layers").at("max"));
+}
+
+// What a device does not offer is said, and does not end the run. Mesa's CPU driver has no 8 samples.
+TEST(Bench, EverySettingIsMeasuredOrSkippedWithAReason) {
+  const TemporaryFolder folder;
+  const ProcessResult result =
+      vitrail(folder, {"bench", "--scene", "planes", "--count", "2", "--size", "32x32", "--repeat", "1", "--methods",
+                       "linked-list", "--nodes", "compact,standard", "--samples", "1,8", "--resolve", "fragment",
+                       "--json", "a.json"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json scene = readJson(folder.file("a.json")).at("scenes")[0];
+  // unsorted, compact and standard at 1 sample, unsorted and standard at 8.
+  EXPECT_EQ(scene.at("measurements").size() + scene.at("skipped").size(), 5U) << scene.dump(1);
+  ASSERT_GE(scene.at("measurements").size(), 3U) << scene.dump(1);
+  EXPECT_EQ(scene.at("measurements")[1].at("nodes"), "compact");
+  EXPECT_EQ(scene.at("measurements")[1].at("resolve"), "fragment");
+  EXPECT_EQ(scene.at("measurements")[2].at("nodes"), "standard");
+  for (const Json& skipped : scene.at("skipped")) {
+    EXPECT_EQ(skipped.at("samples"), 8) << skipped.dump();
+    EXPECT_NE(skipped.at("reason").get<std::string>().find("samples"), std::string::npos) << skipped.dump();
+    EXPECT_NE(result.out.find(skipped.at("reason")), std::string::npos) << result.out;
+  }
+}
+
+TEST(Bench, TheReportCanGoToStandardOutput) {
+  const TemporaryFolder folder;
+  const ProcessResult result = vitrail(folder, {"bench", "--scene", "planes", "--size", "16x16", "--repeat", "1",
+                                                "--methods", "unsorted", "--json", "/dev/stdout"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_EQ(Json::parse(result.out).at("scenes")[0].at("measurements").size(), 1U);
+}
+
+TEST(Bench, QuietPrintsNothing) {
+  const TemporaryFolder folder;
+  const ProcessResult result = vitrail(
+      folder, {"bench", "--scene", "planes", "--size", "16x16", "--repeat", "1", "--methods", "unsorted", "--quiet"});
+  EXPECT_EQ(result.exitCode, 0);
+  EXPECT_EQ(result.out + result.error, "");
+}
+
+TEST(Bench, TheHelpPageNamesEveryOption) {
+  const std::string help = vitrail(TemporaryFolder(), {"bench", "--help"}).out;
+  for (const char* option : {"MODEL", "--scene", "--count", "--size", "--opacity", "--methods", "--nodes", "--samples",
+                             "--resolve", "--repeat", "--warmup", "--json", "--quiet", "--device"}) {
+    EXPECT_NE(help.find(option), std::string::npos) << option;
+  }
+}
+
+// One line on standard error, nothing on standard output, nothing on disk.
+void expectRefusal(const std::string& tool, Words arguments, int exitCode, const std::string& reason) {
+  const TemporaryFolder folder;
+  arguments.insert(arguments.begin(), {tool, "bench"});
+  ProcessOptions options;
+  options.folder = folder.path();
+  const ProcessResult result = run(arguments, options);
+  EXPECT_EQ(result.exitCode, exitCode) << result.error;
+  EXPECT_EQ(result.out, "");
+  EXPECT_TRUE(result.error.starts_with("vitrail: error: ")) << result.error;
+  EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+  EXPECT_NE(result.error.find(reason), std::string::npos) << result.error;
+  EXPECT_EQ(folder.names(), Words{});
+}
+
+TEST(Bench, WrongUsageIsOneLineAndExitCode2) {
+  const std::vector<std::pair<Words, std::string>> cases = {
+      {{"--methods", "linked-list,magic"}, "'magic' is not a method"},
+      {{"--methods", ""}, "--methods"},
+      {{"--nodes", "standard,"}, "'' is not a node format"},
+      {{"--nodes", "tiny"}, "standard, compact or hdr"},
+      {{"--samples", "1,3"}, "'3' is not 1, 2, 4 or 8"},
+      {{"--samples", "x"}, "--samples"},
+      {{"--resolve", "raster"}, "compute or fragment"},
+      {{"--scene", "spheres,,planes"}, "--scene"},
+      {{"--scene", "spheres,sheres"}, "sheres"},
+      {{"--scene", "spheres", "--count", "0"}, "1 to 20000"},
+      {{"--scene", "spheres,planes", "--count", "1,2,3"}, "--count has 3 numbers for 2 scenes"},
+      {{"--count", "-1"}, "--count"},
+      {{"a.glb", "--scene", "spheres"}, "exclude"},
+      {{"a.glb", "--count", "3"}, "--count"},
+      {{"--repeat", "0"}, "--repeat"},
+      {{"--repeat", "1e3"}, "--repeat"},
+      {{"--warmup", "0"}, "--warmup"},
+      {{"--size", "100"}, "--size"},
+      {{"--size", "0x10"}, "--size"},
+      {{"--opacity", "0"}, "--opacity"},
+      {{"--opacity", "nan"}, "--opacity"},
+      {{"--output", "a.png"}, "--output"},
+  };
+  for (const auto& [arguments, reason] : cases) {
+    Words words = arguments;
+    words.insert(words.end(), {"--json", "a.json"});
+    expectRefusal(kTool, words, 2, reason);
+    expectRefusal(kSanitizedTool, words, 2, reason);
+  }
+}
+
+TEST(Bench, WhatCannotBeDoneIsOneLineAndExitCode1) {
+  for (const std::string& tool : {kTool, kSanitizedTool}) {
+    expectRefusal(tool, {"no-such-file.glb", "--json", "a.json"}, 1, "no-such-file.glb");
+    expectRefusal(tool, {"--json", "nowhere/a.json"}, 1, "nowhere");
+  }
+  expectRefusal(kTool, {"--device", "abacus", "--json", "a.json"}, 1, "abacus");
+  const std::string opaque = VITRAIL_TEST_CORPUS "/good/triangle.gltf";
+  expectRefusal(kTool, {opaque, "--size", "16x16", "--repeat", "1", "--json", "a.json"}, 1, "--opacity");
+}
+
+// The same picture as the library's resolve, to the last bit of rounding, as long as no list is longer than its array.
+TEST(Insertion, DrawsThePictureOfTheLinkedList) {
+  const std::vector<Words> scenes = {{"--scene", "interlocked"},
+                                     {"--scene", "flames"}, // additive
+                                     {"--scene", "hairball"},
+                                     {VITRAIL_TEST_CORPUS "/good/transmission.gltf"}}; // two fragments a surface
+  for (const Words& scene : scenes) {
+    SCOPED_TRACE(scene.back());
+    const TemporaryFolder folder;
+    for (const char* method : {"linked-list", "insertion"}) {
+      const std::string name = method;
+      Words words = {"render", "--size", "160x90", "--method", name, "--validate", "-o", name + ".png"};
+      words.insert(words.end(), {"--json", name + ".json"});
+      words.insert(words.end(), scene.begin(), scene.end());
+      const ProcessResult result = vitrail(folder, words);
+      ASSERT_EQ(result.exitCode, 0) << result.error;
+    }
+    const Json lists = readJson(folder.file("linked-list.json"));
+    const Json insertion = readJson(folder.file("insertion.json"));
+    EXPECT_EQ(insertion.at("method"), "insertion");
+    ASSERT_LE(lists.at("layers").at("max"), 128);
+    EXPECT_EQ(insertion.at("exact"), true);
+    EXPECT_EQ(insertion.at("fragments"), lists.at("fragments"));
+    EXPECT_EQ(insertion.at("layers"), lists.at("layers"));
+    const ReadPng a = readPng(folder.file("linked-list.png"));
+    const ReadPng b = readPng(folder.file("insertion.png"));
+    ASSERT_EQ(a.rgba.size(), b.rgba.size());
+    int largest = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) largest = std::max(largest, std::abs(a.rgba[i] - b.rgba[i]));
+    EXPECT_LE(largest, 1);
+  }
+}
+
+// What does not fit into the array is missing, and the report says so.
+TEST(Insertion, ReportsWhatItDrops) {
+  const TemporaryFolder folder;
+  const ProcessResult result =
+      vitrail(folder, {"render", "--scene", "planes", "--count", "150", "--size", "32x32", "--method", "insertion",
+                       "--validate", "-o", "a.png", "--json", "a.json"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json json = readJson(folder.file("a.json"));
+  EXPECT_EQ(json.at("exact"), false);
+  EXPECT_EQ(json.at("layers").at("max"), 150);
+  EXPECT_EQ(json.at("fragments").at("requested"), 150 * 32 * 32);
+  EXPECT_EQ(json.at("fragments").at("missing"), 22 * 32 * 32);
+}
+
+} // namespace
+} // namespace vitrail::tests

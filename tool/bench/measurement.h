@@ -1,0 +1,72 @@
+// What a benchmark measured, and what follows from it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../draw/renderer.h"
+#include "statistics.h"
+
+namespace vitrail::tool {
+
+// One setting of a method in one scene.
+struct Measurement {
+  MethodOptions options;
+  FrameReport report;                                 // of one frame: what it held. Its times are not used.
+  std::vector<std::pair<std::string, Spread>> passes; // milliseconds, in order
+  Spread costMs;  // of what transparency costs in a frame: all passes but the opaque one
+  Spread frameMs; // of all passes
+  // Over the baseline's in the same scene with as many samples, from medians. NaN where the baseline took no time.
+  double costRatio = 0.0;
+  double frameRatio = 0.0;
+  // Transparent fragments over the median cost; of the baseline, which counts none, those of another method. None where
+  // nothing counted them.
+  std::optional<double> fragmentsPerSecond;
+  // Of methods with fragment lists: the bytes that the frame must move (traffic.h), how long that takes at the measured
+  // bandwidth, and the share of the cost that this is.
+  std::optional<std::uint64_t> floorBytes;
+  std::optional<double> floorMs;
+  std::optional<double> bandwidthShare;
+};
+
+// A setting that the device cannot do, and why.
+struct SkippedSetting {
+  MethodOptions options;
+  std::string reason;
+};
+
+struct SceneMeasurement {
+  std::string name;
+  std::optional<std::uint32_t> count; // of a built-in scene, where it was chosen
+  std::uint64_t triangles = 0;
+  std::vector<Measurement> measurements; // a sample count's baseline stands before what is compared with it
+  std::vector<SkippedSetting> skipped;
+};
+
+struct BenchReport {
+  std::string device;
+  std::string driver;
+  std::string api;
+  bool isCpu = false; // only ratios mean anything
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint32_t repeats = 0;
+  std::uint32_t warmups = 0;
+  double bytesPerSecond = 0.0; // bandwidth.h
+  std::vector<SceneMeasurement> scenes;
+};
+
+// A frame's passes with their milliseconds, as FrameReport::passesMs.
+using PassTimes = std::vector<std::pair<std::string, double>>;
+
+// What a setting's frames say, all of which have the same passes. There is at least one. Ratios and rates are filled in
+// by compare().
+Measurement summarize(const MethodOptions& options, const FrameReport& report, const std::vector<PassTimes>& frames);
+
+// Fills in ratios, rates and floors of all measurements of a scene. Each sample count has its baseline.
+void compare(std::vector<Measurement>& measurements, double bytesPerSecond);
+
+} // namespace vitrail::tool

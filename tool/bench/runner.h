@@ -1,0 +1,31 @@
+// Measures the settings of a matrix in one scene.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../draw/renderer.h"
+#include "measurement.h"
+
+namespace vitrail::tool {
+
+struct BenchRun {
+  std::vector<MethodOptions> settings; // configurationsOf()
+  RenderOptions picture;
+  std::optional<float> opacity; // of every material
+  std::uint32_t repeats = 1;    // rounds, at least 1
+  std::uint32_t warmups = 1;    // frames before the first round, at least 1: the first one makes room for the others
+  double bytesPerSecond = 0.0;  // measureBandwidth()
+  // Told of every step, for people who wait: "linked-list, standard, 4 samples", "round 3 of 31".
+  std::function<void(const std::string& step)> progress;
+};
+
+// Every round draws one frame of each setting, starting one setting later than the round before it, so that a device
+// that grows warm or busy slows all of them alike. A setting that the device refuses is skipped, and all of a sample
+// count whose baseline it refuses. Throws GpuError where nothing is left or where a frame fails that could be drawn
+// before, std::runtime_error where nothing transparent is in the picture.
+SceneMeasurement measureScene(Gpu& gpu, const Scene& scene, const BenchRun& run);
+
+} // namespace vitrail::tool

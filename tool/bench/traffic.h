@@ -1,0 +1,27 @@
+// The bytes that a frame of per-pixel linked lists cannot do without moving: the floor under its time.
+#pragma once
+
+#include <cstdint>
+
+namespace vitrail::tool {
+
+// A frame of one sample a pixel, or of several that are resolved to one colour a pixel.
+struct FrameShape {
+  std::uint64_t pixels = 0;
+  std::uint64_t coveredPixels = 0; // with at least one fragment
+  std::uint64_t fragments = 0;
+  std::uint32_t nodeBytes = 0;
+  std::uint32_t samples = 1;
+};
+
+// The sum of
+//   heads    4 bytes a pixel cleared, and read by the resolve; 8 bytes a covered pixel read and written by the collect
+//            pass (more exchanges of one head can stay in a cache)
+//   nodes    each written once and read once
+//   colour   8 bytes a sample (R16G16B16A16_SFLOAT): one sample: read and written where a pixel is covered; several:
+//   all
+//            samples of every pixel read, one colour a pixel written
+// Geometry, textures, the depth test, sorting outside registers and counters come on top and are not counted.
+std::uint64_t leastBytes(const FrameShape& frame);
+
+} // namespace vitrail::tool

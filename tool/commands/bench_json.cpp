@@ -1,0 +1,96 @@
+#include "bench_json.h"
+
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+namespace vitrail::tool {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Value>
+Json orNull(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json orNull(std::string_view name) { return name.empty() ? Json(nullptr) : Json(name); }
+
+// Milliseconds.
+Json toJson(const Spread& spread) {
+  return {{"median", spread.median},
+          {"lower_quartile", spread.lowerQuartile},
+          {"upper_quartile", spread.upperQuartile},
+          {"min", spread.min},
+          {"max", spread.max}};
+}
+
+Json toJson(const Measurement& measured) {
+  const FrameReport& frame = measured.report;
+  Json passes = Json::object();
+  for (const auto& [name, spread] : measured.passes) passes[name] = toJson(spread);
+  Json json = {{"method", measured.options.name},
+               {"nodes", orNull(frame.nodes)},
+               {"samples", frame.samples},
+               {"resolve", orNull(frame.resolve)},
+               {"exact", frame.exact},
+               {"fragments", nullptr},
+               {"layers", nullptr},
+               {"nodes_bytes", nullptr},
+               {"tiles", frame.tiles},
+               {"passes_ms", std::move(passes)},
+               {"cost_ms", toJson(measured.costMs)},
+               {"frame_ms", toJson(measured.frameMs)},
+               {"cost_ratio", measured.costRatio},
+               {"frame_ratio", measured.frameRatio},
+               {"fragments_per_second", orNull(measured.fragmentsPerSecond)},
+               {"floor_bytes", orNull(measured.floorBytes)},
+               {"floor_ms", orNull(measured.floorMs)},
+               {"bandwidth_share", orNull(measured.bandwidthShare)}};
+  if (frame.counted) {
+    json["fragments"] = {{"requested", frame.fragmentsRequested},
+                         {"stored", frame.fragmentsStored},
+                         {"missing", frame.fragmentsMissing}};
+    json["layers"] = {{"max", frame.layersMax}, {"mean", frame.layersMean}};
+    json["nodes_bytes"] = frame.nodesBytes;
+  }
+  return json;
+}
+
+Json toJson(const SkippedSetting& skipped) {
+  const MethodOptions& options = skipped.options;
+  const bool chosen = options.resolve != VITRAIL_RESOLVE_DEFAULT;
+  return {{"method", options.name},
+          {"nodes", nameOf(options.nodes)},
+          {"samples", options.samples},
+          {"resolve", chosen ? Json(nameOf(options.resolve)) : Json(nullptr)},
+          {"reason", skipped.reason}};
+}
+
+Json toJson(const SceneMeasurement& scene) {
+  Json measurements = Json::array();
+  for (const Measurement& measured : scene.measurements) measurements.push_back(toJson(measured));
+  Json skipped = Json::array();
+  for (const SkippedSetting& setting : scene.skipped) skipped.push_back(toJson(setting));
+  return {{"scene", scene.name},
+          {"count", orNull(scene.count)},
+          {"triangles", scene.triangles},
+          {"measurements", std::move(measurements)},
+          {"skipped", std::move(skipped)}};
+}
+
+} // namespace
+
+std::string toJson(const BenchReport& report) {
+  Json scenes = Json::array();
+  for (const SceneMeasurement& scene : report.scenes) scenes.push_back(toJson(scene));
+  const Json json = {
+      {"device", report.device},    {"driver", report.driver},   {"api", report.api},
+      {"cpu", report.isCpu},        {"width", report.width},     {"height", report.height},
+      {"repeats", report.repeats},  {"warmups", report.warmups}, {"bandwidth_gb_s", report.bytesPerSecond * 1e-9},
+      {"scenes", std::move(scenes)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace vitrail::tool

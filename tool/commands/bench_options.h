@@ -1,0 +1,38 @@
+// What `vitrail bench` was asked for, with every text already understood.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "../bench/matrix.h"
+
+namespace vitrail::tool {
+
+struct BenchArguments {
+  std::string model; // empty: built-in scenes
+  std::vector<std::string> scenes;
+  std::vector<std::uint32_t> counts; // none, one for all scenes, or one each
+  BenchMatrix matrix{{"linked-list", "insertion"}};
+  std::uint32_t width = 1280;
+  std::uint32_t height = 720;
+  std::optional<float> opacity;
+  std::optional<std::uint32_t> repeats; // default: by the kind of device
+  std::optional<std::uint32_t> warmups;
+  std::string device;
+  std::string json; // empty: no report
+  bool quiet = false;
+};
+
+// Adds the options to a command. Texts that cannot be understood end the parse with a CLI::ValidationError.
+void addBenchOptions(CLI::App& command, BenchArguments& arguments);
+
+// Checks what one option alone does not show, and fills in the default scenes. Throws UsageError.
+void checkBenchArguments(BenchArguments& arguments);
+
+extern const char* const kBenchHelp;
+
+} // namespace vitrail::tool

@@ -1,0 +1,83 @@
+#include "features.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "vk.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+bool hasExtension(VkPhysicalDevice device, const char* name) {
+  std::uint32_t count = 0;
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
+  std::vector<VkExtensionProperties> extensions(count);
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
+        "vkEnumerateDeviceExtensionProperties");
+  return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& extension) {
+    return std::strcmp(extension.extensionName, name) == 0;
+  });
+}
+
+// The sample counts that images of a format can have for some use; 0 where there can be none.
+VkSampleCountFlags imageSampleCounts(VkPhysicalDevice device, VkFormat format, VkImageUsageFlags usage) {
+  VkImageFormatProperties properties{};
+  const VkResult result = vkGetPhysicalDeviceImageFormatProperties(device, format, VK_IMAGE_TYPE_2D,
+                                                                   VK_IMAGE_TILING_OPTIMAL, usage, 0, &properties);
+  return result == VK_SUCCESS ? properties.sampleCounts : 0;
+}
+
+// What a picture's images, and the scopes that draw into them, can have.
+VkSampleCountFlags pictureSampleCounts(VkPhysicalDevice device, const VkPhysicalDeviceLimits& limits) {
+  constexpr VkSampleCountFlags kUsed =
+      VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_2_BIT | VK_SAMPLE_COUNT_4_BIT | VK_SAMPLE_COUNT_8_BIT;
+  return kUsed & limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts &
+         limits.sampledImageColorSampleCounts & limits.sampledImageDepthSampleCounts &
+         imageSampleCounts(device, VK_FORMAT_R16G16B16A16_SFLOAT,
+                           VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT) &
+         imageSampleCounts(device, VK_FORMAT_D32_SFLOAT,
+                           VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
+}
+
+} // namespace
+
+GpuFeatures supportedFeatures(VkPhysicalDevice device) {
+  VkPhysicalDeviceProperties properties{};
+  vkGetPhysicalDeviceProperties(device, &properties);
+  const VkPhysicalDeviceLimits& limits = properties.limits;
+  auto features12 = vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+  auto features = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
+  features.pNext = &features12;
+  vkGetPhysicalDeviceFeatures2(device, &features);
+  GpuFeatures result;
+  result.bufferDeviceAddress = features12.bufferDeviceAddress == VK_TRUE;
+  result.dualSourceBlending = features.features.dualSrcBlend == VK_TRUE;
+  result.sampleRateShading = features.features.sampleRateShading == VK_TRUE;
+  result.postDepthCoverage = hasExtension(device, VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
+  result.sampleCounts = pictureSampleCounts(device, limits);
+  const VkSampleCountFlags stencil =
+      limits.framebufferStencilSampleCounts &
+      imageSampleCounts(device, VK_FORMAT_D32_SFLOAT_S8_UINT,
+                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
+  result.stencil = (stencil & result.sampleCounts) == result.sampleCounts;
+  return result;
+}
+
+std::string sampleCountsText(VkSampleCountFlags counts) {
+  std::vector<std::string> words;
+  for (const std::uint32_t count : {1U, 2U, 4U, 8U}) {
+    if ((counts & count) != 0) words.push_back(std::to_string(count)); // a flag's value is its count
+  }
+  if (words.size() < 2) return fmt::format("{}", fmt::join(words, ""));
+  const std::string last = words.back();
+  words.pop_back();
+  return fmt::format("{} and {}", fmt::join(words, ", "), last);
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,25 @@
+// What devices differ in: the optional features that the tool uses, and the sample counts.
+#pragma once
+
+#include <string>
+
+#include <volk.h>
+
+namespace vitrail::tool {
+
+// What the tool uses where a device has it, and does without where it has not.
+struct GpuFeatures {
+  bool bufferDeviceAddress = false;
+  bool dualSourceBlending = false;
+  bool sampleRateShading = false;
+  bool postDepthCoverage = false;                          // VK_EXT_post_depth_coverage
+  bool stencil = false;                                    // images of D32_SFLOAT_S8_UINT
+  VkSampleCountFlags sampleCounts = VK_SAMPLE_COUNT_1_BIT; // of a picture's images
+};
+
+GpuFeatures supportedFeatures(VkPhysicalDevice device);
+
+// Sample counts in words: "1 and 4", "1, 2, 4 and 8".
+std::string sampleCountsText(VkSampleCountFlags counts);
+
+} // namespace vitrail::tool
