@@ -275,12 +275,12 @@ typedef struct VitrailTargetDesc {
  * docs/performance.md has the measurements behind it. */
 VITRAIL_API VitrailResolve vitrailDefaultResolve(VitrailContext context, const VitrailTargetDesc* desc);
 
-/* What a buffer of the host's must be to serve as a target's memory. */
+/* What a buffer of the host's must be to serve as a target's memory. Its memory is device-local: shaders do atomics in
+ * it, which not every machine carries to system memory. */
 typedef struct VitrailRequirements {
   VkDeviceSize size;        /* bytes from bufferOffset on */
   VkDeviceSize alignment;   /* of bufferOffset */
-  VkBufferUsageFlags usage; /* device-local memory serves best; with SHADER_DEVICE_ADDRESS the allocation needs
-                               VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT */
+  VkBufferUsageFlags usage; /* with SHADER_DEVICE_ADDRESS the allocation needs VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT */
 } VitrailRequirements;
 
 /* Errors: those of vitrailCreateTarget for the fields that matter here (extent, samples, nodeFormat, overflow,

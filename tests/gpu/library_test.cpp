@@ -7,6 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "gpu_fixture.h"
 #include "point_reference.h"

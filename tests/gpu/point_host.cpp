@@ -223,9 +223,16 @@ void PointHost::createTarget(VitrailTargetDesc& desc) {
     VitrailRequirements needs{};
     check(context_->targetRequirements(desc, needs), "vitrailTargetRequirements");
     guardBytes_ = (kGuardWords * sizeof(std::uint32_t) + needs.alignment - 1) / needs.alignment * needs.alignment;
-    memory_ = tool::GpuBuffer(gpu_, needs.size + 2 * guardBytes_, needs.usage, MemoryKind::Readback, "points: memory");
-    auto* words = static_cast<std::uint32_t*>(memory_.mapped());
-    std::fill(words, words + memory_.size() / sizeof(std::uint32_t), kGuard);
+    // Not in memory that the host can read: shaders do atomics in it, and some machines do not carry those there.
+    memory_ = tool::GpuBuffer(gpu_, needs.size + 2 * guardBytes_, needs.usage, MemoryKind::Device, "points: memory");
+    guards_ = tool::GpuBuffer(gpu_, 2 * guardBytes_, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryKind::Readback,
+                              "points: guards");
+    submitter_.run("guards", [&](VkCommandBuffer commands) {
+      vkCmdFillBuffer(commands, memory_.get(), 0, VK_WHOLE_SIZE, kGuard);
+      // Writer: the fill. Readers and writers: the library, first its clears.
+      tool::cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+                             {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT});
+    });
     desc.buffer = memory_.get();
     desc.bufferOffset = guardBytes_;
   }
@@ -490,12 +497,18 @@ PointResult PointHost::drawAreas(std::span<const Point> points, const NextArea& 
   return read(slot, stats.frame);
 }
 
-bool PointHost::guardsUntouched() const {
-  const auto* words = static_cast<const std::uint32_t*>(memory_.mapped());
-  const std::size_t total = memory_.size() / sizeof(std::uint32_t);
-  const std::size_t guard = guardBytes_ / sizeof(std::uint32_t);
-  const auto untouched = [](std::uint32_t word) { return word == kGuard; };
-  return std::all_of(words, words + guard, untouched) && std::all_of(words + total - guard, words + total, untouched);
+bool PointHost::guardsUntouched() {
+  const std::array<VkBufferCopy, 2> regions = {VkBufferCopy{0, 0, guardBytes_},
+                                               VkBufferCopy{memory_.size() - guardBytes_, guardBytes_, guardBytes_}};
+  submitter_.run("guards", [&](VkCommandBuffer commands) {
+    vkCmdCopyBuffer(commands, memory_.get(), guards_.get(), static_cast<std::uint32_t>(regions.size()), regions.data());
+    // Writer: the copy. Reader: the host.
+    tool::cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+                           {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
+  });
+  const auto* words = static_cast<const std::uint32_t*>(guards_.mapped());
+  return std::all_of(words, words + 2 * guardBytes_ / sizeof(std::uint32_t),
+                     [](std::uint32_t word) { return word == kGuard; });
 }
 
 } // namespace vitrail::tests

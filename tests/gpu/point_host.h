@@ -98,7 +98,7 @@ class PointHost {
   PointResult drawAreas(std::span<const Point> points, const NextArea& next);
 
   // Whether every guard word is as it was.
-  [[nodiscard]] bool guardsUntouched() const;
+  [[nodiscard]] bool guardsUntouched();
 
   [[nodiscard]] const Target& target() const { return target_; }
   [[nodiscard]] const Context& context() const { return *context_; }
@@ -159,7 +159,8 @@ class PointHost {
   std::array<VkImageView, kFramesTogether> opaqueViews_{};
   std::array<VkImageView, kFramesTogether> depthViews_{};
   VkDeviceSize guardBytes_ = 0;
-  tool::GpuBuffer memory_; // guards, the library's memory, guards; the host can read it
+  tool::GpuBuffer memory_; // guards, the library's memory, guards
+  tool::GpuBuffer guards_; // a copy of the guards for the host
   Target target_;
   PointPipelines* pipelines_ = nullptr; // shared
   tool::Submitter submitter_;

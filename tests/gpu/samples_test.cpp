@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "gpu_fixture.h"
 #include "point_reference.h"
@@ -17,6 +19,7 @@ constexpr double kTolerance = 2e-5;
 // Opaque colours that differ from sample to sample, so that no two samples can change places unseen.
 std::vector<FloatColor> colorsBySample(std::uint32_t samples) {
   std::vector<FloatColor> colors;
+  colors.reserve(samples);
   for (std::uint32_t s = 0; s < samples; ++s) {
     const float v = std::exp2(-static_cast<float>(s));
     colors.push_back({v, 1.0F - 0.5F * v, s % 2 == 0 ? 0.25F : 0.75F, s % 3 == 0 ? 1.0F : 0.5F});
@@ -26,6 +29,7 @@ std::vector<FloatColor> colorsBySample(std::uint32_t samples) {
 
 std::vector<Color> asColors(const std::vector<FloatColor>& pixels) {
   std::vector<Color> colors;
+  colors.reserve(pixels.size());
   for (const FloatColor& c : pixels) colors.push_back({c[0], c[1], c[2], c[3]});
   return colors;
 }

@@ -74,7 +74,6 @@ class Eye {
   Color behindEverything(const PictureRay& ray) const;
   glm::dvec4 mean(const Samples& samples, const std::array<Color, kMostSamples>& behind) const;
 
-  const Scene& scene_;
   const ReferenceOptions& options_;
   SurfaceFinder finder_;
   NodeCoding coding_;
@@ -95,8 +94,7 @@ void checkTextures(const Scene& scene) {
 }
 
 Eye::Eye(const Scene& scene, const ReferenceOptions& options)
-    : scene_(scene),
-      options_(options),
+    : options_(options),
       finder_(scene, options),
       coding_{options.nodeFormat, options.samples, true},
       brightest_(options.nodeFormat == layout::VITRAIL_FORMAT_HDR ? kLargestHalf : 1.0),

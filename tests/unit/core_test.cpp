@@ -1,7 +1,11 @@
 // Pool sizes and the reference resolve, against values worked out by hand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <random>
+#include <span>
+#include <vector>
 
 #include "core/pool.h"
 #include "core/reference_resolve.h"

@@ -1,6 +1,9 @@
 // Projected bounds: never too small, and not much too large.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>

@@ -114,6 +114,22 @@ TEST(ReferenceShading, LightBehind) {
   expectNear(shade(surface), {1.04 * 0.18, 1.04 * 0.17, 1.04 * 0.16}, 1e-12);
 }
 
+// What passes through a dielectric is not scattered back: at t = 1 only what black would reflect is left.
+TEST(ReferenceShading, TransmittedLightIsNotScattered) {
+  Surface glass;
+  glass.metallic = 0.0;
+  glass.base = {0.2, 0.5, 0.8};
+  glass.transmission = 1.0;
+  Surface black = glass;
+  black.base = glm::dvec3(0.0);
+  black.transmission = 0.0;
+  expectNear(shade(glass), shade(black), 1e-12);
+  glass.transmission = 0.25;
+  Surface dull = black;
+  dull.base = 0.75 * glass.base;
+  expectNear(shade(glass), shade(dull), 1e-12);
+}
+
 TEST(ReferenceShading, TextureFilterAndWrap) {
   Image image;
   image.width = 2;
@@ -457,7 +473,13 @@ TEST(ReferenceSamples, PositionsAreTheStandardOnes) {
     }
     EXPECT_NEAR(sum.x / samples, 0.5, samples == 8 ? 0.04 : 1e-12);
   }
+  EXPECT_EQ(standardSamplePosition(2, 0), glm::dvec2(0.75, 0.75));
+  EXPECT_EQ(standardSamplePosition(4, 0), glm::dvec2(0.375, 0.125));
   EXPECT_EQ(standardSamplePosition(4, 1), glm::dvec2(0.875, 0.375));
+  EXPECT_EQ(standardSamplePosition(4, 2), glm::dvec2(0.125, 0.625));
+  EXPECT_EQ(standardSamplePosition(4, 3), glm::dvec2(0.625, 0.875));
+  EXPECT_EQ(standardSamplePosition(8, 0), glm::dvec2(0.5625, 0.3125));
+  EXPECT_EQ(standardSamplePosition(8, 3), glm::dvec2(0.3125, 0.1875));
   EXPECT_EQ(standardSamplePosition(8, 7), glm::dvec2(0.9375, 0.0625));
 }
 
@@ -490,6 +512,18 @@ TEST(ReferenceSamples, EachSampleHasItsOwnOpaqueSurface) {
   options.background.srgb = {0.0F, 0.0F, 1.0F};
   options.samples = 4;
   expectNear(renderReference(scene, options).exact.linear[0], {0.5, 0.25, 0.25}, 1e-7);
+}
+
+// Green glass that falls to the right cuts an opaque red plane in the pixel's middle: it is before it at samples 0
+// and 2.
+TEST(ReferenceSamples, EverySampleHasItsOwnDepth) {
+  Scene scene;
+  addRectangle(scene, kAll, unlitMaterial({1.0F, 0.0F, 0.0F, 1.0F}, AlphaMode::Opaque));
+  addRectangle(scene, {glm::vec2(-4.0F), glm::vec2(4.0F), 0.0F}, unlitMaterial({0.0F, 1.0F, 0.0F, 0.5F}));
+  for (Vertex& vertex : scene.meshes[1].vertices) vertex.position.z = -vertex.position.x;
+  ReferenceOptions options = straightOptions(1, 1);
+  options.samples = 4;
+  expectNear(renderReference(scene, options).exact.linear[0], {0.75, 0.25, 0.0}, 1e-7);
 }
 
 // Only the sample at x = 0.875 is covered, and the colour is that of the centre, beyond the surface's edge.

@@ -4,8 +4,10 @@
 #include <spirv/unified1/spirv.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 

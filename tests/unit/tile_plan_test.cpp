@@ -1,6 +1,7 @@
 // The tile planner, driven by made-up pictures: every pixel is drawn once, within the budget, in a stable order.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -180,6 +181,21 @@ TEST(TilePlan, APixelThatOverflowsSaysWhatItNeeds) {
     EXPECT_TRUE(second.complete);
     expectCover(info.area, second.tiles);
   }
+}
+
+// Fragments that are missing although there were nodes (a shader of another target draws them) never fit: that ends
+// too.
+TEST(TilePlan, AFragmentThatNeverFitsEndsInAnError) {
+  TilePlan plan(planInfo({0, 0, 64, 64}, 1 << 20));
+  Rectangle tile;
+  std::size_t attempts = 0;
+  bool split = true;
+  while (split && attempts < 100 && plan.next(tile)) {
+    ++attempts;
+    split = plan.finish(1, 1, plan.nodeCapacity());
+  }
+  EXPECT_FALSE(split);
+  EXPECT_EQ(tile, (Rectangle{0, 0, 1, 1}));
 }
 
 TEST(TilePlan, ACountBeyondAllBoundsIsSplitToPixels) {
