@@ -38,15 +38,21 @@ void vitrailSwap(inout VitrailOutput a, inout VitrailOutput b) {
   b = held;
 }
 
-// Sorts the next block of the list and appends it.
-void vitrailSortBlock(inout VitrailWalk walk, inout VitrailOutput list) {
-  VitrailEntry e[16] = VitrailEntry[16](VITRAIL_LAST_16);
-  VitrailWalk block = VitrailWalk(walk.index, 0u, walk.nodeCount - walk.count);
+// Sorts the next block of the list, 16 nodes or what is left of it, and steps over it.
+uint vitrailTakeBlock(inout VitrailWalk walk, inout VitrailEntry e[16]) {
+  VitrailWalk block = VitrailWalk(walk.index, 0u, walk.nodeCount);
   vitrailSortFirst(block, e);
   walk.index = block.index;
   walk.count += block.count;
+  return block.count;
+}
+
+// Sorts the next block of the list and appends it.
+void vitrailSortBlock(inout VitrailWalk walk, inout VitrailOutput list) {
+  VitrailEntry e[16] = VitrailEntry[16](VITRAIL_LAST_16);
+  uint count = vitrailTakeBlock(walk, e);
   // Here and below a turn of a loop takes several steps: a driver that counts turns gets fewer of them.
-  for (uint left = block.count; left > 0u; left -= min(left, 2u)) {
+  for (uint left = count; left > 0u; left -= min(left, 2u)) {
     vitrailAppend(list, e[0].index, e[0].index, 1u);
     if (left > 1u) vitrailAppend(list, e[1].index, e[1].index, 1u);
     vitrailShift(e);

@@ -32,14 +32,11 @@ VitrailRuns vitrailSortRuns(uint head, uint nodeCount) {
   VitrailOutput list = VITRAIL_EMPTY;
   for (uint number = 0u; number < 8u && vitrailMore(walk); ++number) {
     VitrailEntry e[16] = VitrailEntry[16](VITRAIL_LAST_16);
-    VitrailWalk block = VitrailWalk(walk.index, 0u, walk.nodeCount - walk.count);
-    vitrailSortFirst(block, e);
-    walk.index = block.index;
-    walk.count += block.count;
-    VitrailRun run = VitrailRun(e[0].key, e[1].index, block.count);
+    uint count = vitrailTakeBlock(walk, e);
+    VitrailRun run = VitrailRun(e[0].key, e[1].index, count);
 #define VITRAIL_SET_RUN(r) if (number == r) sorted.runs[r] = run;
     VITRAIL_EACH_RUN(VITRAIL_SET_RUN)
-    for (uint left = block.count; left > 0u; --left) {
+    for (uint left = count; left > 0u; --left) {
       vitrailAppend(list, e[0].index, e[0].index, 1u);
       vitrailShift(e);
     }

@@ -66,6 +66,29 @@ TEST_F(LibraryTest, EveryListLengthMatchesTheReferenceInEveryOrder) {
   }
 }
 
+// On a device that runs many fragments at once a node that was pushed later may lie before an earlier one, and the list
+// that has nearly all nodes of the pool meets every place of it.
+TEST_F(LibraryTest, WhereNodesLieInThePoolDoesNotMatter) {
+  for (const Way& way : everyWay(gpu(), 1)) {
+    SCOPED_TRACE(way.name);
+    PointHostDesc desc;
+    desc.behind = {0.25F, 0.5F, 1.0F, 1.0F};
+    desc.overflow = VITRAIL_OVERFLOW_SKIP;
+    desc.guarded = true;
+    apply(way, desc);
+    for (const std::vector<std::uint32_t>& lengths :
+         {std::vector<std::uint32_t>{0, 1, 2, 5, 16, 17, 31, 32, 33, 100, 128, 129, 400}, {3000}, {100}, {40}}) {
+      const std::vector<Point> points = randomLists(desc, lengths, 8);
+      desc.capacity = static_cast<std::uint32_t>(points.size());
+      PointHost host(gpu(), desc);
+      const PointResult result = host.drawScattered(points);
+      expectLikeReference(result, expectedFrame(desc, points));
+      EXPECT_TRUE(host.draw(points).pixels == result.pixels);
+      EXPECT_TRUE(host.guardsUntouched());
+    }
+  }
+}
+
 // Colours of `hdr` reach 8 here, and what lists add up to in it more: errors are relative.
 TEST_F(LibraryTest, EveryFormatAndBlendModeMatchesTheReferenceInEveryOrder) {
   for (const VitrailNodeFormat format : nodeFormats(1)) {

@@ -1,8 +1,11 @@
 #include "point_host.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <map>
+#include <numeric>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -233,6 +236,8 @@ void PointHost::createTarget(VitrailTargetDesc& desc) {
       tool::cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
                              {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT});
     });
+    storage_ = layoutStorage(desc.extent.width * desc.extent.height, desc.nodeCapacity, desc.nodeFormat,
+                             desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE, needs.alignment);
     desc.buffer = memory_.get();
     desc.bufferOffset = guardBytes_;
   }
@@ -495,6 +500,70 @@ PointResult PointHost::drawAreas(std::span<const Point> points, const NextArea& 
   }
   submitter_.run("picture", [&](VkCommandBuffer commands) { recordPicture(commands, slot, perSample()); });
   return read(slot, stats.frame);
+}
+
+void PointHost::scatterNodes() {
+  if (storage_.total == 0 || desc_.nodes != VITRAIL_NODE_STANDARD || multisampled()) {
+    throw std::logic_error("drawScattered: needs a guarded host of standard nodes and one sample");
+  }
+  const VkBufferCopy out{guardBytes_, 0, storage_.total};
+  const VkBufferCopy back{0, guardBytes_, storage_.total};
+  tool::GpuBuffer copy(gpu_, storage_.total, VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                       MemoryKind::Readback, "points: nodes");
+  submitter_.run("nodes to the host", [&](VkCommandBuffer commands) {
+    vkCmdCopyBuffer(commands, memory_.get(), copy.get(), 1, &out);
+    // Writer: the copy. Reader and writer: the host.
+    tool::cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+                           {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_HOST_WRITE_BIT});
+  });
+
+  auto* bytes = static_cast<std::byte*>(copy.mapped());
+  const std::uint32_t capacity = desc_.capacity;
+  const std::span heads(reinterpret_cast<std::uint32_t*>(bytes + storage_.heads.offset),
+                        std::size_t{desc_.width} * desc_.height);
+  const std::span nodes(reinterpret_cast<layout::VitrailNodeStandard*>(bytes + storage_.nodes.offset), capacity);
+  const std::span links(reinterpret_cast<std::uint32_t*>(nodes.data() + capacity), capacity);
+  std::vector<std::uint32_t> place(capacity); // of each node
+  std::iota(place.begin(), place.end(), 0U);
+  std::shuffle(place.begin(), place.end(), std::mt19937(1));
+  const auto moved = [&](std::uint32_t index) { return index < capacity ? place[index] : index; };
+  const std::vector<layout::VitrailNodeStandard> oldNodes(nodes.begin(), nodes.end());
+  const std::vector<std::uint32_t> oldLinks(links.begin(), links.end());
+  for (std::uint32_t& head : heads) head = moved(head);
+  for (std::uint32_t i = 0; i < capacity; ++i) {
+    nodes[place[i]] = oldNodes[i];
+    links[place[i]] = moved(oldLinks[i]);
+  }
+
+  submitter_.run("nodes to the device", [&](VkCommandBuffer commands) {
+    vkCmdCopyBuffer(commands, copy.get(), memory_.get(), 1, &back);
+    // Writer: the copy. Reader and writer: the resolve.
+    tool::cmdMemoryBarrier(
+        commands, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+        {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+  });
+}
+
+PointResult PointHost::drawScattered(std::span<const Point> points) {
+  const Vertices vertices = upload(points);
+  const std::uint64_t frame = frame_++;
+  Slot& slot = slotOf(frame);
+  submitter_.run("points", [&](VkCommandBuffer commands) {
+    recordOpaque(commands, slot);
+    target_.begin(commands, {frame, wholeArea()});
+    recordPoints(commands, slot, vertices);
+    // Writers: the points. Reader: the copy.
+    tool::cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT},
+                           {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
+  });
+  scatterNodes();
+  submitter_.run("the rest of the frame", [&](VkCommandBuffer commands) {
+    target_.collected(commands);
+    recordResolve(commands, slot, static_cast<std::uint32_t>(frame % kFramesTogether));
+    target_.end(commands);
+    recordPicture(commands, slot, perSample());
+  });
+  return read(slot, frame);
 }
 
 bool PointHost::guardsUntouched() {

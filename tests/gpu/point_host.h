@@ -13,6 +13,7 @@
 #include <vitrail/vitrail.hpp>
 
 #include "core/node.h"
+#include "core/pool.h"
 #include "draw/device.h"
 #include "draw/picture_images.h"
 #include "draw/resources.h"
@@ -97,6 +98,11 @@ class PointHost {
   using NextArea = std::function<bool(const VitrailStats* last, VkRect2D& area)>;
   PointResult drawAreas(std::span<const Point> points, const NextArea& next);
 
+  // As draw(), but between collecting and resolving every node moves to another place of the pool: devices that run
+  // many fragments at once hand nodes out in any order, others along each list. `guarded`, one sample, `standard` nodes
+  // and VITRAIL_OVERFLOW_SKIP only.
+  PointResult drawScattered(std::span<const Point> points);
+
   // Whether every guard word is as it was.
   [[nodiscard]] bool guardsUntouched();
 
@@ -136,6 +142,7 @@ class PointHost {
   void recordPoints(VkCommandBuffer commands, Slot& slot, const Vertices& vertices);
   void recordResolve(VkCommandBuffer commands, Slot& slot, std::uint32_t view);
   void recordResolveScope(VkCommandBuffer commands, Slot& slot);
+  void scatterNodes();
   static void recordPicture(VkCommandBuffer commands, Slot& slot, bool perSample);
   [[nodiscard]] PointResult read(const Slot& slot, std::uint64_t frame) const;
 
@@ -159,6 +166,7 @@ class PointHost {
   std::array<VkImageView, kFramesTogether> opaqueViews_{};
   std::array<VkImageView, kFramesTogether> depthViews_{};
   VkDeviceSize guardBytes_ = 0;
+  StorageLayout storage_;  // of the memory between the guards
   tool::GpuBuffer memory_; // guards, the library's memory, guards
   tool::GpuBuffer guards_; // a copy of the guards for the host
   Target target_;
