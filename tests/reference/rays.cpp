@@ -52,12 +52,13 @@ struct Sheared {
   double sum = 0.0;
 };
 
-Sheared shear(const Triangle& triangle, const PictureRay& ray) {
+// Each corner as its own ray sees it.
+Sheared shear(const Triangle& triangle, const std::array<PictureRay, 3>& rays) {
   Sheared sheared;
   std::array<glm::dvec2, 3>& p = sheared.p;
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3& corner = triangle.corners[i];
-    p[i] = glm::dvec2(corner) - ray.origin + ray.slope * corner.z;
+    p[i] = glm::dvec2(corner) - rays[i].origin + rays[i].slope * corner.z;
   }
   sheared.area = {edgeFunction(p[1], p[2]), edgeFunction(p[2], p[0]), edgeFunction(p[0], p[1])};
   sheared.sum = sheared.area.x + sheared.area.y + sheared.area.z;
@@ -74,7 +75,7 @@ void place(RayHit& hit, const Triangle& triangle, const Sheared& sheared) {
 void addHit(const std::vector<Triangle>& triangles, std::uint32_t number, const PictureRay& ray,
             std::vector<RayHit>& hits) {
   const Triangle& triangle = triangles[number];
-  const Sheared sheared = shear(triangle, ray);
+  const Sheared sheared = shear(triangle, {ray, ray, ray});
   const auto& [p, area, sum] = sheared;
   if (!(sum != 0.0)) return; // seen edge-on, or not finite
   const bool inside =
@@ -243,10 +244,10 @@ void RayScene::allHits(const PictureRay& ray, std::vector<RayHit>& hits) const {
   intersect(impl_->scene, walk, query);
 }
 
-RayHit RayScene::onSamePlane(const RayHit& hit, const PictureRay& ray) const {
+RayHit RayScene::onSamePlane(const RayHit& hit, const std::array<PictureRay, 3>& rays) const {
   const Triangle& triangle = impl_->triangles[hit.number];
   RayHit moved = hit;
-  place(moved, triangle, shear(triangle, ray));
+  place(moved, triangle, shear(triangle, rays));
   return moved;
 }
 

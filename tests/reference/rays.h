@@ -2,6 +2,7 @@
 // triangle, where and how deep is computed here in double precision.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -45,8 +46,10 @@ class RayScene {
   // call from several threads.
   void allHits(const PictureRay& ray, std::vector<RayHit>& hits) const;
 
-  // Where another ray meets the plane of a hit's triangle, inside the triangle or not. `front` stays.
-  RayHit onSamePlane(const RayHit& hit, const PictureRay& ray) const;
+  // Where another ray meets the plane of a hit's triangle, inside the triangle or not. `front` stays. Each corner of
+  // the triangle has a ray of its own: one that is moved from the others moves its corner on the picture, the other
+  // way.
+  RayHit onSamePlane(const RayHit& hit, const std::array<PictureRay, 3>& rays) const;
 
  private:
   struct Impl;

@@ -58,9 +58,10 @@ class Eye {
  public:
   Eye(const Scene& scene, const ReferenceOptions& options);
 
-  // Looks at the pixel around a point of the picture. `centre`: with everything in Sight; else `exact` and `layers`
-  // only.
-  Sight look(const glm::dvec2& pixel, bool centre, std::vector<RayHit>& hits) const;
+  // Looks at the pixel around a point of the picture, with all rays moved by `nudge`, and corners of triangles by half
+  // of it where they are followed to the centre: drivers snap them to the nearest point of their grid. Without a nudge
+  // with everything in Sight; else `exact` and `layers` only.
+  Sight look(const glm::dvec2& centre, const glm::dvec2& nudge, std::vector<RayHit>& hits) const;
 
  private:
   using Fragments = std::vector<Fragment>;
@@ -260,16 +261,18 @@ bool sameOrder(const std::vector<PixelSurface>& a, const std::vector<PixelSurfac
   });
 }
 
-Sight Eye::look(const glm::dvec2& pixel, bool centre, std::vector<RayHit>& hits) const {
+Sight Eye::look(const glm::dvec2& centre, const glm::dvec2& nudge, std::vector<RayHit>& hits) const {
+  const bool still = nudge == glm::dvec2(0.0);
+  const glm::dvec2 pixel = centre + nudge;
   const PictureRay ray = pictureRay(options_.view, pixel, {options_.width, options_.height});
-  const PixelSurfaces surfaces = finder_.find(pixel, hits);
+  const PixelSurfaces surfaces = finder_.find(pixel, 0.5 * nudge, hits);
   const std::array<Color, kMostSamples> behind = opaqueColors(ray, surfaces);
 
   Sight sight;
   for (const PixelSurface& surface : surfaces.transparent) sight.layers += storedCount(ray, surface);
   PixelList stored{coding_, {}, {}, 0};
-  sight.exact = mean(blend(ray, surfaces.transparent, centre ? &stored : nullptr), behind);
-  if (!centre) return sight;
+  sight.exact = mean(blend(ray, surfaces.transparent, still ? &stored : nullptr), behind);
+  if (!still) return sight;
   const Color rounded = resolvePixel(stored, behind);
   sight.rounded = {rounded[0], rounded[1], rounded[2], rounded[3]};
   const std::vector<PixelSurface> swapped = swapTies(surfaces.transparent);
@@ -287,7 +290,7 @@ void putPixel(ReferencePicture& out, std::size_t index, const glm::dvec4& linear
 void renderPixel(const Eye& eye, std::uint32_t x, std::uint32_t y, std::vector<RayHit>& hits, Reference& out) {
   const std::size_t index = std::size_t{y} * out.exact.picture.width + x;
   const glm::dvec2 centre(x + 0.5, y + 0.5);
-  const Sight sight = eye.look(centre, true, hits);
+  const Sight sight = eye.look(centre, glm::dvec2(0.0), hits);
   putPixel(out.exact, index, sight.exact);
   putPixel(out.rounded, index, sight.rounded);
   out.layers[index] = sight.layers;
@@ -295,7 +298,7 @@ void renderPixel(const Eye& eye, std::uint32_t x, std::uint32_t y, std::vector<R
   const glm::dvec4 display = displayColor(sight.exact);
   double change = largestChange(display, displayColor(sight.tiesSwapped));
   for (const glm::dvec2 corner : {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(-1, 1), glm::dvec2(1, 1)}) {
-    const Sight near = eye.look(centre + kNudge * corner, false, hits);
+    const Sight near = eye.look(centre, kNudge * corner, hits);
     change = std::max(change, largestChange(display, displayColor(near.exact)));
     range.least = std::min(range.least, near.layers);
     range.most = std::max(range.most, near.layers);

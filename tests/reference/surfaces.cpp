@@ -91,9 +91,12 @@ bool SurfaceFinder::isTransparent(const Material& material) const {
 }
 
 // Every triangle that covers a sample between the clipping planes, at the pixel's centre.
-std::vector<PixelSurface> SurfaceFinder::coveringTriangles(const glm::dvec2& centre, std::vector<RayHit>& hits) const {
+std::vector<PixelSurface> SurfaceFinder::coveringTriangles(const glm::dvec2& centre, const glm::dvec2& snap,
+                                                           std::vector<RayHit>& hits) const {
   const glm::dvec2 size(options_.width, options_.height);
-  const PictureRay centreRay = pictureRay(options_.view, centre, size);
+  const std::array<PictureRay, 3> centreRays = {pictureRay(options_.view, centre - snap, size),
+                                                pictureRay(options_.view, centre + snap, size),
+                                                pictureRay(options_.view, centre + glm::dvec2(snap.y, -snap.x), size)};
   std::vector<PixelSurface> surfaces;
   for (std::uint32_t s = 0; s < options_.samples; ++s) {
     const glm::dvec2 at = centre - 0.5 + standardSamplePosition(options_.samples, s);
@@ -114,7 +117,7 @@ std::vector<PixelSurface> SurfaceFinder::coveringTriangles(const glm::dvec2& cen
   for (const PixelSurface& surface : surfaces) {
     if (joined.empty() || joined.back().hit.number != surface.hit.number) {
       joined.push_back(surface);
-      joined.back().hit = rays_.onSamePlane(surface.hit, centreRay);
+      joined.back().hit = rays_.onSamePlane(surface.hit, centreRays);
       continue;
     }
     joined.back().covered |= surface.covered;
@@ -147,9 +150,9 @@ bool SurfaceFinder::evaluate(PixelSurface& surface) const {
   return true;
 }
 
-PixelSurfaces SurfaceFinder::find(const glm::dvec2& centre, std::vector<RayHit>& hits) const {
+PixelSurfaces SurfaceFinder::find(const glm::dvec2& centre, const glm::dvec2& snap, std::vector<RayHit>& hits) const {
   PixelSurfaces found;
-  for (PixelSurface& surface : coveringTriangles(centre, hits)) {
+  for (PixelSurface& surface : coveringTriangles(centre, snap, hits)) {
     if (!evaluate(surface)) continue;
     (isTransparent(materialOf(surface.hit)) ? found.transparent : found.opaque).push_back(surface);
   }

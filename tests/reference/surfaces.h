@@ -45,8 +45,10 @@ class SurfaceFinder {
  public:
   SurfaceFinder(const Scene& scene, const ReferenceOptions& options);
 
-  // The surfaces in the pixel around `centre`, a point of the picture. `hits` is scratch memory.
-  PixelSurfaces find(const glm::dvec2& centre, std::vector<RayHit>& hits) const;
+  // The surfaces in the pixel around `centre`, a point of the picture. With several samples the corners of triangles
+  // are moved by `snap` pixels, each in a direction of its own, before their planes are followed to the centre: where
+  // that is far outside of a thin triangle, a little changes much. `hits` is scratch memory.
+  PixelSurfaces find(const glm::dvec2& centre, const glm::dvec2& snap, std::vector<RayHit>& hits) const;
 
   [[nodiscard]] std::array<Vertex, 3> corners(const RayHit& hit) const;
   [[nodiscard]] bool isTransparent(const Material& material) const;
@@ -55,7 +57,8 @@ class SurfaceFinder {
   }
 
  private:
-  [[nodiscard]] std::vector<PixelSurface> coveringTriangles(const glm::dvec2& centre, std::vector<RayHit>& hits) const;
+  [[nodiscard]] std::vector<PixelSurface> coveringTriangles(const glm::dvec2& centre, const glm::dvec2& snap,
+                                                            std::vector<RayHit>& hits) const;
   bool evaluate(PixelSurface& surface) const;
 
   const Scene& scene_;
