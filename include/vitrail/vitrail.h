@@ -114,7 +114,7 @@ typedef enum VitrailNodeFormat {
    *   alpha     8 bits, linear, clamped to [0, 1]; the error is at most 0.5/255.
    *   depth     the full 32-bit float of gl_FragCoord.z, clamped to [0, 1]; no error.
    *   coverage  up to 8 samples.
-   *   pool      up to 2^32 - 2 nodes at 1 sample, 2^28 - 2 at 2 and 4 samples, 2^24 - 2 at 8 samples. */
+   *   pool      up to 0xe0000000 nodes at 1 sample, 2^28 - 2 at 2 and 4 samples, 2^24 - 2 at 8 samples. */
   VITRAIL_NODE_STANDARD = 0,
   /* 8 bytes a node, for devices where bandwidth is scarce. Up to 4 samples.
    *   colour    on the sRGB curve, clamped to [0, 1]; 5, 6, 5 bits at 1 sample: at most 0.5/31, 0.5/63, 0.5/31 off;

@@ -70,12 +70,12 @@ bool vitrailKeepsSums() {
 }
 
 // Whether the shader was specialized, if at all, for this target.
-bool vitrailSuitsTarget(VitrailLayout nodes) {
-  return nodes.format == vitrailParameters.format && nodes.samples == vitrailParameters.samples &&
-         vitrailKeepsSums() == (vitrailParameters.keepSums != 0u);
+bool vitrailSuitsTarget() {
+  VitrailLayout nodes = vitrailTargetLayout();
+  return VITRAIL_LAYOUT_WORD(nodes.format, nodes.samples, vitrailKeepsSums() ? 1u : 0u) == vitrailParameters.layoutWord;
 }
 
-// Adds a fragment that found no node to the sums of its pixel, and calls for the dispatch that blends them.
+// Adds a fragment that found no node to the sums of its pixel.
 void vitrailAddMissing(uint pixelIndex, uvec4 node, uint coverage, VitrailLayout nodes) {
   float weight = float(bitCount(coverage)) / float(nodes.samples);
   VitrailSums sums = vitrailMergeFilters(vitrailSumsOf(vitrailKey(node, nodes), nodes, weight));
@@ -87,21 +87,17 @@ void vitrailAddMissing(uint pixelIndex, uvec4 node, uint coverage, VitrailLayout
   atomicAdd(vitrailPixelSums[first + 4u], sums.density);
 }
 
-void vitrailCountMissing() {
-  uint before = atomicAdd(vitrailControl.missingLow, 1u);
-  if (before == 0xffffffffu) atomicAdd(vitrailControl.missingHigh, 1u);
-  if (before == 0u && vitrailKeepsSums()) {
-    vitrailControl.overflowGroupsX = (vitrailParameters.width + 7u) / 8u;
-    vitrailControl.overflowGroupsY = (vitrailParameters.height + 7u) / 8u;
-    vitrailControl.overflowGroupsZ = 1u;
-  }
+// Calls for the dispatch that blends the sums.
+void vitrailCallForSums() {
+  vitrailControl.overflowGroupsX = (vitrailParameters.width + 7u) / 8u;
+  vitrailControl.overflowGroupsY = (vitrailParameters.height + 7u) / 8u;
+  vitrailControl.overflowGroupsZ = 1u;
 }
 
 // Pushes a fragment at this pixel's depth and coverage on the list of its pixel. `color` is linear; `blend` is one of
 // VITRAIL_OVER (straight alpha), VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY. A fragment outside the
 // frame's area, or one that would change nothing, is ignored. When the pool is full the list is left as it is, and the
-// node number that was taken beyond the pool is given back: that keeps the counter from wrapping round to nodes that are
-// in use, however many fragments overflow, for it stays at or above the capacity once it has reached it.
+// fragment is counted, by the same counter that hands out nodes.
 void vitrailCollect(vec4 color, uint blend) {
   uvec2 pixel = uvec2(gl_FragCoord.xy) - uvec2(vitrailParameters.x, vitrailParameters.y);
   if (pixel.x >= vitrailParameters.width || pixel.y >= vitrailParameters.height) return; // also those left and above
@@ -111,13 +107,16 @@ void vitrailCollect(vec4 color, uint blend) {
   if (!vitrailPack(color, blend, gl_FragCoord.z, coverage, nodes, node) || coverage == 0u) return;
 
   uint pixelIndex = pixel.y * vitrailParameters.width + pixel.x;
-  bool fits = vitrailSuitsTarget(nodes);
   uint index = VITRAIL_END;
-  if (fits) index = atomicAdd(vitrailControl.stored, 1u);
+  if (vitrailSuitsTarget()) index = atomicAdd(vitrailControl.requested, 1u);
   if (index >= vitrailParameters.capacity) {
-    if (fits) atomicAdd(vitrailControl.stored, 0xffffffffu);
-    vitrailCountMissing();
-    if (vitrailKeepsSums()) vitrailAddMissing(pixelIndex, node, coverage, nodes);
+    if (index == VITRAIL_WRAP_AT) atomicAdd(vitrailControl.requested, 0u - VITRAIL_WRAP_STEP);
+    if (index == VITRAIL_WRAP_AT) atomicAdd(vitrailControl.wraps, 1u);
+    if (index == VITRAIL_END) atomicAdd(vitrailControl.misfits, 1u);
+    if (vitrailKeepsSums()) {
+      if (index == vitrailParameters.capacity || index == VITRAIL_END) vitrailCallForSums();
+      vitrailAddMissing(pixelIndex, node, coverage, nodes);
+    }
     return;
   }
   uint next = atomicExchange(vitrailHeads[pixelIndex], index);

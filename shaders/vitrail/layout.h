@@ -48,9 +48,9 @@ struct VitrailNodeHdr {
 
 // What a frame counts. All zero when the collect pass starts.
 struct VitrailControl {
-  uint stored;     // nodes taken; above the capacity only while fragments that got none are giving them back
-  uint missingLow; // fragments that found the pool full, 64 bits in two words
-  uint missingHigh;
+  uint requested; // fragments that asked for a node: the index of the next one's, which may be beyond the pool
+  uint wraps;     // VITRAIL_WRAP_STEP of them each are not in `requested`
+  uint misfits;   // fragments of shaders that were specialized for another target: they are missing too
   uint layersMax; // this and the next three are written by the resolve
   uint coveredPixels;
   uint cutPixels; // lists that the driver did not let it finish
@@ -63,8 +63,8 @@ struct VitrailControl {
   uint longGroupsX;
   uint longGroupsY;
   uint longGroupsZ;
-  uint
-      overflowGroupsX; // the dispatch that blends a frame that overflowed; written by the first fragment without a node
+  // The dispatch that blends a frame that overflowed; written by the first fragment without a node.
+  uint overflowGroupsX;
   uint overflowGroupsY;
   uint overflowGroupsZ;
 };
@@ -80,8 +80,8 @@ struct VitrailParameters {
   uint samples;      // 1, 2, 4, 8
   uint nearestIsOne; // 1: reversed depth
   uint keepSums;     // 1: fragments without a node are added to their pixel's sums
-  uint unused;
-  uint nodesLow; // the address of the pool, where it is reached by address
+  uint layoutWord;   // VITRAIL_LAYOUT_WORD of the three: what a specialized shader must agree with
+  uint nodesLow;     // the address of the pool, where it is reached by address
   uint nodesHigh;
 };
 
@@ -98,10 +98,18 @@ static_assert(sizeof(VitrailParameters) == 48);
 
 VITRAIL_CONSTANT VITRAIL_END = 0xffffffffu; // a head pointer that has no list
 
+// Counting goes on where the pool is full, and must not come round to nodes that are in use: the fragment that is given
+// the index VITRAIL_WRAP_AT takes VITRAIL_WRAP_STEP from the count. No pool is larger than the rest of that, and never
+// as many fragments as are left above it are under way at once.
+VITRAIL_CONSTANT VITRAIL_WRAP_AT = 0xf0000000u;
+VITRAIL_CONSTANT VITRAIL_WRAP_STEP = 0x10000000u;
+
 // Node formats, with the values of VitrailNodeFormat.
 VITRAIL_CONSTANT VITRAIL_FORMAT_STANDARD = 0u;
 VITRAIL_CONSTANT VITRAIL_FORMAT_COMPACT = 1u;
 VITRAIL_CONSTANT VITRAIL_FORMAT_HDR = 2u;
+
+#define VITRAIL_LAYOUT_WORD(format, samples, keepSums) ((format) | (samples) << 8 | (keepSums) << 16)
 
 // Blend modes, with the values of VitrailBlend.
 VITRAIL_CONSTANT VITRAIL_OVER = 0u;

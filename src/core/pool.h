@@ -30,13 +30,14 @@ constexpr std::uint32_t indexBits(std::uint32_t format, std::uint32_t samples) {
   return format == layout::VITRAIL_FORMAT_COMPACT ? 24 : 32 - coverageBits(samples);
 }
 
-// The most nodes that one pool can have: of the indices that fit into a node the last ends a list, and one is left out
-// so that an index that was counted up from it never wraps. 0 where the format does not go with the sample count.
+// The most nodes that one pool can have: of the indices that fit into a node the last ends a list, and the counter that
+// hands them out must not come round to them. 0 where the format does not go with the sample count.
 constexpr std::uint32_t maxNodeIndexCount(std::uint32_t format, std::uint32_t samples) {
   const bool knownSamples = samples == 1 || samples == 2 || samples == 4 || samples == 8;
   if (nodeBytes(format) == 0 || !knownSamples) return 0;
   if (format == layout::VITRAIL_FORMAT_COMPACT && samples > 4) return 0;
-  return static_cast<std::uint32_t>((std::uint64_t{1} << indexBits(format, samples)) - 2);
+  constexpr std::uint64_t kCountable = layout::VITRAIL_WRAP_AT - layout::VITRAIL_WRAP_STEP;
+  return static_cast<std::uint32_t>(std::min((std::uint64_t{1} << indexBits(format, samples)) - 2, kCountable));
 }
 
 // Bytes of a pool. A pool without nodes still has the room of one: a buffer cannot be empty.

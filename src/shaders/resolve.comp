@@ -16,7 +16,7 @@ VitrailResolved resolveList(uint head) {
 void resolvePixel(uvec2 local) {
   uint pixelIndex = local.y * parameters.width + local.x;
   uint head = heads[pixelIndex];
-  uvec2 pixel = imagePixel(pixelIndex);
+  uvec2 pixel = uvec2(parameters.x, parameters.y) + local;
   beginPixel(pixel);
   if (head == VITRAIL_END) {
 #ifdef VITRAIL_MULTISAMPLED

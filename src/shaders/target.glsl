@@ -33,7 +33,7 @@ uvec2 vitrailPoolAddress() { return uvec2(parameters.nodesLow, parameters.nodesH
 VitrailLayout vitrailNodes() { return VitrailLayout(kFormat, kSamples, kNearestIsOne); }
 uint vitrailMaxLayers() { return kMaxLayers; }
 
-uint nodesInUse() { return min(control.stored, parameters.capacity); }
-bool overflowed() { return (control.missingLow | control.missingHigh) != 0u; }
+uint nodesInUse() { return min(control.requested, parameters.capacity); }
+bool overflowed() { return control.requested > parameters.capacity || control.misfits != 0u; }
 
 #endif

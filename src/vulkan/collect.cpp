@@ -44,6 +44,7 @@ layout::VitrailParameters parametersOf(const VitrailTarget_T& target) {
   parameters.samples = target.desc.samples;
   parameters.nearestIsOne = target.desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE ? 1 : 0;
   parameters.keepSums = target.keepSums ? 1 : 0;
+  parameters.layoutWord = VITRAIL_LAYOUT_WORD(parameters.format, parameters.samples, parameters.keepSums);
   parameters.nodesLow = static_cast<std::uint32_t>(target.storage.nodesAddress);
   parameters.nodesHigh = static_cast<std::uint32_t>(target.storage.nodesAddress >> 32U);
   return parameters;

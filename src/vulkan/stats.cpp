@@ -1,4 +1,5 @@
 // What the GPU reports about a frame: copied out at its end, read by the host later.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -83,9 +84,10 @@ extern "C" VkResult vitrailReadStats(VitrailTarget target, uint64_t frame, Vitra
   *stats = {};
   stats->frame = frame;
   stats->nodeCapacity = target->slotCapacity[target->slot(frame)];
-  stats->fragmentsStored = control.stored;
-  stats->fragmentsMissing = (std::uint64_t{control.missingHigh} << 32U) | control.missingLow;
-  stats->fragmentsRequested = stats->fragmentsStored + stats->fragmentsMissing;
+  const std::uint64_t fitting = std::uint64_t{control.wraps} * vitrail::layout::VITRAIL_WRAP_STEP + control.requested;
+  stats->fragmentsRequested = fitting + control.misfits;
+  stats->fragmentsStored = std::min<std::uint64_t>(fitting, stats->nodeCapacity);
+  stats->fragmentsMissing = stats->fragmentsRequested - stats->fragmentsStored;
   stats->cutPixels = control.cutPixels;
   stats->approximatePixels = control.approximatePixels;
   stats->exact = stats->fragmentsMissing == 0 && stats->cutPixels == 0 && stats->approximatePixels == 0 ? 1 : 0;

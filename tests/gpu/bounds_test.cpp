@@ -63,6 +63,26 @@ TEST_F(BoundsTest, CapacitiesAroundTheNeedCountWhatIsMissing) {
   }
 }
 
+// The counter of a frame with 15 times 2^28 requests is wound back; no node is handed out twice, no request is
+// forgotten.
+TEST_F(BoundsTest, RequestsBeyond32BitsAreCountedAndTakeNoNode) {
+  for (const VitrailOverflow overflow : {VITRAIL_OVERFLOW_APPROXIMATE, VITRAIL_OVERFLOW_SKIP}) {
+    PointHostDesc desc;
+    desc.guarded = true;
+    desc.capacity = 8;
+    desc.overflow = overflow;
+    desc.requestedBefore = layout::VITRAIL_WRAP_AT - 7;
+    const std::vector<Point> points = randomLists(desc, {0, 1, 2, 17, 40, 100}, 3);
+    PointHost host(gpu(), desc);
+    const PointResult result = host.draw(points);
+    EXPECT_EQ(result.stats.fragmentsRequested, std::uint64_t{desc.requestedBefore} + points.size());
+    EXPECT_EQ(result.stats.fragmentsStored, desc.capacity);
+    EXPECT_EQ(result.stats.fragmentsMissing, result.stats.fragmentsRequested - desc.capacity);
+    EXPECT_EQ(result.stats.exact, 0U);
+    EXPECT_TRUE(host.guardsUntouched());
+  }
+}
+
 // What a frame that overflowed must be: every pixel the weighted average of all its fragments, each with the share of
 // the samples that it covers. Filters count with the mean of their channels' logarithms.
 std::vector<Color> averagedPixels(const PointHostDesc& desc, const std::vector<Point>& points) {

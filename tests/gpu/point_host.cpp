@@ -389,9 +389,22 @@ void PointHost::recordResolve(VkCommandBuffer commands, Slot& slot, std::uint32_
   vkCmdEndRendering(commands);
 }
 
+void PointHost::recordRequests(VkCommandBuffer commands) {
+  constexpr Access kTransferWrite{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
+  // Writer: the library's clear. Writer after: the fill; then the points.
+  tool::cmdMemoryBarrier(commands, kTransferWrite, kTransferWrite);
+  vkCmdFillBuffer(commands, memory_.get(),
+                  guardBytes_ + storage_.control.offset + offsetof(layout::VitrailControl, requested),
+                  sizeof(std::uint32_t), desc_.requestedBefore);
+  tool::cmdMemoryBarrier(commands, kTransferWrite,
+                         {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                          VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT});
+}
+
 void PointHost::recordFrame(VkCommandBuffer commands, std::uint64_t frame, Slot& slot, std::uint32_t view,
                             const VkRect2D& area, const Vertices& vertices) {
   target_.begin(commands, {frame, area});
+  if (desc_.requestedBefore > 0) recordRequests(commands);
   if (!vertices.points.empty()) recordPoints(commands, slot, vertices);
   target_.collected(commands);
   recordResolve(commands, slot, view);

@@ -56,6 +56,8 @@ struct PointHostDesc {
   bool specialized = false; // the collecting shader is, for this target or, if given, for one of another format
   std::optional<VitrailNodeFormat> specializedFor;
   bool guarded = false; // the memory is this host's, between guard words
+  // The fragments that are taken to have asked for a node before the first point. `guarded` only.
+  std::uint32_t requestedBefore = 0;
 
   FloatColor behind = {0.0F, 0.0F, 0.0F, 1.0F}; // the opaque colour
   std::vector<FloatColor> behindSamples;        // the same sample by sample, if it differs
@@ -137,6 +139,7 @@ class PointHost {
 
   void recordOpaque(VkCommandBuffer commands, Slot& slot);
   void recordClear(VkCommandBuffer commands, Slot& slot) const;
+  void recordRequests(VkCommandBuffer commands);
   void recordFrame(VkCommandBuffer commands, std::uint64_t frame, Slot& slot, std::uint32_t view, const VkRect2D& area,
                    const Vertices& vertices);
   void recordPoints(VkCommandBuffer commands, Slot& slot, const Vertices& vertices);

@@ -16,11 +16,11 @@ namespace {
 using namespace layout;
 
 TEST(Pool, BoundsAreTheHeaders) {
-  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_STANDARD, 1), 0xfffffffeU);
+  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_STANDARD, 1), 0xe0000000U);
   EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_STANDARD, 2), (1U << 28U) - 2);
   EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_STANDARD, 4), (1U << 28U) - 2);
   EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_STANDARD, 8), (1U << 24U) - 2);
-  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_HDR, 1), 0xfffffffeU);
+  EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_HDR, 1), 0xe0000000U);
   EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_HDR, 8), (1U << 24U) - 2);
   for (const std::uint32_t samples : {1U, 2U, 4U}) {
     EXPECT_EQ(maxNodeIndexCount(VITRAIL_FORMAT_COMPACT, samples), (1U << 24U) - 2);
@@ -82,7 +82,7 @@ TEST(Pool, TheCapacityForABudgetIsTheLargestThatFits) {
     ASSERT_TRUE(fits == 0 || total(fits) <= bytes);
     ASSERT_TRUE(fits == most || total(fits + 1) > bytes);
   }
-  EXPECT_EQ(nodeCapacityFor(~0ULL, 1, VITRAIL_FORMAT_STANDARD, 1, true, 256), 0xfffffffeU);
+  EXPECT_EQ(nodeCapacityFor(~0ULL, 1, VITRAIL_FORMAT_STANDARD, 1, true, 256), 0xe0000000U);
   EXPECT_EQ(nodeCapacityFor(0, 1, VITRAIL_FORMAT_STANDARD, 1, true, 256), 0U);
 }
 

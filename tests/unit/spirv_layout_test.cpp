@@ -109,24 +109,16 @@ Offsets offsetsOf(const Module& module, std::uint32_t type) {
 
 const Offsets& controlOffsets() {
   using layout::VitrailControl;
-  static const Offsets offsets = {offsetof(VitrailControl, stored),
-                                  offsetof(VitrailControl, missingLow),
-                                  offsetof(VitrailControl, missingHigh),
-                                  offsetof(VitrailControl, layersMax),
-                                  offsetof(VitrailControl, coveredPixels),
-                                  offsetof(VitrailControl, cutPixels),
-                                  offsetof(VitrailControl, approximatePixels),
-                                  offsetof(VitrailControl, mediumLists),
-                                  offsetof(VitrailControl, mediumGroupsX),
-                                  offsetof(VitrailControl, mediumGroupsY),
-                                  offsetof(VitrailControl, mediumGroupsZ),
-                                  offsetof(VitrailControl, longLists),
-                                  offsetof(VitrailControl, longGroupsX),
-                                  offsetof(VitrailControl, longGroupsY),
-                                  offsetof(VitrailControl, longGroupsZ),
-                                  offsetof(VitrailControl, overflowGroupsX),
-                                  offsetof(VitrailControl, overflowGroupsY),
-                                  offsetof(VitrailControl, overflowGroupsZ)};
+  static const Offsets offsets = {
+      offsetof(VitrailControl, requested),         offsetof(VitrailControl, wraps),
+      offsetof(VitrailControl, misfits),           offsetof(VitrailControl, layersMax),
+      offsetof(VitrailControl, coveredPixels),     offsetof(VitrailControl, cutPixels),
+      offsetof(VitrailControl, approximatePixels), offsetof(VitrailControl, mediumLists),
+      offsetof(VitrailControl, mediumGroupsX),     offsetof(VitrailControl, mediumGroupsY),
+      offsetof(VitrailControl, mediumGroupsZ),     offsetof(VitrailControl, longLists),
+      offsetof(VitrailControl, longGroupsX),       offsetof(VitrailControl, longGroupsY),
+      offsetof(VitrailControl, longGroupsZ),       offsetof(VitrailControl, overflowGroupsX),
+      offsetof(VitrailControl, overflowGroupsY),   offsetof(VitrailControl, overflowGroupsZ)};
   return offsets;
 }
 
@@ -136,7 +128,7 @@ const Offsets& parameterOffsets() {
                                   offsetof(VitrailParameters, width),    offsetof(VitrailParameters, height),
                                   offsetof(VitrailParameters, capacity), offsetof(VitrailParameters, format),
                                   offsetof(VitrailParameters, samples),  offsetof(VitrailParameters, nearestIsOne),
-                                  offsetof(VitrailParameters, keepSums), offsetof(VitrailParameters, unused),
+                                  offsetof(VitrailParameters, keepSums), offsetof(VitrailParameters, layoutWord),
                                   offsetof(VitrailParameters, nodesLow), offsetof(VitrailParameters, nodesHigh)};
   return offsets;
 }
