@@ -184,6 +184,7 @@ void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   command.add_option("--method", method.name);
   addPositive(command, "--samples", method.samples);
   addPositive(command, "--layers", method.maxLayers);
+  addPositive(command, "--passes", method.passes);
   addPositive(command, "--memory-budget", arguments.memoryBudget);
   addChoice(command, "--nodes", "standard, compact and hdr", method.nodes, nodeFormatNamed);
   addChoice(command, "--resolve", "compute and fragment", method.resolve, resolveNamed);
@@ -193,12 +194,9 @@ void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
 void checkMethod(const RenderArguments& arguments) {
   try {
     checkMethodOptions(arguments.method);
+    checkPictureOptions(arguments.method.name, arguments.memoryBudget.has_value(), false);
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
-  }
-  const std::string lists = MethodOptions{}.name;
-  if (arguments.memoryBudget && arguments.method.name != lists) {
-    throw UsageError(fmt::format("--memory-budget is of the method {}: {} has none", lists, arguments.method.name));
   }
 }
 

@@ -144,7 +144,7 @@ GpuScene::GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
   uploadDraws(uploader, scene);
   textures_ = std::make_unique<MaterialTextures>(gpu, uploader, scene, usedMaterials(scene));
   listDraws(scene, ranges, opacity.has_value(), order);
-  placeBoxes(scene, opacity.has_value());
+  placeBoxes(scene);
 }
 
 // A mesh that is drawn both opaque and transparent has its indices twice where their orders differ.
@@ -223,6 +223,7 @@ void GpuScene::listDraws(const Scene& scene, const std::vector<MeshRange>& range
     const MeshRange& range = ranges[source.mesh];
     const bool transparent = allTransparent || isTransparent(material);
     GpuDraw draw;
+    draw.source = i;
     draw.dataOffset = i * kUniformStride;
     draw.materialOffset = source.material * kUniformStride;
     draw.firstIndex = static_cast<std::uint32_t>(transparent ? range.firstTransparentIndex : range.firstOpaqueIndex);
@@ -247,13 +248,12 @@ void GpuScene::listDraws(const Scene& scene, const std::vector<MeshRange>& range
   transparent_ = std::move(ordered);
 }
 
-void GpuScene::placeBoxes(const Scene& scene, bool allTransparent) {
+void GpuScene::placeBoxes(const Scene& scene) {
   std::vector<std::optional<Bounds>> known(scene.meshes.size());
-  for (const Draw& draw : scene.draws) {
-    const Mesh& mesh = scene.meshes[draw.mesh];
-    if (mesh.indices.empty() || !(allTransparent || isTransparent(scene.materials[draw.material]))) continue;
+  for (const GpuDraw& drawn : transparent_) {
+    const Draw& draw = scene.draws[drawn.source];
     std::optional<Bounds>& box = known[draw.mesh];
-    if (!box) box = boundsOf(mesh);
+    if (!box) box = boundsOf(scene.meshes[draw.mesh]);
     boxes_.push_back({*box, makeDrawData(draw, origin_).model});
   }
 }

@@ -19,6 +19,7 @@ constexpr std::uint32_t kUniformStride = 256;
 
 // One indexed draw of the pooled buffers.
 struct GpuDraw {
+  std::uint32_t source = 0;         // index into Scene::draws
   std::uint32_t dataOffset = 0;     // bytes into drawData()
   std::uint32_t materialOffset = 0; // bytes into materials()
   std::uint32_t firstIndex = 0;
@@ -43,7 +44,7 @@ class GpuScene {
 
   const std::vector<GpuDraw>& opaqueDraws() const { return opaque_; } // opaque and alpha-masked
   const std::vector<GpuDraw>& transparentDraws() const { return transparent_; }
-  const std::vector<PlacedBox>& transparentBoxes() const { return boxes_; } // of those draws, in any order
+  const std::vector<PlacedBox>& transparentBoxes() const { return boxes_; } // of those draws, in their order
   const GpuBuffer& vertices() const { return vertices_; }                   // of Vertex
   const GpuBuffer& indices() const { return indices_; }                     // 32-bit
   const GpuBuffer& drawData() const { return drawData_; }   // of shaders::DrawData, kUniformStride apart
@@ -69,7 +70,7 @@ class GpuScene {
   void uploadMaterials(Uploader& uploader, const Scene& scene, std::optional<float> opacity);
   void uploadDraws(Uploader& uploader, const Scene& scene);
   void listDraws(const Scene& scene, const std::vector<MeshRange>& ranges, bool allTransparent, DrawOrder order);
-  void placeBoxes(const Scene& scene, bool allTransparent);
+  void placeBoxes(const Scene& scene);
 
   Gpu& gpu_;
   glm::dvec3 origin_{0.0};
