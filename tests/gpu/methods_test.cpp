@@ -31,6 +31,7 @@ using reference::unlitMaterial;
 enum class Exact {
   OneLayer,      // where no pixel has more than one transparent surface
   ParallelPanes, // where an order of whole objects by distance is right
+  ParallelParts, // where an order of triangles by distance is right
   Everywhere
 };
 
@@ -56,6 +57,8 @@ const std::vector<MethodRow>& rows() {
        .options = {"--nodes", "--resolve", "--msaa-resolve", "--layers", "--memory-budget"},
        .nodes = VITRAIL_NODE_STANDARD},
       {.name = "unsorted", .options = {}, .wrongWhereSurfacesCross = true},
+      {.name = "sorted", .exact = Exact::ParallelPanes, .options = {}, .wrongWhereSurfacesCross = true},
+      {.name = "sorted-triangles", .exact = Exact::ParallelParts, .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "insertion",
        .exact = Exact::Everywhere,
        .orderFree = true,
@@ -129,6 +132,47 @@ TestScene occludedStack() {
   addRectangle(scene, {glm::vec2(-1.5F, -1.0F), glm::vec2(0.0F, 1.0F), 0.5F},
                unlitMaterial({0.5F, 0.5F, 0.5F, 1.0F}, AlphaMode::Opaque));
   return straightOn(std::move(scene));
+}
+
+// Glass that tints what is behind it and reflects some light, `count` sheets of it.
+TestScene tintedGlass(int count) {
+  TestScene result = straightOn({});
+  for (int i = 0; i < count; ++i) {
+    Material glass;
+    glass.baseColor = {0.9F - 0.3F * static_cast<float>(i), 0.5F, 0.3F + 0.3F * static_cast<float>(i), 1.0F};
+    glass.metallic = 0.0F;
+    glass.roughness = 0.6F;
+    glass.transmission = 1.0F - 0.2F * static_cast<float>(i);
+    const float z = i == 0 ? 0.0F : 3.0F - 2.0F * static_cast<float>(i);
+    addRectangle(result.scene, {glm::vec2(-1.0F, -0.8F + 0.2F * z), glm::vec2(1.1F, 0.6F)}, glass);
+    result.scene.draws.back().transform[3].z = z;
+  }
+  return result;
+}
+
+// Three objects of several panes each, one behind the other in turns: an unlit one, one that adds light, and a mirrored
+// tinted one.
+TestScene shuffledPanes() {
+  TestScene result = tintedGlass(1);
+  addRectangle(result.scene, {glm::vec2(-1.2F, -0.7F), glm::vec2(0.9F, 0.8F)}, unlitMaterial({0.2F, 0.7F, 0.4F, 0.4F}));
+  addRectangle(result.scene, {glm::vec2(-0.8F, -0.9F), glm::vec2(1.3F, 0.7F)}, unlitMaterial({0.5F, 0.1F, 0.3F, 0.5F}));
+  result.scene.materials[2].blend = BlendMode::Additive;
+  result.scene.draws[0].transform[0].x = -1.0F;
+  for (std::size_t object = 0; object < 3; ++object) {
+    Mesh& mesh = result.scene.meshes[object];
+    const Mesh first = mesh;
+    for (const int step : {2, 1, 3}) { // not in the order of their depths
+      const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (Vertex vertex : first.vertices) {
+        vertex.position.z = static_cast<float>(step) + 0.3F * static_cast<float>(object);
+        mesh.vertices.push_back(vertex);
+      }
+      for (const std::uint32_t index : first.indices) mesh.indices.push_back(base + index);
+    }
+    for (std::size_t i = 0; i < first.vertices.size(); ++i)
+      mesh.vertices[i].position.z = 0.3F * static_cast<float>(object);
+  }
+  return result;
 }
 
 TestScene nothingTransparent() {
@@ -207,12 +251,30 @@ TEST_P(MethodsTest, OneLayerIsExact) {
   expectRight(onePane(), "one pane");
   expectRight(disjointPanes(), "disjoint panes");
   expectRight(paneBetweenSheets(), "a pane between sheets");
+  expectRight(tintedGlass(1), "tinted glass");
 }
 
 TEST_P(MethodsTest, ParallelPanesAreExactWherePromised) {
   if (GetParam().exact < Exact::ParallelPanes) GTEST_SKIP() << "not promised";
   expectRight(builtin("planes"), "planes");
   expectRight(occludedStack(), "a stack behind a sheet");
+  expectRight(tintedGlass(3), "tinted glass");
+}
+
+TEST_P(MethodsTest, PanesOfSeveralObjectsAreExactWherePromised) {
+  if (GetParam().exact < Exact::ParallelParts) GTEST_SKIP() << "not promised";
+  expectRight(shuffledPanes(), "shuffled panes");
+}
+
+// The scene above is one that an order of objects gets wrong.
+TEST_F(GpuTest, ShuffledPanesHaveNoOrderOfObjects) {
+  const TestScene scene = shuffledPanes();
+  MethodOptions sorted;
+  sorted.name = "sorted";
+  const auto picture = [&](const MethodOptions& method) {
+    return renderOnce(gpu(), scene.scene, scene.picture, {}, DrawOrder::Forward, method).picture;
+  };
+  EXPECT_GT(shareBeyond(picture(sorted), picture({}), 16), 0.1);
 }
 
 TEST_P(MethodsTest, EverySceneIsExactWherePromised) {

@@ -40,6 +40,8 @@ How to look at it:
 How to blend it:
   --method M            linked-list (default): exact. For comparisons: unsorted, plain blending in
                         the order of the file, wrong wherever a nearer surface comes first;
+                        sorted, objects back to front, and sorted-triangles, the same for every
+                        triangle, both wrong where surfaces cross or overlap in a cycle;
                         insertion, lists as most published samples sort them
   --samples N           1 (default), 2, 4 or 8 samples a pixel, as the device offers
   --msaa-resolve R      per-pixel (default): the samples are blended and averaged at once.

@@ -93,7 +93,7 @@ Renderer::Impl::Impl(Gpu& device, const Scene& source, std::optional<float> opac
       samples(sampleFlag(gpu, chosen.samples)),
       submitter(gpu),
       surfaces(gpu, source, opacity, order),
-      method(makeMethod({gpu, surfaces}, chosen)),
+      method(makeMethod({gpu, surfaces, source}, chosen)),
       imagesInfo(imagesOf(method->needs(), samples)),
       opaquePipelines(surfaces, surfaces.scene().opaqueDraws(), {.name = "opaque"},
                       [this](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {

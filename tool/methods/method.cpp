@@ -5,6 +5,8 @@
 
 #include "insertion.h"
 #include "linked_list.h"
+#include "sorted.h"
+#include "sorted_triangles.h"
 #include "unsorted.h"
 
 namespace vitrail::tool {
@@ -12,6 +14,8 @@ namespace vitrail::tool {
 std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& options) {
   if (options.name == "linked-list") return std::make_unique<LinkedList>(host, options);
   if (options.name == "unsorted") return std::make_unique<Unsorted>(host, options);
+  if (options.name == "sorted") return std::make_unique<Sorted>(host, options);
+  if (options.name == "sorted-triangles") return std::make_unique<SortedTriangles>(host, options);
   if (options.name == "insertion") return std::make_unique<Insertion>(host);
   throw std::logic_error("a method that cannot be made: " + options.name);
 }

@@ -28,10 +28,11 @@ struct MethodNeeds {
   VkImageUsageFlags depthUsage = 0; // of the opaque depth beside the depth test: sampled, copied
 };
 
-// What a method is made for. All of it outlives the method.
+// What a method is made for.
 struct MethodHost {
-  Gpu& gpu;
-  const Surfaces& surfaces;
+  Gpu& gpu;                 // outlives the method
+  const Surfaces& surfaces; // so do these
+  const Scene& scene;       // what they show; there while the method is made
 };
 
 // The images of a picture, for descriptors. The renderer holds them, R16G16B16A16_SFLOAT with premultiplied linear

@@ -24,6 +24,8 @@ constexpr std::array kMethods{
                  .memoryBudget = true,
                  .nodeCapacity = true},
     MethodTraits{.name = "unsorted"},
+    MethodTraits{.name = "sorted"},
+    MethodTraits{.name = "sorted-triangles"},
     MethodTraits{.name = "insertion", .severalSamples = false, .nodeCapacity = true},
 };
 
