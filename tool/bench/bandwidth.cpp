@@ -71,7 +71,7 @@ double measureBandwidth(Gpu& gpu) {
                 "bandwidth");
   set.writeBuffer(0, source.get(), bytes);
   set.writeBuffer(1, destination.get(), bytes);
-  const Unique<VkPipelineLayout> layout = makePipelineLayout(gpu, {set.layout()}, 0, "bandwidth");
+  const Unique<VkPipelineLayout> layout = makePipelineLayout(gpu, {set.layout()}, {}, "bandwidth");
   const Unique<VkPipeline> pipeline = makeComputePipeline(gpu, layout.get(), shaders::bandwidth_comp, "bandwidth");
   Submitter submitter(gpu);
   Timers timers(gpu, 1);

@@ -6,11 +6,10 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr std::string_view kInsertion = "insertion";
 constexpr std::uint32_t kMostCompactSamples = 4;
 
 // Whether the node format and the resolve of a method can be chosen.
-bool hasChoices(std::string_view method) { return method != kBaselineMethod && method != kInsertion; }
+bool hasChoices(std::string_view method) { return traitsOf(method).nodes && traitsOf(method).resolves; }
 
 bool same(const MethodOptions& a, const MethodOptions& b) {
   return a.name == b.name && a.samples == b.samples && a.nodes == b.nodes && a.resolve == b.resolve;
@@ -26,7 +25,7 @@ void addMethod(std::vector<MethodOptions>& list, const std::string& method, std:
   MethodOptions options;
   options.name = method;
   options.samples = samples;
-  if (method == kInsertion && samples > 1) return;
+  if (!traitsOf(method).severalSamples && samples > 1) return;
   if (!hasChoices(method)) return add(options);
   for (const VitrailNodeFormat nodes : matrix.nodes) {
     if (nodes == VITRAIL_NODE_COMPACT && samples > kMostCompactSamples) continue;

@@ -22,8 +22,8 @@ struct BenchMatrix {
 };
 
 // The settings that the choices stand for, by sample count, the baseline of each count first, whether or not it was
-// chosen. Choices that a method does not have are left out: unsorted and insertion have one node format and one resolve
-// of their own, insertion one sample, and compact nodes no room for 8 samples. Nothing is listed twice.
+// chosen. Choices that a method does not have (MethodTraits) are left out: unsorted and insertion have one node format
+// and one resolve of their own, insertion one sample, and compact nodes no room for 8 samples. Nothing is listed twice.
 std::vector<MethodOptions> configurationsOf(const BenchMatrix& matrix);
 
 // A setting in words, for people: "linked-list, compact, 4 samples, compute".

@@ -14,12 +14,12 @@ namespace {
 constexpr const char* kNone = "-";
 
 // One row: method, nodes, samples, resolve, then numbers.
-constexpr char kRow[] = " {:<12}{:<9}{:>2} {:<9}{:>7}{:>9}{:>9}{:>9}{:>6}{:>7}{:>9}{:>7}{:>9}{:>8}{:>6}\n";
+constexpr char kRow[] = " {:<16} {:<9}{:>2} {:<9}{:>7}{:>8}{:>8}{:>8}{:>6}{:>7}{:>8}{:>7}{:>8}{:>8}{:>6}\n";
 
 constexpr const char* kLegend =
-    R"(Milliseconds of GPU time, medians. draw: collecting or blending the surfaces; cost: clear + draw + resolve, in each
-frame; IQR: its interquartile range over its median; x: times unsorted's; M/s: million fragments a second of cost;
-floor: the least time that the frame's bytes take at the measured bandwidth; bw: floor over cost.
+    R"(Milliseconds of GPU time, medians. draw: collecting or blending the surfaces; cost: all passes but the opaque one,
+in each frame; IQR: its interquartile range over its median; x: times unsorted's; M/s: million fragments a second of
+cost; floor: the least time that the frame's bytes take at the measured bandwidth; bw: floor over cost.
 )";
 
 std::string milliseconds(double value) {

@@ -40,6 +40,8 @@ How to look at it:
 How to blend it:
   --method M            linked-list (default): exact. For comparisons: unsorted, plain blending in
                         the order of the file, wrong wherever a nearer surface comes first;
+                        sorted, objects back to front, and sorted-triangles, the same for every
+                        triangle, both wrong where surfaces cross or overlap in a cycle;
                         insertion, lists as most published samples sort them
   --samples N           1 (default), 2, 4 or 8 samples a pixel, as the device offers
   --msaa-resolve R      per-pixel (default): the samples are blended and averaged at once.
@@ -184,6 +186,7 @@ void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   command.add_option("--method", method.name);
   addPositive(command, "--samples", method.samples);
   addPositive(command, "--layers", method.maxLayers);
+  addPositive(command, "--passes", method.passes);
   addPositive(command, "--memory-budget", arguments.memoryBudget);
   addChoice(command, "--nodes", "standard, compact and hdr", method.nodes, nodeFormatNamed);
   addChoice(command, "--resolve", "compute and fragment", method.resolve, resolveNamed);
@@ -193,12 +196,9 @@ void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
 void checkMethod(const RenderArguments& arguments) {
   try {
     checkMethodOptions(arguments.method);
+    checkPictureOptions(arguments.method.name, arguments.memoryBudget.has_value(), false);
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
-  }
-  const std::string lists = MethodOptions{}.name;
-  if (arguments.memoryBudget && arguments.method.name != lists) {
-    throw UsageError(fmt::format("--memory-budget is of the method {}: {} has none", lists, arguments.method.name));
   }
 }
 

@@ -33,7 +33,7 @@ EncodePass::EncodePass(Gpu& gpu)
            {{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT},
             {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC, VK_SHADER_STAGE_COMPUTE_BIT}},
            "encode"),
-      layout_(makePipelineLayout(gpu, {set_.layout()}, sizeof(Band), "encode")),
+      layout_(makePipelineLayout(gpu, {set_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(Band)}, "encode")),
       pipeline_(makeComputePipeline(gpu, layout_.get(), shaders::encode_comp, "encode")) {}
 
 void EncodePass::setSource(const GpuImage& color) {

@@ -136,15 +136,15 @@ GpuBuffer uploadUniforms(Gpu& gpu, Uploader& uploader, const std::vector<Data>& 
 } // namespace
 
 GpuScene::GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order)
-    : gpu_(gpu), origin_(farMiddle(scene)) {
+    : gpu_(gpu), order_(order), origin_(farMiddle(scene)) {
   Uploader uploader(gpu);
   const std::vector<MeshRange> ranges = placeMeshes(scene, opacity.has_value(), order);
-  uploadMeshes(uploader, scene, ranges, order);
+  uploadMeshes(uploader, scene, ranges);
   uploadMaterials(uploader, scene, opacity);
   uploadDraws(uploader, scene);
   textures_ = std::make_unique<MaterialTextures>(gpu, uploader, scene, usedMaterials(scene));
   listDraws(scene, ranges, opacity.has_value(), order);
-  placeBoxes(scene, opacity.has_value());
+  placeBoxes(scene);
 }
 
 // A mesh that is drawn both opaque and transparent has its indices twice where their orders differ.
@@ -175,8 +175,16 @@ std::vector<GpuScene::MeshRange> GpuScene::placeMeshes(const Scene& scene, bool 
   return ranges;
 }
 
-void GpuScene::uploadMeshes(Uploader& uploader, const Scene& scene, const std::vector<MeshRange>& ranges,
-                            DrawOrder order) {
+// A mesh's indices as transparent draws submit them.
+std::vector<std::uint32_t> GpuScene::submittedIndices(const Scene& scene, std::size_t mesh) const {
+  return reorderTriangles(scene.meshes[mesh].indices, order_, mesh + 1);
+}
+
+std::vector<std::uint32_t> GpuScene::transparentIndices(const Scene& scene, std::size_t i) const {
+  return submittedIndices(scene, scene.draws[transparent_[i].source].mesh);
+}
+
+void GpuScene::uploadMeshes(Uploader& uploader, const Scene& scene, const std::vector<MeshRange>& ranges) {
   vertices_ =
       GpuBuffer(gpu_, vertexCount_ * sizeof(Vertex),
                 VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryKind::Device, "vertices");
@@ -189,12 +197,12 @@ void GpuScene::uploadMeshes(Uploader& uploader, const Scene& scene, const std::v
     const Mesh& mesh = scene.meshes[i];
     uploader.toBuffer(std::as_bytes(std::span(mesh.vertices)), vertices_, range.firstVertex * sizeof(Vertex),
                       kVertexFetch);
-    if (range.opaque || order == DrawOrder::Forward) {
+    if (range.opaque || order_ == DrawOrder::Forward) {
       const std::uint64_t first = range.opaque ? range.firstOpaqueIndex : range.firstTransparentIndex;
       uploader.toBuffer(std::as_bytes(std::span(mesh.indices)), indices_, first * sizeof(std::uint32_t), kIndexFetch);
     }
-    if (range.transparent && order != DrawOrder::Forward) {
-      const std::vector<std::uint32_t> reordered = reorderTriangles(mesh.indices, order, i + 1);
+    if (range.transparent && order_ != DrawOrder::Forward) {
+      const std::vector<std::uint32_t> reordered = submittedIndices(scene, i);
       uploader.toBuffer(std::as_bytes(std::span(reordered)), indices_,
                         range.firstTransparentIndex * sizeof(std::uint32_t), kIndexFetch);
     }
@@ -223,6 +231,7 @@ void GpuScene::listDraws(const Scene& scene, const std::vector<MeshRange>& range
     const MeshRange& range = ranges[source.mesh];
     const bool transparent = allTransparent || isTransparent(material);
     GpuDraw draw;
+    draw.source = i;
     draw.dataOffset = i * kUniformStride;
     draw.materialOffset = source.material * kUniformStride;
     draw.firstIndex = static_cast<std::uint32_t>(transparent ? range.firstTransparentIndex : range.firstOpaqueIndex);
@@ -247,13 +256,12 @@ void GpuScene::listDraws(const Scene& scene, const std::vector<MeshRange>& range
   transparent_ = std::move(ordered);
 }
 
-void GpuScene::placeBoxes(const Scene& scene, bool allTransparent) {
+void GpuScene::placeBoxes(const Scene& scene) {
   std::vector<std::optional<Bounds>> known(scene.meshes.size());
-  for (const Draw& draw : scene.draws) {
-    const Mesh& mesh = scene.meshes[draw.mesh];
-    if (mesh.indices.empty() || !(allTransparent || isTransparent(scene.materials[draw.material]))) continue;
+  for (const GpuDraw& drawn : transparent_) {
+    const Draw& draw = scene.draws[drawn.source];
     std::optional<Bounds>& box = known[draw.mesh];
-    if (!box) box = boundsOf(mesh);
+    if (!box) box = boundsOf(scene.meshes[draw.mesh]);
     boxes_.push_back({*box, makeDrawData(draw, origin_).model});
   }
 }

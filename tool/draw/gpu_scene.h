@@ -19,6 +19,7 @@ constexpr std::uint32_t kUniformStride = 256;
 
 // One indexed draw of the pooled buffers.
 struct GpuDraw {
+  std::uint32_t source = 0;         // index into Scene::draws
   std::uint32_t dataOffset = 0;     // bytes into drawData()
   std::uint32_t materialOffset = 0; // bytes into materials()
   std::uint32_t firstIndex = 0;
@@ -43,9 +44,12 @@ class GpuScene {
 
   const std::vector<GpuDraw>& opaqueDraws() const { return opaque_; } // opaque and alpha-masked
   const std::vector<GpuDraw>& transparentDraws() const { return transparent_; }
-  const std::vector<PlacedBox>& transparentBoxes() const { return boxes_; } // of those draws, in any order
-  const GpuBuffer& vertices() const { return vertices_; }                   // of Vertex
-  const GpuBuffer& indices() const { return indices_; }                     // 32-bit
+  const std::vector<PlacedBox>& transparentBoxes() const { return boxes_; } // of those draws, in their order
+  // The indices of transparent draw `i` in the order in which its triangles are submitted, relative to its vertices.
+  // `scene` is what this was made of.
+  std::vector<std::uint32_t> transparentIndices(const Scene& scene, std::size_t i) const;
+  const GpuBuffer& vertices() const { return vertices_; }   // of Vertex
+  const GpuBuffer& indices() const { return indices_; }     // 32-bit
   const GpuBuffer& drawData() const { return drawData_; }   // of shaders::DrawData, kUniformStride apart
   const GpuBuffer& materials() const { return materials_; } // of shaders::MaterialData, kUniformStride apart
   // The point of the world that is the GPU's (0, 0, 0): near the scene, so that a model far from the world's own origin
@@ -65,13 +69,15 @@ class GpuScene {
   };
 
   std::vector<MeshRange> placeMeshes(const Scene& scene, bool allTransparent, DrawOrder order);
-  void uploadMeshes(Uploader& uploader, const Scene& scene, const std::vector<MeshRange>& ranges, DrawOrder order);
+  void uploadMeshes(Uploader& uploader, const Scene& scene, const std::vector<MeshRange>& ranges);
+  std::vector<std::uint32_t> submittedIndices(const Scene& scene, std::size_t mesh) const;
   void uploadMaterials(Uploader& uploader, const Scene& scene, std::optional<float> opacity);
   void uploadDraws(Uploader& uploader, const Scene& scene);
   void listDraws(const Scene& scene, const std::vector<MeshRange>& ranges, bool allTransparent, DrawOrder order);
-  void placeBoxes(const Scene& scene, bool allTransparent);
+  void placeBoxes(const Scene& scene);
 
   Gpu& gpu_;
+  DrawOrder order_;
   glm::dvec3 origin_{0.0};
   std::uint64_t vertexCount_ = 0;
   std::uint64_t indexCount_ = 0;

@@ -5,62 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "accesses.h"
 #include "vk.h"
 
 namespace vitrail::tool {
 
 namespace {
-
-// The uses of the images. Blending reads colour, and a clear writes it.
-constexpr Access kColorReplace{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
-constexpr Access kColorBlend{kColorReplace.stages,
-                             VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
-constexpr Access kColorRead{kColorReplace.stages, VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT};
-constexpr Access kDepthTest{VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
-                            VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT};
-constexpr Access kDepthWrite{kDepthTest.stages, kDepthTest.accesses | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
-constexpr Access kComputeReadWrite{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                                   VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
-constexpr Access kComputeSample{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
-constexpr Access kFragmentSample{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
-constexpr Access kComputeRead{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT};
-
-constexpr VkAccessFlags2 kReads = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT |
-                                  VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
-                                  VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-
-VkRenderingAttachmentInfo attachment(const GpuImage& image, VkImageLayout layout, VkAttachmentLoadOp load,
-                                     VkAttachmentStoreOp store) {
-  auto info = vkStruct<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
-  info.imageView = image.view();
-  info.imageLayout = layout;
-  info.loadOp = load;
-  info.storeOp = store;
-  return info;
-}
-
-// The attachments of a scope; null: none of that kind.
-struct Attachments {
-  const VkRenderingAttachmentInfo* color = nullptr;
-  const VkRenderingAttachmentInfo* depth = nullptr;
-  const VkRenderingAttachmentInfo* stencil = nullptr;
-};
-
-// The viewport is the whole picture, whatever part of it is drawn.
-void cmdBeginScope(VkCommandBuffer commands, VkExtent2D picture, const VkRect2D& area, const Attachments& attachments) {
-  auto info = vkStruct<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
-  info.renderArea = area;
-  info.layerCount = 1;
-  info.colorAttachmentCount = attachments.color != nullptr ? 1 : 0;
-  info.pColorAttachments = attachments.color;
-  info.pDepthAttachment = attachments.depth;
-  info.pStencilAttachment = attachments.stencil;
-  vkCmdBeginRendering(commands, &info);
-  const VkViewport viewport{0.0F, 0.0F, static_cast<float>(picture.width), static_cast<float>(picture.height),
-                            0.0F, 1.0F};
-  vkCmdSetViewport(commands, 0, 1, &viewport);
-  vkCmdSetScissor(commands, 0, 1, &area);
-}
 
 void checkExtent(const Gpu& gpu, VkExtent2D extent) {
   const VkPhysicalDeviceLimits& limits = gpu.properties().limits;
@@ -91,8 +41,7 @@ GpuImage makeDepth(Gpu& gpu, const PictureImagesInfo& info) {
   image.extent = info.extent;
   image.format = PictureImages::depthFormat(info.stencil);
   image.samples = info.samples;
-  image.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-  if (info.sampledDepth) image.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+  image.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | info.depthUsage;
   image.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
   if (info.stencil) image.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
   return {gpu, image, "depth image"};
@@ -113,24 +62,11 @@ Unique<VkImageView> makeDepthView(Gpu& gpu, const GpuImage& depth) {
 
 } // namespace
 
-void UsedImage::cmdUse(VkCommandBuffer commands, VkImageLayout layout, const Access& access) {
-  const bool same = layout == layout_ && access.stages == access_.stages && access.accesses == access_.accesses;
-  if (same && (access.accesses & ~kReads) == 0) return; // reading goes on
-  cmdImageBarrier(commands, image_.get(), image_.range(), layout_, access_, layout, access);
-  layout_ = layout;
-  access_ = access;
-}
-
-void UsedImage::forget() {
-  layout_ = VK_IMAGE_LAYOUT_UNDEFINED;
-  access_ = {};
-}
-
 PictureImages::PictureImages(Gpu& gpu, const PictureImagesInfo& info) : info_(info) {
   checkExtent(gpu, info.extent);
   color_ = UsedImage(makeColor(gpu, info, VK_SAMPLE_COUNT_1_BIT, "colour image"));
   depth_ = UsedImage(makeDepth(gpu, info));
-  if (info.sampledDepth) sampledDepth_ = makeDepthView(gpu, depth_.get());
+  if ((info.depthUsage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0) sampledDepth_ = makeDepthView(gpu, depth_.get());
   if (info.samples > VK_SAMPLE_COUNT_1_BIT) {
     multisampled_ = UsedImage(makeColor(gpu, info, info.samples, "multisampled colour image"));
   }
@@ -140,42 +76,34 @@ void PictureImages::cmdBeginOpaque(VkCommandBuffer commands, const VkClearColorV
   color_.forget();
   multisampled_.forget();
   depth_.forget();
-  // Nobody (the frame before was waited for) -> the clear and the opaque draws write colour and depth.
-  drawn().cmdUse(commands, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kColorReplace);
-  depth_.cmdUse(commands, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, kDepthWrite);
-  auto color = attachment(drawn().get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_CLEAR,
-                          VK_ATTACHMENT_STORE_OP_STORE);
-  color.clearValue.color = background;
-  auto depth = attachment(depth_.get(), VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_CLEAR,
-                          VK_ATTACHMENT_STORE_OP_STORE);
-  depth.clearValue.depthStencil = {0.0F, 0};
-  cmdBeginScope(commands, extent(), {{0, 0}, extent()}, {&color, &depth, info_.stencil ? &depth : nullptr});
+  Scope scope = wholeScope();
+  scope.colors.push_back({.image = &drawn(), .clear = background});
+  scope.depth = {.image = &depth_, .depth = AspectUse::Write, .clear = VkClearDepthStencilValue{0.0F, 0}};
+  if (info_.stencil) scope.depth.stencil = AspectUse::Write;
+  cmdBeginScope(commands, scope);
 }
 
-void PictureImages::cmdBeginTransparent(VkCommandBuffer commands, const VkRect2D& area, bool color) {
-  // The opaque draws wrote depth and cleared the stencil -> the transparent draws test the one and mark the other.
-  const VkImageLayout layout = info_.stencil ? VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL
-                                             : VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-  depth_.cmdUse(commands, layout, info_.stencil ? kDepthWrite : kDepthTest);
-  const auto depth = attachment(depth_.get(), layout, VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_STORE_OP_NONE);
-  const auto stencil = attachment(depth_.get(), layout, VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_STORE_OP_STORE);
-  const auto blended = attachment(drawn().get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_LOAD,
-                                  VK_ATTACHMENT_STORE_OP_STORE);
-  // The opaque draws wrote colour -> the transparent ones blend into it.
-  if (color) drawn().cmdUse(commands, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kColorBlend);
-  cmdBeginScope(commands, extent(), area, {color ? &blended : nullptr, &depth, info_.stencil ? &stencil : nullptr});
+Scope PictureImages::wholeScope() const {
+  Scope scope;
+  scope.extent = extent();
+  scope.area = {{0, 0}, extent()};
+  return scope;
 }
 
-void PictureImages::cmdToSampled(VkCommandBuffer commands, VkPipelineStageFlags2 stage) {
-  if (info_.samples == VK_SAMPLE_COUNT_1_BIT || info_.perSample) return;
-  // The opaque draws wrote colour -> the resolve samples it.
-  multisampled_.cmdUse(commands, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                       {stage, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT});
+Scope PictureImages::transparentScope(const VkRect2D& area) {
+  Scope scope = wholeScope();
+  scope.area = area;
+  scope.depth = {.image = &depth_, .depth = AspectUse::Test};
+  if (info_.stencil) scope.depth.stencil = AspectUse::Write;
+  return scope;
 }
 
 void PictureImages::cmdToComputeResolve(VkCommandBuffer commands) {
-  cmdToSampled(commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-  if (info_.sampledDepth) {
+  if (info_.samples > VK_SAMPLE_COUNT_1_BIT && !info_.perSample) {
+    // The opaque draws wrote colour -> the resolve samples it.
+    multisampled_.cmdUse(commands, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kComputeSample);
+  }
+  if (sampledDepth() != VK_NULL_HANDLE) {
     // The transparent draws tested depth -> the resolve samples it.
     depth_.cmdUse(commands, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, kComputeSample);
   }
@@ -183,41 +111,25 @@ void PictureImages::cmdToComputeResolve(VkCommandBuffer commands) {
   color_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
 }
 
-void PictureImages::cmdBeginResolve(VkCommandBuffer commands, const VkRect2D& area) {
-  cmdToSampled(commands, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
+Scope PictureImages::resolveScope(VkCommandBuffer commands, const VkRect2D& area) {
   const bool toOne = info_.samples > VK_SAMPLE_COUNT_1_BIT && !info_.perSample;
-  UsedImage& target = toOne ? color_ : drawn();
+  if (toOne) {
+    // The opaque draws wrote colour -> the resolve samples it.
+    multisampled_.cmdUse(commands, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kFragmentSample);
+  }
+  Scope scope = wholeScope();
+  scope.area = area;
   // The opaque draws, or the resolve of another part, wrote colour -> the resolve blends into it, or replaces it.
-  target.cmdUse(commands, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kColorBlend);
-  const auto color =
-      attachment(target.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                 toOne ? VK_ATTACHMENT_LOAD_OP_DONT_CARE : VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_STORE_OP_STORE);
-  const bool hasStencil = info_.stencil && !toOne;
-  Access depthUse;
-  if (hasStencil) depthUse = kDepthTest;
-  if (info_.sampledDepth) {
-    depthUse.stages |= kFragmentSample.stages;
-    depthUse.accesses |= kFragmentSample.accesses;
-  }
-  // The transparent draws tested depth and marked the stencil -> the resolve samples the one and tests the other.
-  if (depthUse.accesses != VK_ACCESS_2_NONE) {
-    depth_.cmdUse(commands, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, depthUse);
-  }
-  const auto stencil = attachment(depth_.get(), VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
-                                  VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_STORE_OP_NONE);
-  cmdBeginScope(commands, extent(), area, {&color, nullptr, hasStencil ? &stencil : nullptr});
+  scope.colors.push_back({.image = toOne ? &color_ : &drawn(), .keep = !toOne});
+  scope.depth = {.image = &depth_, .sampled = sampledDepth() != VK_NULL_HANDLE};
+  if (info_.stencil && !toOne) scope.depth.stencil = AspectUse::Test;
+  return scope;
 }
 
 void PictureImages::cmdBoxFilter(VkCommandBuffer commands) {
-  // The draws wrote every sample -> the end of an empty scope reads them and writes the picture.
-  multisampled_.cmdUse(commands, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kColorRead);
-  color_.cmdUse(commands, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kColorReplace);
-  auto color = attachment(multisampled_.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_LOAD,
-                          VK_ATTACHMENT_STORE_OP_NONE);
-  color.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
-  color.resolveImageView = color_.get().view();
-  color.resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  cmdBeginScope(commands, extent(), {{0, 0}, extent()}, {&color, nullptr, nullptr});
+  Scope scope = wholeScope();
+  scope.colors.push_back({.image = &multisampled_, .average = &color_});
+  cmdBeginScope(commands, scope);
   vkCmdEndRendering(commands);
 }
 

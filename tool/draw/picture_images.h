@@ -1,36 +1,18 @@
 // The images that a picture is drawn into, and the rendering scopes and barriers of a frame's passes over them.
 #pragma once
 
-#include "barrier.h"
 #include "resources.h"
+#include "scope.h"
+#include "used_image.h"
 
 namespace vitrail::tool {
 
 struct PictureImagesInfo {
   VkExtent2D extent{};
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
-  bool perSample = false;    // several samples: surfaces are blended into the multisampled image, which is box-filtered
-  bool stencil = false;      // depth has a stencil beside it
-  bool sampledDepth = false; // shaders read the depth
-};
-
-// An image that knows what it was used for last, so that each use states its own side of a barrier only.
-class UsedImage {
- public:
-  UsedImage() = default;
-  explicit UsedImage(GpuImage image) : image_(std::move(image)) {}
-
-  const GpuImage& get() const { return image_; }
-
-  // The image is used so from here on, in that layout: after what it was used for before.
-  void cmdUse(VkCommandBuffer commands, VkImageLayout layout, const Access& access);
-  // What it holds is not needed any more, and nobody uses it.
-  void forget();
-
- private:
-  GpuImage image_;
-  VkImageLayout layout_ = VK_IMAGE_LAYOUT_UNDEFINED;
-  Access access_;
+  bool perSample = false; // several samples: surfaces are blended into the multisampled image, which is box-filtered
+  bool stencil = false;   // depth has a stencil beside it
+  VkImageUsageFlags depthUsage = 0; // of depth beside being tested and written: sampled, copied
 };
 
 class PictureImages {
@@ -45,24 +27,36 @@ class PictureImages {
   }
 
   VkExtent2D extent() const { return info_.extent; }
-  const GpuImage& color() const { return color_.get(); }               // the picture: single-sample
+  VkSampleCountFlagBits samples() const { return info_.samples; }
+  VkFormat depthFormat() const { return depthFormat(info_.stencil); }
   const GpuImage& multisampled() const { return multisampled_.get(); } // none at one sample
-  VkImageView sampledDepth() const { return sampledDepth_.get(); }     // of the depth aspect; null unless asked for
+  VkImageView sampledDepth() const { return sampledDepth_.get(); }     // of the depth aspect; null unless sampled
+
+  // The picture: one sample, with storage usage.
+  UsedImage& color() { return color_; }
+  // What the opaque scope drew into, and its depth: with several samples the multisampled image, else the picture.
+  UsedImage& drawn() { return info_.samples > VK_SAMPLE_COUNT_1_BIT ? multisampled_ : color_; }
+  UsedImage& depth() { return depth_; }
 
   // Begins a rendering scope over the whole picture that clears colour to `background`, depth to 0, the far plane, and
   // stencil to 0. What the images held is lost; nobody uses them any more.
   void cmdBeginOpaque(VkCommandBuffer commands, const VkClearColorValue& background);
 
-  // After the opaque scope: begins one over `area` that tests against its depth, writes none, and has the stencil where
-  // there is one. With `color` it draws into the image that the opaque scope drew into.
-  void cmdBeginTransparent(VkCommandBuffer commands, const VkRect2D& area, bool color);
+  // A scope over the whole picture without attachments.
+  Scope wholeScope() const;
 
-  // Hands the images to a resolve by compute, as Method::cmdResolve() takes them.
+  // A scope over `area` that tests against the opaque scene's depth, writes none, and writes the stencil where there is
+  // one. It has no colour yet: that is drawn(), or images of a method's own.
+  Scope transparentScope(const VkRect2D& area);
+
+  // Hands the images to a resolve by compute: the picture, and the multisampled colour and the depth where they are
+  // sampled, which reads and writes the first in VK_IMAGE_LAYOUT_GENERAL and samples the others in
+  // VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL (colour) and VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL (depth).
   void cmdToComputeResolve(VkCommandBuffer commands);
 
-  // Begins the scope of a resolve that is drawn over `area`: into the image that the opaque scope drew into, with the
-  // stencil where there is one; where the resolve takes several samples to one, into the picture.
-  void cmdBeginResolve(VkCommandBuffer commands, const VkRect2D& area);
+  // The scope of a resolve that is drawn over `area`: into drawn(), with the stencil where there is one; where the
+  // resolve takes several samples to one, into the picture, and the others are handed over as above.
+  Scope resolveScope(VkCommandBuffer commands, const VkRect2D& area);
 
   // Takes the multisampled image to the picture, the mean of each pixel's samples.
   void cmdBoxFilter(VkCommandBuffer commands);
@@ -71,9 +65,6 @@ class PictureImages {
   void cmdToEncode(VkCommandBuffer commands);
 
  private:
-  UsedImage& drawn() { return info_.samples > VK_SAMPLE_COUNT_1_BIT ? multisampled_ : color_; }
-  void cmdToSampled(VkCommandBuffer commands, VkPipelineStageFlags2 stage);
-
   PictureImagesInfo info_;
   UsedImage color_;
   UsedImage multisampled_;

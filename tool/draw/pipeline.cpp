@@ -30,6 +30,9 @@ VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderM
   return info;
 }
 
+constexpr VkColorComponentFlags kAllChannels =
+    VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+
 constexpr VkVertexInputBindingDescription kVertexBinding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
 constexpr std::array<VkVertexInputAttributeDescription, 6> kVertexAttributes{{
     {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
@@ -70,18 +73,27 @@ VkPipelineDepthStencilStateCreateInfo depthState(const GraphicsPipelineInfo& inf
   return state;
 }
 
-VkPipelineColorBlendAttachmentState blendState(const GraphicsPipelineInfo& info) {
-  if (info.blend) return *info.blend;
-  VkPipelineColorBlendAttachmentState state{};
-  state.colorWriteMask =
-      VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  return state;
+std::vector<VkPipelineColorBlendAttachmentState> blendStates(const GraphicsPipelineInfo& info) {
+  std::vector<VkPipelineColorBlendAttachmentState> states;
+  for (const ColorOutput& color : info.colors) {
+    VkPipelineColorBlendAttachmentState replace{};
+    replace.colorWriteMask = kAllChannels;
+    states.push_back(color.blend.value_or(replace));
+  }
+  return states;
 }
 
-VkPipelineRenderingCreateInfo renderingState(const GraphicsPipelineInfo& info) {
+std::vector<VkFormat> colorFormats(const GraphicsPipelineInfo& info) {
+  std::vector<VkFormat> formats;
+  for (const ColorOutput& color : info.colors) formats.push_back(color.format);
+  return formats;
+}
+
+// `formats` outlives the result.
+VkPipelineRenderingCreateInfo renderingState(const GraphicsPipelineInfo& info, const std::vector<VkFormat>& formats) {
   auto state = vkStruct<VkPipelineRenderingCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
-  state.colorAttachmentCount = info.colorFormat != VK_FORMAT_UNDEFINED ? 1 : 0;
-  state.pColorAttachmentFormats = &info.colorFormat;
+  state.colorAttachmentCount = static_cast<std::uint32_t>(formats.size());
+  state.pColorAttachmentFormats = formats.data();
   state.depthAttachmentFormat = info.depthFormat;
   if (info.depthFormat == VK_FORMAT_D32_SFLOAT_S8_UINT) state.stencilAttachmentFormat = info.depthFormat;
   return state;
@@ -121,13 +133,13 @@ VkPipelineRasterizationStateCreateInfo rasterization() {
 } // namespace
 
 Unique<VkPipelineLayout> makePipelineLayout(Gpu& gpu, const std::vector<VkDescriptorSetLayout>& sets,
-                                            std::uint32_t computeConstantBytes, const std::string& name) {
-  const VkPushConstantRange constants{VK_SHADER_STAGE_COMPUTE_BIT, 0, computeConstantBytes};
+                                            const PushConstants& constants, const std::string& name) {
+  const VkPushConstantRange range{constants.stages, 0, constants.bytes};
   auto info = vkStruct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
   info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
   info.pSetLayouts = sets.data();
-  info.pushConstantRangeCount = computeConstantBytes > 0 ? 1 : 0;
-  info.pPushConstantRanges = &constants;
+  info.pushConstantRangeCount = constants.bytes > 0 ? 1 : 0;
+  info.pPushConstantRanges = &range;
   VkPipelineLayout layout = VK_NULL_HANDLE;
   check(vkCreatePipelineLayout(gpu.device(), &info, nullptr, &layout),
         fmt::format("vkCreatePipelineLayout ({})", name));
@@ -146,6 +158,19 @@ Unique<VkPipeline> makeComputePipeline(Gpu& gpu, VkPipelineLayout layout, std::s
         fmt::format("vkCreateComputePipelines ({})", name));
   setDebugName(gpu.device(), VK_OBJECT_TYPE_PIPELINE, pipeline, name);
   return {gpu.device(), pipeline, vkDestroyPipeline};
+}
+
+VkPipelineColorBlendAttachmentState blendWith(const BlendFactors& color, const BlendFactors& alpha) {
+  VkPipelineColorBlendAttachmentState state{};
+  state.blendEnable = VK_TRUE;
+  state.srcColorBlendFactor = color.src;
+  state.dstColorBlendFactor = color.dst;
+  state.colorBlendOp = VK_BLEND_OP_ADD;
+  state.srcAlphaBlendFactor = alpha.src;
+  state.dstAlphaBlendFactor = alpha.dst;
+  state.alphaBlendOp = VK_BLEND_OP_ADD;
+  state.colorWriteMask = kAllChannels;
+  return state;
 }
 
 Unique<VkPipeline> makeGraphicsPipeline(Gpu& gpu, const GraphicsPipelineInfo& info) {
@@ -168,11 +193,12 @@ Unique<VkPipeline> makeGraphicsPipeline(Gpu& gpu, const GraphicsPipelineInfo& in
       vkStruct<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
   multisample.rasterizationSamples = info.samples;
   const auto depth = depthState(info);
-  const VkPipelineColorBlendAttachmentState attachment = blendState(info);
-  const auto rendering = renderingState(info);
+  const std::vector<VkPipelineColorBlendAttachmentState> blending = blendStates(info);
+  const std::vector<VkFormat> formats = colorFormats(info);
+  const auto rendering = renderingState(info, formats);
   auto blend = vkStruct<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
-  blend.attachmentCount = rendering.colorAttachmentCount;
-  blend.pAttachments = &attachment;
+  blend.attachmentCount = static_cast<std::uint32_t>(blending.size());
+  blend.pAttachments = blending.data();
   const auto dynamic = dynamicState(info.surface);
 
   auto create = vkStruct<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
@@ -193,15 +219,6 @@ Unique<VkPipeline> makeGraphicsPipeline(Gpu& gpu, const GraphicsPipelineInfo& in
         fmt::format("vkCreateGraphicsPipelines ({})", info.name));
   setDebugName(gpu.device(), VK_OBJECT_TYPE_PIPELINE, pipeline, info.name);
   return {gpu.device(), pipeline, vkDestroyPipeline};
-}
-
-VkPipeline SurfacePipelines::get(std::uint32_t features) {
-  const auto found = pipelines_.find(features);
-  if (found != pipelines_.end()) return found->second.get();
-  GraphicsPipelineInfo info = describe_(features);
-  info.constants.emplace_back(0, features);
-  info.name = fmt::format("{} (features {:#x})", info.name, features);
-  return pipelines_.emplace(features, makeGraphicsPipeline(gpu_, info)).first->second.get();
 }
 
 } // namespace vitrail::tool

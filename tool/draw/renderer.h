@@ -56,11 +56,12 @@ struct FrameReport {
   std::uint64_t headsBytes = 0;
   std::uint64_t totalBytes = 0; // all that the method keeps for the picture: nodes, heads, lists, counters
   std::uint64_t peakBytes = 0;  // the most device memory that the tool and the library held at once
-  // GPU time, in order. With fragment lists: opaque, clear, collect, resolve, encode; unsorted: opaque, blend, encode;
-  // a multisampled picture has box_filter before encode. Summed over tiles. Empty, and frameMs 0, on devices without
+  // GPU time, in order: opaque, the passes that the method names, encode. With fragment lists those are clear, collect
+  // and resolve; unsorted has blend; a multisampled picture has box_filter before encode. Summed over tiles. What the
+  // host works on a frame before the GPU can go on stands among them, as sort. Empty, and frameMs 0, on devices without
   // timestamps.
   std::vector<std::pair<std::string, double>> passesMs;
-  double frameMs = 0.0; // GPU time of all passes
+  double frameMs = 0.0; // of all passes
 };
 
 struct RenderResult {

@@ -29,12 +29,15 @@ Submitter::Submitter(Gpu& gpu) : gpu_(gpu) {
   setDebugName(gpu.device(), VK_OBJECT_TYPE_FENCE, fence, "commands executed");
 }
 
-void Submitter::run(const std::string& what, const std::function<void(VkCommandBuffer)>& record) {
+VkCommandBuffer Submitter::begin() {
   check(vkResetCommandPool(gpu_.device(), pool_.get(), 0), "vkResetCommandPool");
   auto begin = vkStruct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
-  record(commands_);
+  return commands_;
+}
+
+void Submitter::execute(const std::string& what) {
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer (" + what + ")");
 
   auto commandInfo = vkStruct<VkCommandBufferSubmitInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO);
@@ -46,6 +49,11 @@ void Submitter::run(const std::string& what, const std::function<void(VkCommandB
   check(vkQueueSubmit2(gpu_.queue(), 1, &submit, fence), "vkQueueSubmit2 (" + what + ")");
   check(vkWaitForFences(gpu_.device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences (" + what + ")");
   check(vkResetFences(gpu_.device(), 1, &fence), "vkResetFences");
+}
+
+void Submitter::run(const std::string& what, const std::function<void(VkCommandBuffer)>& record) {
+  record(begin());
+  execute(what);
 }
 
 } // namespace vitrail::tool

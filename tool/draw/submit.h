@@ -13,7 +13,12 @@ class Submitter {
  public:
   explicit Submitter(Gpu& gpu);
 
-  // Calls `record` with a command buffer and returns when the GPU has executed it. `what` names the work in errors.
+  // Begins a command buffer, which is recorded until execute(). What was begun before is dropped.
+  VkCommandBuffer begin();
+  // Ends the command buffer, submits it and returns when the GPU has executed it. `what` names the work in errors.
+  void execute(const std::string& what);
+
+  // Both, with `record` in between.
   void run(const std::string& what, const std::function<void(VkCommandBuffer)>& record);
 
  private:

@@ -56,13 +56,20 @@ void Timers::addSubmission() {
         "vkGetQueryPoolResults");
   const double msPerTick = static_cast<double>(gpu_.properties().limits.timestampPeriod) * 1e-6;
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    const double elapsed = static_cast<double>((ticks[i + 1] - ticks[i]) & mask_) * msPerTick;
-    const auto known = std::ranges::find(frame_, names_[i], &std::pair<std::string, double>::first);
-    if (known == frame_.end()) {
-      frame_.emplace_back(names_[i], elapsed);
-    } else {
-      known->second += elapsed;
-    }
+    add(names_[i], static_cast<double>((ticks[i + 1] - ticks[i]) & mask_) * msPerTick);
+  }
+}
+
+void Timers::addHostPass(const std::string& name, double milliseconds) {
+  if (mask_ != 0) add(name, milliseconds);
+}
+
+void Timers::add(const std::string& name, double milliseconds) {
+  const auto known = std::ranges::find(frame_, name, &std::pair<std::string, double>::first);
+  if (known == frame_.end()) {
+    frame_.emplace_back(name, milliseconds);
+  } else {
+    known->second += milliseconds;
   }
 }
 

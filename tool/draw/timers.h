@@ -21,6 +21,8 @@ class Timers {
   void cmdStart(VkCommandBuffer commands);
   // The pass `name` ends here, and the next one starts. Outside a rendering scope.
   void cmdEndPass(VkCommandBuffer commands, const std::string& name);
+  // Adds milliseconds that the host worked on the frame for while the GPU had nothing to do.
+  void addHostPass(const std::string& name, double milliseconds);
   // Adds the submission's passes to the frame's, once the GPU has executed it. A pass that comes again is summed.
   void addSubmission();
 
@@ -28,6 +30,7 @@ class Timers {
   const std::vector<std::pair<std::string, double>>& milliseconds() const { return frame_; }
 
  private:
+  void add(const std::string& name, double milliseconds);
   void cmdStamp(VkCommandBuffer commands);
 
   Gpu& gpu_;

@@ -1,12 +1,10 @@
 #include "insertion.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include <fmt/format.h>
 
-#include "../draw/barrier.h"
-#include "../draw/vk.h"
+#include "../draw/accesses.h"
 #include "shaders/insertion_collect.frag.h"
 #include "shaders/insertion_resolve.comp.h"
 
@@ -18,37 +16,35 @@ constexpr std::uint64_t kNodeBytes = 12;
 constexpr std::uint64_t kNodesPerPixel = 4; // the first guess
 constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
 
-GpuBuffer makeBuffer(Gpu& gpu, std::uint64_t bytes, MemoryKind kind, const char* name) {
-  constexpr VkBufferUsageFlags kUsage =
-      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-  return {gpu, bytes, kUsage, kind, name};
-}
-
 std::uint32_t groups(std::uint32_t pixels) {
   return (pixels + shaders::INSERTION_GROUP_SIDE - 1) / shaders::INSERTION_GROUP_SIDE;
 }
 
+SurfacePipelines makeCollect(const MethodHost& host, VkDescriptorSetLayout set) {
+  return {host.surfaces,
+          host.surfaces.scene().transparentDraws(),
+          {.set = set, .name = "insertion collect"},
+          [](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
+            info.fragmentShader = shaders::insertion_collect_frag;
+            info.depthFormat = PictureImages::depthFormat(false);
+          }};
+}
+
 } // namespace
 
-Insertion::Insertion(Gpu& gpu)
-    : gpu_(gpu),
-      set_(gpu,
+Insertion::Insertion(const MethodHost& host)
+    : gpu_(host.gpu),
+      set_(gpu_,
            {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages}, // control
             {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kStages},  // heads
             {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages}, // nodes
             {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kStages}}, // colour, of the resolve
            "insertion"),
-      layout_(makePipelineLayout(gpu, {set_.layout()}, 0, "insertion")),
-      resolve_(makeComputePipeline(gpu, layout_.get(), shaders::insertion_resolve_comp, "insertion resolve")),
-      control_(makeBuffer(gpu, sizeof(shaders::InsertionControl), MemoryKind::Device, "insertion control")),
-      readback_(makeBuffer(gpu, sizeof(shaders::InsertionControl), MemoryKind::Readback, "insertion counts")) {
-  set_.writeBuffer(0, control_.get(), control_.size());
-}
-
-SurfaceDrawing Insertion::surface(std::uint32_t /*features*/) const {
-  SurfaceDrawing drawing;
-  drawing.fragmentShader = shaders::insertion_collect_frag;
-  return drawing;
+      surfaces_(makeCollect(host, set_.layout())),
+      layout_(makePipelineLayout(gpu_, {set_.layout()}, {}, "insertion")),
+      resolve_(makeComputePipeline(gpu_, layout_.get(), shaders::insertion_resolve_comp, "insertion resolve")),
+      control_(gpu_, sizeof(shaders::InsertionControl), "insertion control") {
+  set_.writeBuffer(0, control_.buffer().get(), control_.buffer().size());
 }
 
 // What the pool may have: what one shader can reach, one allocation can hold, and the budget.
@@ -60,24 +56,21 @@ std::uint64_t Insertion::mostNodes() const {
 void Insertion::makePool(std::uint64_t nodes) {
   nodes_ = GpuBuffer();                          // first: the old pool and the new one need not fit together
   capacity_ = std::max<std::uint64_t>(nodes, 1); // there are no empty buffers
-  nodes_ = makeBuffer(gpu_, capacity_ * kNodeBytes, MemoryKind::Device, "insertion nodes");
+  nodes_ = GpuBuffer(gpu_, capacity_ * kNodeBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryKind::Device,
+                     "insertion nodes");
   set_.writeBuffer(2, nodes_.get(), nodes_.size());
 }
 
 void Insertion::setTarget(const MethodTarget& target) {
-  const bool sameSize = heads_.get() != VK_NULL_HANDLE && target.extent.width == target_.extent.width &&
-                        target.extent.height == target_.extent.height;
-  const bool samePool = sameSize && target.nodeCapacity == target_.nodeCapacity &&
+  GpuImageInfo info;
+  info.extent = target.extent;
+  info.format = VK_FORMAT_R32_UINT;
+  info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  const bool resized = heads_.ensure(gpu_, info, "insertion heads");
+  const bool samePool = !resized && nodes_.get() != VK_NULL_HANDLE && target.nodeCapacity == target_.nodeCapacity &&
                         target.memoryBudget == target_.memoryBudget && target.surfaces == target_.surfaces;
   target_ = target;
-  if (!sameSize) {
-    GpuImageInfo info;
-    info.extent = target.extent;
-    info.format = VK_FORMAT_R32_UINT;
-    info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    heads_ = GpuImage(gpu_, info, "insertion heads");
-    set_.writeImage(1, heads_.view(), VK_IMAGE_LAYOUT_GENERAL);
-  }
+  if (resized) set_.writeImage(1, heads_.get().view(), VK_IMAGE_LAYOUT_GENERAL);
   set_.writeImage(3, target.color, VK_IMAGE_LAYOUT_GENERAL);
   if (samePool) return;
   const std::uint64_t pixels = std::uint64_t{target.extent.width} * target.extent.height;
@@ -86,54 +79,56 @@ void Insertion::setTarget(const MethodTarget& target) {
 }
 
 void Insertion::releaseTarget() {
-  heads_ = GpuImage();
+  heads_ = UsedImage();
   nodes_ = GpuBuffer();
 }
 
-void Insertion::cmdBegin(VkCommandBuffer commands, std::uint64_t /*frame*/, const VkRect2D& /*area*/) {
-  // The last frame's resolve and copy read the heads and counters -> they are cleared; their content is not needed.
-  const Access before{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_NONE};
-  const Access clear{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT}; // of image and buffer
-  cmdImageBarrier(commands, heads_.get(), heads_.range(), VK_IMAGE_LAYOUT_UNDEFINED, before, VK_IMAGE_LAYOUT_GENERAL,
-                  clear);
+void Insertion::draw(Frame& frame) {
+  clear(frame);
+  frame.endPass("clear");
+  collect(frame);
+  frame.endPass("collect");
+  sortAndBlend(frame);
+  frame.endPass("resolve");
+}
+
+void Insertion::clear(Frame& frame) {
+  VkCommandBuffer commands = frame.commands();
+  // The last frame's resolve read the heads -> they are cleared.
+  heads_.discard();
+  heads_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kClear);
   VkClearColorValue empty{};
   empty.uint32[0] = UINT32_MAX;
-  const VkImageSubresourceRange all = heads_.range();
-  vkCmdClearColorImage(commands, heads_.get(), VK_IMAGE_LAYOUT_GENERAL, &empty, 1, &all);
-  vkCmdFillBuffer(commands, control_.get(), 0, control_.size(), 0);
+  const VkImageSubresourceRange all = heads_.get().range();
+  vkCmdClearColorImage(commands, heads_.get().get(), VK_IMAGE_LAYOUT_GENERAL, &empty, 1, &all);
   // The clears -> the collect pass reads and writes heads and counters.
-  cmdMemoryBarrier(commands, clear,
-                   {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-                    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT});
+  heads_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kFragmentReadWrite);
+  control_.cmdClear(commands, kFragmentReadWrite);
 }
 
-void Insertion::cmdCollected(VkCommandBuffer commands) {
-  // The collect pass wrote heads, nodes and counters -> the resolve reads them, and counts.
-  cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT},
-                   {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT});
+void Insertion::collect(Frame& frame) {
+  PictureImages& images = frame.images();
+  cmdBeginScope(frame.commands(), images.transparentScope({{0, 0}, images.extent()}));
+  frame.drawSurfaces(surfaces_, set_.set());
+  vkCmdEndRendering(frame.commands());
+  // The collect pass wrote nodes and counters -> the resolve reads them, and counts.
+  cmdMemoryBarrier(frame.commands(), kFragmentWrite, kComputeReadWrite);
+  // It wrote heads -> the resolve reads them.
+  heads_.cmdUse(frame.commands(), VK_IMAGE_LAYOUT_GENERAL, kComputeRead);
 }
 
-void Insertion::cmdResolve(VkCommandBuffer commands) {
+void Insertion::sortAndBlend(Frame& frame) {
+  VkCommandBuffer commands = frame.commands();
+  frame.images().cmdToComputeResolve(commands);
   const VkDescriptorSet set = set_.set();
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, resolve_.get());
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
   vkCmdDispatch(commands, groups(target_.extent.width), groups(target_.extent.height), 1);
+  control_.cmdRead(commands, kComputeWrite);
 }
 
-void Insertion::cmdEnd(VkCommandBuffer commands) {
-  // The resolve counted -> the copy reads.
-  cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT},
-                   {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
-  const VkBufferCopy all{0, 0, control_.size()};
-  vkCmdCopyBuffer(commands, control_.get(), readback_.get(), 1, &all);
-  // The copy wrote -> the host reads after the fence.
-  cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
-                   {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
-}
-
-bool Insertion::finishArea(std::uint64_t /*frame*/) {
-  const std::uint64_t wanted = static_cast<const shaders::InsertionControl*>(readback_.mapped())->taken;
+bool Insertion::finish() {
+  const std::uint64_t wanted = control_.read<shaders::InsertionControl>().taken;
   if (wanted <= capacity_ || target_.nodeCapacity) return true;
   if (wanted > mostNodes()) {
     throw GpuError(
@@ -146,8 +141,7 @@ bool Insertion::finishArea(std::uint64_t /*frame*/) {
 }
 
 MethodStats Insertion::stats() const {
-  shaders::InsertionControl control{};
-  std::memcpy(&control, readback_.mapped(), sizeof(control));
+  const auto control = control_.read<shaders::InsertionControl>();
   std::uint64_t dropped = 0;
   std::uint64_t covered = 0;
   MethodStats stats;
@@ -165,7 +159,7 @@ MethodStats Insertion::stats() const {
   stats.layersMean = covered > 0 ? static_cast<double>(inLists) / static_cast<double>(covered) : 0.0;
   stats.nodesBytes = capacity_ * kNodeBytes;
   stats.headsBytes = std::uint64_t{target_.extent.width} * target_.extent.height * sizeof(std::uint32_t);
-  stats.totalBytes = stats.nodesBytes + stats.headsBytes + control_.size() + readback_.size();
+  stats.totalBytes = stats.nodesBytes + stats.headsBytes + control_.bytes();
   return stats;
 }
 

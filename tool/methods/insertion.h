@@ -7,10 +7,10 @@
 
 #include <cstdint>
 
+#include "../draw/counters.h"
 #include "../draw/descriptors.h"
-#include "../draw/pipeline.h"
-#include "../draw/resources.h"
 #include "../draw/shaders/insertion_shared.h"
+#include "../draw/used_image.h"
 #include "method.h"
 
 namespace vitrail::tool {
@@ -18,34 +18,32 @@ namespace vitrail::tool {
 class Insertion final : public Method {
  public:
   // Throws GpuError.
-  explicit Insertion(Gpu& gpu);
+  explicit Insertion(const MethodHost& host);
 
   std::string_view name() const override { return "insertion"; }
+  std::string_view resolve() const override { return "compute"; }
   MethodNeeds needs() const override { return {}; }
-  SurfaceDrawing surface(std::uint32_t features) const override;
-  VkDescriptorSetLayout surfaceLayout() const override { return set_.layout(); }
-  VkDescriptorSet surfaceSet() const override { return set_.set(); }
   void setTarget(const MethodTarget& target) override;
   void releaseTarget() override;
-  void cmdBegin(VkCommandBuffer commands, std::uint64_t frame, const VkRect2D& area) override;
-  void cmdCollected(VkCommandBuffer commands) override;
-  void cmdResolve(VkCommandBuffer commands) override;
-  void cmdEnd(VkCommandBuffer commands) override;
-  bool finishArea(std::uint64_t frame) override;
+  void draw(Frame& frame) override;
+  bool finish() override;
   MethodStats stats() const override;
 
  private:
   std::uint64_t mostNodes() const;
   void makePool(std::uint64_t nodes);
+  void clear(Frame& frame);
+  void collect(Frame& frame);
+  void sortAndBlend(Frame& frame);
 
   Gpu& gpu_;
   SingleSet set_; // of both passes
+  SurfacePipelines surfaces_;
   Unique<VkPipelineLayout> layout_;
   Unique<VkPipeline> resolve_;
-  GpuBuffer control_;  // shaders::InsertionControl
-  GpuBuffer readback_; // a copy of it
+  Counters control_; // shaders::InsertionControl
   MethodTarget target_;
-  GpuImage heads_;
+  UsedImage heads_;
   GpuBuffer nodes_;
   std::uint64_t capacity_ = 0;
 };

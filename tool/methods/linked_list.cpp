@@ -1,9 +1,10 @@
 #include "linked_list.h"
 
 #include <algorithm>
-#include <array>
+#include <cstring>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -41,6 +42,21 @@ VkSampleCountFlagBits flagOf(std::uint32_t samples) {
 
 std::uint64_t pixelsOf(VkExtent2D extent) { return std::uint64_t{extent.width} * extent.height; }
 
+// The boxes of the transparent surfaces as the library takes them, seen with the frame's view.
+std::vector<VitrailBounds> boxesOf(const Surfaces& surfaces) {
+  std::vector<VitrailBounds> result;
+  result.reserve(surfaces.scene().transparentBoxes().size());
+  for (const PlacedBox& placed : surfaces.scene().transparentBoxes()) {
+    const glm::mat4 clip(glm::dmat4(surfaces.view().viewProjection) * glm::dmat4(placed.model));
+    VitrailBounds bounds{};
+    std::memcpy(bounds.min, &placed.box.min, sizeof(bounds.min));
+    std::memcpy(bounds.max, &placed.box.max, sizeof(bounds.max));
+    std::memcpy(bounds.clipFromBox, &clip, sizeof(bounds.clipFromBox));
+    result.push_back(bounds);
+  }
+  return result;
+}
+
 bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
   return a.extent.width == b.extent.width && a.extent.height == b.extent.height && a.color == b.color &&
          a.opaque == b.opaque && a.depth == b.depth && a.nodeCapacity == b.nodeCapacity &&
@@ -49,22 +65,32 @@ bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
 
 } // namespace
 
-LinkedList::LinkedList(Gpu& gpu, const MethodOptions& options) : gpu_(gpu), options_(options) {
-  const GpuFeatures& features = gpu.features();
+LinkedList::LinkedList(const MethodHost& host, const MethodOptions& options) : gpu_(host.gpu), options_(options) {
+  makeContext();
+  chooseResolve();
+  makeSurfaces(host.surfaces);
+}
+
+LinkedList::~LinkedList() { gpu_.memoryFreed(counted_); }
+
+void LinkedList::makeContext() {
   VitrailContextDesc desc{};
-  desc.instance = gpu.instance();
-  desc.physicalDevice = gpu.physicalDevice();
-  desc.device = gpu.device();
+  desc.instance = gpu_.instance();
+  desc.physicalDevice = gpu_.physicalDevice();
+  desc.device = gpu_.device();
   desc.getInstanceProcAddr = vkGetInstanceProcAddr;
-  desc.features = libraryFeatures(features);
+  desc.features = libraryFeatures(gpu_.features());
   desc.log = remember;
   desc.logUser = &reason_;
   check(Context::create(desc, context_), "vitrailCreateContext");
+}
 
-  needs_.perSample = options.samples > 1 && options.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
+void LinkedList::chooseResolve() {
+  const GpuFeatures& features = gpu_.features();
+  needs_.perSample = options_.samples > 1 && options_.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
   if (needs_.perSample && !features.sampleRateShading) {
-    throw GpuError(
-        fmt::format("{} does not shade samples one by one: use --msaa-resolve per-pixel", gpu.properties().deviceName));
+    throw GpuError(fmt::format("{} does not shade samples one by one: use --msaa-resolve per-pixel",
+                               gpu_.properties().deviceName));
   }
   if (options_.resolve == VITRAIL_RESOLVE_DEFAULT) {
     VitrailTargetDesc target = targetDesc();
@@ -73,30 +99,30 @@ LinkedList::LinkedList(Gpu& gpu, const MethodOptions& options) : gpu_(gpu), opti
     options_.resolve = context_.defaultResolve(target);
   }
   const bool drawn = options_.resolve == VITRAIL_RESOLVE_FRAGMENT;
-  needs_.blending = drawn ? Blending::InScope : Blending::Compute;
-  needs_.stencil = drawn && (options.samples == 1 || needs_.perSample) && features.stencil;
-  needs_.sampledDepth = options.samples > 1 && !features.postDepthCoverage;
+  needs_.stencil = drawn && (options_.samples == 1 || needs_.perSample) && features.stencil;
+  if (options_.samples > 1 && !features.postDepthCoverage) needs_.depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
 }
 
-LinkedList::~LinkedList() { gpu_.memoryFreed(counted_); }
-
-SurfaceDrawing LinkedList::surface(std::uint32_t /*features*/) const {
+void LinkedList::makeSurfaces(const Surfaces& surfaces) {
   const bool coverage = options_.samples > 1 && gpu_.features().postDepthCoverage;
   const bool address = gpu_.features().bufferDeviceAddress;
-  SurfaceDrawing drawing;
-  if (coverage && address) drawing.fragmentShader = shaders::collect_coverage_address_frag;
-  if (coverage && !address) drawing.fragmentShader = shaders::collect_coverage_frag;
-  if (!coverage && address) drawing.fragmentShader = shaders::collect_address_frag;
-  if (!coverage && !address) drawing.fragmentShader = shaders::collect_frag;
-
   const VitrailTargetDesc desc = targetDesc();
   VitrailSpecialization specialization{};
   vitrailCollectSpecialization(&desc, &specialization);
-  for (std::size_t i = 0; i < std::size(specialization.entries); ++i) {
-    drawing.constants.emplace_back(specialization.entries[i].constantID, specialization.data[i]);
-  }
-  if (needs_.stencil) vitrailStencilMark(&drawing.stencil);
-  return drawing;
+  const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
+    if (coverage && address) info.fragmentShader = shaders::collect_coverage_address_frag;
+    if (coverage && !address) info.fragmentShader = shaders::collect_coverage_frag;
+    if (!coverage && address) info.fragmentShader = shaders::collect_address_frag;
+    if (!coverage && !address) info.fragmentShader = shaders::collect_frag;
+    for (std::size_t i = 0; i < std::size(specialization.entries); ++i) {
+      info.constants.emplace_back(specialization.entries[i].constantID, specialization.data[i]);
+    }
+    info.samples = flagOf(options_.samples);
+    info.depthFormat = PictureImages::depthFormat(needs_.stencil);
+    if (needs_.stencil) vitrailStencilMark(&info.stencil.emplace());
+  };
+  const SurfaceProgram program{.set = context_.descriptorSetLayout(), .name = "collect"};
+  surfaces_.emplace(surfaces, surfaces.scene().transparentDraws(), program, describe);
 }
 
 // All but the memory and the images.
@@ -127,7 +153,7 @@ void LinkedList::setTarget(const MethodTarget& target) {
   expected_ = 0;
   budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
   inTiles_ = target.memoryBudget.has_value() && !target.nodeCapacity;
-  if (inTiles_) return; // startPicture() knows how large the tiles are
+  if (inTiles_) return; // drawTiles() knows how large the tiles are
   if (target.nodeCapacity) {
     if (createWholeTarget(*target.nodeCapacity)) return;
     check(VK_ERROR_OUT_OF_DEVICE_MEMORY, "vitrailCreateTarget");
@@ -154,7 +180,7 @@ bool LinkedList::createTarget(const VitrailTargetDesc& desc) {
   full.views.count = 1;
   full.views.color = &wanted_.color;
   if (options_.samples > 1 && !needs_.perSample) full.views.opaque = &wanted_.opaque;
-  if (needs_.sampledDepth) full.views.depth = &wanted_.depth;
+  if (needs_.depthUsage != 0) full.views.depth = &wanted_.depth;
   const VkResult result = Target::create(context_, full, target_);
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) return false; // the reason stays, in case that it ends the program
   check(result, "vitrailCreateTarget");
@@ -172,12 +198,51 @@ void LinkedList::releaseTarget() {
   gpu_.memoryFreed(std::exchange(counted_, 0));
 }
 
-void LinkedList::startPicture(std::span<const VitrailBounds> bounds) {
+void LinkedList::draw(Frame& frame) {
   stats_ = {};
   stats_.tiles = 0;
   stats_.exact = true;
   coveredPixels_ = 0;
-  if (inTiles_) planTiles(bounds);
+  wasInTiles_ = inTiles_;
+  if (inTiles_) return drawTiles(frame);
+  drawArea(frame, {{0, 0}, wanted_.extent});
+}
+
+// Every tile is waited for: what it reports decides whether its parts come next.
+void LinkedList::drawTiles(Frame& frame) {
+  frame.submitAndWait(); // the opaque scene
+  planTiles(boxesOf(frame.surfaces()));
+  VkRect2D tile{};
+  while (plan_ && plan_.next(tile)) {
+    drawArea(frame, tile);
+    frame.submitAndWait();
+    const VitrailStats stats = readStats();
+    check(plan_.finish(stats), "vitrailFinishTile");
+    if (stats.fragmentsMissing == 0) add(stats); // else its parts come next
+    expected_ = stats_.fragmentsRequested;
+  }
+}
+
+void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
+  VkCommandBuffer commands = frame.commands();
+  PictureImages& images = frame.images();
+  target_.begin(commands, {++frame_, area});
+  frame.endPass("clear");
+  cmdBeginScope(commands, images.transparentScope(area));
+  frame.drawSurfaces(*surfaces_, target_.descriptorSet());
+  vkCmdEndRendering(commands);
+  target_.collected(commands);
+  frame.endPass("collect");
+  if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT) {
+    cmdBeginScope(commands, images.resolveScope(commands, area));
+    target_.resolve(commands);
+    vkCmdEndRendering(commands);
+  } else {
+    images.cmdToComputeResolve(commands);
+    target_.resolve(commands);
+  }
+  target_.end(commands);
+  frame.endPass("resolve");
 }
 
 void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
@@ -202,25 +267,15 @@ void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
   }
 }
 
-std::optional<VkRect2D> LinkedList::nextTile() {
-  VkRect2D tile{};
-  if (!plan_ || !plan_.next(tile)) return std::nullopt;
-  return tile;
-}
-
-void LinkedList::cmdBegin(VkCommandBuffer commands, std::uint64_t frame, const VkRect2D& area) {
-  target_.begin(commands, {frame, area});
-}
-
-bool LinkedList::finishArea(std::uint64_t frame) {
+VitrailStats LinkedList::readStats() const {
   VitrailStats stats{};
-  check(target_.readStats(frame, stats), "vitrailReadStats");
-  if (inTiles_) {
-    check(plan_.finish(stats), "vitrailFinishTile");
-    if (stats.fragmentsMissing == 0) add(stats); // else its parts come next
-    expected_ = stats_.fragmentsRequested;
-    return true;
-  }
+  check(target_.readStats(frame_, stats), "vitrailReadStats");
+  return stats;
+}
+
+bool LinkedList::finish() {
+  if (wasInTiles_) return true;
+  const VitrailStats stats = readStats();
   add(stats);
   if (stats.fragmentsMissing == 0 || wanted_.nodeCapacity) return true;
   grow(stats.fragmentsRequested);

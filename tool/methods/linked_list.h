@@ -5,6 +5,8 @@
 // device can hold, is drawn in tiles.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 
 #include <vitrail/vitrail.hpp>
@@ -17,33 +19,30 @@ namespace vitrail::tool {
 class LinkedList final : public Method {
  public:
   // Throws GpuError.
-  LinkedList(Gpu& gpu, const MethodOptions& options);
+  LinkedList(const MethodHost& host, const MethodOptions& options);
   ~LinkedList() override;
 
   std::string_view name() const override { return "linked-list"; }
   std::string_view nodes() const override { return nameOf(options_.nodes); }
+  std::string_view resolve() const override { return nameOf(options_.resolve); }
   MethodNeeds needs() const override { return needs_; }
-  SurfaceDrawing surface(std::uint32_t features) const override;
-  VkDescriptorSetLayout surfaceLayout() const override { return context_.descriptorSetLayout(); }
-  VkDescriptorSet surfaceSet() const override { return target_.descriptorSet(); }
   void setTarget(const MethodTarget& target) override;
   void releaseTarget() override;
-
-  void startPicture(std::span<const VitrailBounds> bounds) override;
-  bool inTiles() const override { return inTiles_; }
-  std::optional<VkRect2D> nextTile() override;
-  void cmdBegin(VkCommandBuffer commands, std::uint64_t frame, const VkRect2D& area) override;
-  void cmdCollected(VkCommandBuffer commands) override { target_.collected(commands); }
-  void cmdResolve(VkCommandBuffer commands) override { target_.resolve(commands); }
-  void cmdEnd(VkCommandBuffer commands) override { target_.end(commands); }
-  bool finishArea(std::uint64_t frame) override;
+  void draw(Frame& frame) override;
+  bool finish() override;
   MethodStats stats() const override;
 
  private:
+  void makeContext();
+  void chooseResolve();
+  void makeSurfaces(const Surfaces& surfaces);
   VitrailTargetDesc targetDesc() const;
   bool createTarget(const VitrailTargetDesc& desc);
   bool createWholeTarget(std::uint32_t nodeCapacity);
   void planTiles(std::span<const VitrailBounds> bounds);
+  void drawTiles(Frame& frame);
+  void drawArea(Frame& frame, const VkRect2D& area);
+  VitrailStats readStats() const;
   void grow(std::uint64_t fragments);
   void add(const VitrailStats& stats);
   void check(VkResult result, const char* call) const;
@@ -53,12 +52,15 @@ class LinkedList final : public Method {
   MethodNeeds needs_;
   std::string reason_; // what the library last logged
   Context context_;
+  std::optional<SurfacePipelines> surfaces_;
   Target target_;
+  std::uint64_t frame_ = 0;  // of the target: rises with every area
   TilePlan plan_;            // where inTiles_
   VitrailTargetDesc made_{}; // what target_ was made for; its pointers are not kept
   MethodTarget wanted_;
-  std::uint64_t budget_ = 0; // bytes for a tile
-  bool inTiles_ = false;
+  std::uint64_t budget_ = 0;   // bytes for a tile
+  bool inTiles_ = false;       // the next picture is
+  bool wasInTiles_ = false;    // the present picture is
   std::uint64_t expected_ = 0; // the fragments of the last picture, 0 where that is not known
   std::uint64_t counted_ = 0;  // the target's bytes, as the Gpu counts them
   MethodStats stats_;          // of the present picture's areas so far

@@ -1,16 +1,23 @@
-// The one place that knows which methods there are.
+// The one place that knows how each method is made.
 #include "method.h"
+
+#include <stdexcept>
 
 #include "insertion.h"
 #include "linked_list.h"
+#include "sorted.h"
+#include "sorted_triangles.h"
 #include "unsorted.h"
 
 namespace vitrail::tool {
 
-std::unique_ptr<Method> makeMethod(Gpu& gpu, const MethodOptions& options) {
-  if (options.name == "unsorted") return std::make_unique<Unsorted>(gpu);
-  if (options.name == "insertion") return std::make_unique<Insertion>(gpu);
-  return std::make_unique<LinkedList>(gpu, options);
+std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& options) {
+  if (options.name == "linked-list") return std::make_unique<LinkedList>(host, options);
+  if (options.name == "unsorted") return std::make_unique<Unsorted>(host, options);
+  if (options.name == "sorted") return std::make_unique<Sorted>(host, options);
+  if (options.name == "sorted-triangles") return std::make_unique<SortedTriangles>(host, options);
+  if (options.name == "insertion") return std::make_unique<Insertion>(host);
+  throw std::logic_error("a method that cannot be made: " + options.name);
 }
 
 } // namespace vitrail::tool

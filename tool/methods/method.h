@@ -1,63 +1,51 @@
-// A transparency method, as the host renderer sees it. The renderer draws the opaque scene, then between cmdBegin() and
-// cmdCollected() all transparent surfaces the way the method wants them drawn, and the method blends them.
+// A transparency method, as the host renderer sees it. The renderer draws the opaque scene; the method draws the
+// transparent surfaces over it, in as many passes as it takes, with what a Frame gives it (draw/frame.h).
+//
+// A method is a file of its own: a class whose constructor makes its pipelines, an entry in makeMethod() (method.cpp)
+// and one in the table of method_options.cpp, which says what options it has; others are refused.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
-#include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
-#include <vitrail/vitrail.h>
 #include <volk.h>
 
 #include "../draw/device.h"
+#include "../draw/frame.h"
+#include "../draw/surfaces.h"
 #include "method_options.h"
 
 namespace vitrail::tool {
 
-// Where a method turns what was collected into colour.
-enum class Blending {
-  AsDrawn, // nowhere: surfaces blend into the colour image as they are drawn
-  Compute, // compute shaders write the picture's colour image
-  InScope, // a draw inside the renderer's rendering scope
-};
-
-// What a method asks of the renderer for every frame.
+// What a method asks of the renderer's images.
 struct MethodNeeds {
-  Blending blending = Blending::Compute;
   // Several samples: whether the method leaves a multisampled picture, which the renderer box-filters, or writes the
-  // single-sample one from the multisampled opaque images.
+  // single-sample one from the multisampled opaque images, whose colour then is sampled.
   bool perSample = false;
-  // Surfaces are drawn with a stencil, 0 after the opaque scene; an InScope resolve of a multisampled picture, or of
-  // one sample, has it too.
-  bool stencil = false;
-  bool sampledDepth = false; // the resolve samples the multisampled depth
+  bool stencil = false;             // beside the opaque depth: 0 after the opaque scene
+  VkImageUsageFlags depthUsage = 0; // of the opaque depth beside the depth test: sampled, copied
 };
 
-// How a method draws the transparent surfaces of one kind.
-struct SurfaceDrawing {
-  std::span<const std::uint32_t> fragmentShader; // SPIR-V. Sets 0 and 1 are the renderer's, shaders/surface.glsl
-  // Specialization constants, id and value. Constant 0 is the renderer's.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> constants;
-  // The blending into colour; required where Blending is AsDrawn, and unused elsewhere: there is no colour attachment.
-  VkPipelineColorBlendAttachmentState blend{};
-  VkStencilOpState stencil{}; // where MethodNeeds::stencil is set
+// What a method is made for.
+struct MethodHost {
+  Gpu& gpu;                 // outlives the method
+  const Surfaces& surfaces; // so do these
+  const Scene& scene;       // what they show; there while the method is made
 };
 
-// The images of a picture. The renderer holds them, R16G16B16A16_SFLOAT with premultiplied linear colour. With several
-// samples a method reads the multisampled ones and writes the single-sample one, unless it is perSample.
+// The images of a picture, for descriptors. The renderer holds them, R16G16B16A16_SFLOAT with premultiplied linear
+// colour; Frame::images() has them too.
 struct MethodTarget {
   VkExtent2D extent{};
   VkImageView color = VK_NULL_HANDLE;  // single-sample, with storage usage
   VkImageView opaque = VK_NULL_HANDLE; // samples > 1: the multisampled colour, with sampled usage unless perSample
-  VkImageView depth = VK_NULL_HANDLE;  // MethodNeeds::sampledDepth: the multisampled depth
+  VkImageView depth = VK_NULL_HANDLE;  // the opaque depth, where MethodNeeds::depthUsage has it sampled
   // Fixes the number of fragments that are kept; a frame that has more is blended approximately. Default: the frame's.
+  // For methods that have it.
   std::optional<std::uint32_t> nodeCapacity;
-  // Bytes that the method may keep for fragments. Default: what the device can give.
+  // Bytes that the method may keep for fragments. Default: what the device can give. For methods that have it.
   std::optional<std::uint64_t> memoryBudget;
   bool surfaces = true; // whether there is anything transparent
 };
@@ -85,45 +73,33 @@ class Method {
   Method(const Method&) = delete;
   Method& operator=(const Method&) = delete;
 
-  virtual std::string_view name() const = 0;            // in reports
-  virtual std::string_view nodes() const { return {}; } // the node format, where there is a choice
+  // In reports: the name, the node format and the resolve ("compute", "fragment"), where the method has such.
+  virtual std::string_view name() const = 0;
+  virtual std::string_view nodes() const { return {}; }
+  virtual std::string_view resolve() const { return {}; }
   virtual MethodNeeds needs() const = 0;
 
-  // How surfaces with these features (shaders/shared.h) are drawn, and the layout of descriptor set 2 with the set that
-  // the present target binds there. Null: the shaders have no set 2.
-  virtual SurfaceDrawing surface(std::uint32_t features) const = 0;
-  virtual VkDescriptorSetLayout surfaceLayout() const { return VK_NULL_HANDLE; }
-  virtual VkDescriptorSet surfaceSet() const { return VK_NULL_HANDLE; }
-
   // Makes what frames of this target need; keeps what it has where that fits. No frame is pending. Throws GpuError.
-  virtual void setTarget(const MethodTarget& target) = 0;
+  virtual void setTarget(const MethodTarget& /*target*/) {}
   // Lets go of the target, before its views are destroyed.
-  virtual void releaseTarget() = 0;
+  virtual void releaseTarget() {}
 
-  // Starts a picture. `bounds` are boxes around the transparent surfaces, valid during the call. The picture is drawn
-  // in one area, all of it, or, where inTiles() says so afterwards, in those that nextTile() gives. Throws GpuError.
-  virtual void startPicture(std::span<const VitrailBounds> /*bounds*/) {}
-  virtual bool inTiles() const { return false; }
-  virtual std::optional<VkRect2D> nextTile() { return std::nullopt; }
+  // Draws the transparent surfaces of a picture, whose opaque scene has been drawn: the depth of frame.images() holds
+  // the nearest opaque surfaces, which hide what is behind them; the colour holds theirs. Leaves the picture in
+  // images().color(), or, where MethodNeeds::perSample says so, in images().drawn(). Every pass ends with
+  // frame.endPass() under a name of the method's choice. A method that has to read something back before it can go on
+  // calls frame.submitAndWait(). Throws GpuError.
+  virtual void draw(Frame& frame) = 0;
 
-  // Recorded in this order for every area, with a number that rises by one. cmdResolve() is inside the renderer's scope
-  // where Blending is InScope, and not called where it is AsDrawn; the others are outside of scopes. A resolve by
-  // compute reads and writes the colour image in VK_IMAGE_LAYOUT_GENERAL; the multisampled images are in
-  // VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL (opaque) and VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL (depth).
-  virtual void cmdBegin(VkCommandBuffer /*commands*/, std::uint64_t /*frame*/, const VkRect2D& /*area*/) {}
-  virtual void cmdCollected(VkCommandBuffer /*commands*/) {}
-  virtual void cmdResolve(VkCommandBuffer /*commands*/) {}
-  virtual void cmdEnd(VkCommandBuffer /*commands*/) {}
+  // Takes note of what the GPU reported, once it has executed all of the picture. False: the picture must be drawn
+  // again, the opaque scene too, for which the method has made room. Throws GpuError where the device cannot hold it.
+  virtual bool finish() { return true; }
 
-  // Takes note of what the GPU reported of an area that has finished. False: the picture must be drawn again from the
-  // start, the opaque scene too, for which the method has made room. Throws GpuError where the device cannot hold it.
-  virtual bool finishArea(std::uint64_t /*frame*/) { return true; }
-
-  // What was reported of the picture, once all its areas have finished.
+  // What was reported of the picture.
   virtual MethodStats stats() const = 0;
 };
 
 // Makes a method. The options have passed checkMethodOptions(). Throws GpuError where the device does not offer them.
-std::unique_ptr<Method> makeMethod(Gpu& gpu, const MethodOptions& options);
+std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& options);
 
 } // namespace vitrail::tool

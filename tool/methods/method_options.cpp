@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,7 +14,26 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kMethods{"linked-list", "unsorted", "insertion"};
+// All methods, the default first.
+constexpr std::array kMethods{
+    MethodTraits{.name = "linked-list",
+                 .nodes = true,
+                 .resolves = true,
+                 .msaaResolves = true,
+                 .layers = true,
+                 .memoryBudget = true,
+                 .nodeCapacity = true},
+    MethodTraits{.name = "unsorted"},
+    MethodTraits{.name = "sorted"},
+    MethodTraits{.name = "sorted-triangles"},
+    MethodTraits{.name = "insertion", .severalSamples = false, .nodeCapacity = true},
+};
+
+constexpr std::array kNames = [] {
+  std::array<std::string_view, kMethods.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kMethods[i].name;
+  return names;
+}();
 
 template <typename Choice, std::size_t count>
 using Names = std::array<std::pair<Choice, std::string_view>, count>;
@@ -37,23 +58,33 @@ std::optional<Choice> choiceIn(const Names<Choice, count>& table, std::string_vi
   return found->first;
 }
 
-// Whether there is a choice of how fragments are stored and resolved.
-bool hasChoices(std::string_view method) { return method == "linked-list"; }
+// Refuses an option that a method does not have.
+void refuse(std::string_view option, bool MethodTraits::*has, std::string_view method) {
+  std::vector<std::string_view> owners;
+  for (const MethodTraits& each : kMethods) {
+    if (each.*has) owners.push_back(each.name);
+  }
+  const std::string whose = owners.empty() ? "no method" : fmt::format("the method {}", fmt::join(owners, ", "));
+  throw std::invalid_argument(fmt::format("{} is of {}: {} has no choice, leave it out", option, whose, method));
+}
+
+void checkTraits(const MethodOptions& options) {
+  const MethodOptions defaults;
+  const MethodTraits& traits = traitsOf(options.name);
+  if (options.samples != 1 && !traits.severalSamples) {
+    throw std::invalid_argument(fmt::format("the method {} has one sample a pixel: leave --samples out", options.name));
+  }
+  const auto check = [&](std::string_view option, bool MethodTraits::*has, bool chosen) {
+    if (chosen && !(traits.*has)) refuse(option, has, options.name);
+  };
+  check("--nodes", &MethodTraits::nodes, options.nodes != defaults.nodes);
+  check("--resolve", &MethodTraits::resolves, options.resolve != defaults.resolve);
+  check("--msaa-resolve", &MethodTraits::msaaResolves, options.msaaResolve != defaults.msaaResolve);
+  check("--layers", &MethodTraits::layers, options.maxLayers != defaults.maxLayers);
+  check("--passes", &MethodTraits::passes, options.passes != defaults.passes);
+}
 
 void checkStored(const MethodOptions& options) {
-  const MethodOptions defaults;
-  if (options.name == "insertion" && options.samples != 1) {
-    throw std::invalid_argument("the method insertion has one sample a pixel: leave --samples out");
-  }
-  if (!hasChoices(options.name)) {
-    if (options.nodes == defaults.nodes && options.resolve == defaults.resolve &&
-        options.msaaResolve == defaults.msaaResolve && options.maxLayers == defaults.maxLayers) {
-      return;
-    }
-    throw std::invalid_argument(
-        fmt::format("--nodes, --resolve, --msaa-resolve and --layers are of the method linked-list: {} has no choice",
-                    options.name));
-  }
   if (options.nodes == VITRAIL_NODE_COMPACT && options.samples > 4) {
     throw std::invalid_argument(
         fmt::format("--nodes compact holds the coverage of at most 4 samples, not {}: use --nodes standard or hdr",
@@ -69,17 +100,26 @@ void checkStored(const MethodOptions& options) {
 
 } // namespace
 
-std::span<const std::string_view> methodNames() { return kMethods; }
+std::span<const std::string_view> methodNames() { return kNames; }
+
+const MethodTraits& traitsOf(std::string_view name) { return *std::ranges::find(kMethods, name, &MethodTraits::name); }
 
 void checkMethodOptions(const MethodOptions& options) {
-  if (std::ranges::find(kMethods, options.name) == kMethods.end()) {
+  if (std::ranges::find(kNames, options.name) == kNames.end()) {
     throw std::invalid_argument(
-        fmt::format("there is no method \"{}\"; the methods are {}", options.name, fmt::join(kMethods, ", ")));
+        fmt::format("there is no method \"{}\"; the methods are {}", options.name, fmt::join(kNames, ", ")));
   }
   if (options.samples != 1 && options.samples != 2 && options.samples != 4 && options.samples != 8) {
     throw std::invalid_argument(fmt::format("a pixel has 1, 2, 4 or 8 samples, not {}", options.samples));
   }
+  checkTraits(options);
   checkStored(options);
+}
+
+void checkPictureOptions(std::string_view method, bool memoryBudget, bool nodeCapacity) {
+  const MethodTraits& traits = traitsOf(method);
+  if (memoryBudget && !traits.memoryBudget) refuse("--memory-budget", &MethodTraits::memoryBudget, method);
+  if (nodeCapacity && !traits.nodeCapacity) refuse("a fixed node capacity", &MethodTraits::nodeCapacity, method);
 }
 
 std::string_view nameOf(VitrailNodeFormat nodes) { return nameIn(kNodeFormats, nodes); }

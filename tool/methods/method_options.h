@@ -16,18 +16,39 @@ namespace vitrail::tool {
 struct MethodOptions {
   std::string name = "linked-list";
   std::uint32_t samples = 1; // 1, 2, 4, 8
-  // Of the methods that store fragments:
+  // Of methods that have a choice of them (MethodTraits):
   VitrailNodeFormat nodes = VITRAIL_NODE_STANDARD;
   VitrailResolve resolve = VITRAIL_RESOLVE_DEFAULT;
   VitrailMsaaResolve msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
-  std::uint32_t maxLayers = 0; // 0: no bound
+  std::uint32_t maxLayers = 0; // the nearest of a pixel that are drawn as they are; 0: no bound, or the method's own
+  std::uint32_t passes = 0;    // over the surfaces; 0: the method's own number
+};
+
+// What options a method has. What it has not is refused, never ignored.
+struct MethodTraits {
+  std::string_view name;
+  bool severalSamples = true;
+  bool nodes = false;        // --nodes
+  bool resolves = false;     // --resolve
+  bool msaaResolves = false; // --msaa-resolve
+  bool layers = false;       // --layers
+  bool passes = false;       // --passes
+  bool memoryBudget = false; // --memory-budget
+  bool nodeCapacity = false; // a fixed number of nodes, of RenderOptions
 };
 
 // All methods, the default first.
 std::span<const std::string_view> methodNames();
 
-// Throws std::invalid_argument with a one-line reason for an unknown name, or for options that exclude each other.
+// The method of that name, which there is.
+const MethodTraits& traitsOf(std::string_view name);
+
+// Throws std::invalid_argument with a one-line reason for an unknown name, for options that the method does not have,
+// or for options that exclude each other.
 void checkMethodOptions(const MethodOptions& options);
+
+// The same for what is chosen with each picture.
+void checkPictureOptions(std::string_view method, bool memoryBudget, bool nodeCapacity);
 
 // The names of the choices: "standard", "compact", "hdr"; "compute", "fragment"; "per-pixel", "per-sample".
 std::string_view nameOf(VitrailNodeFormat nodes);

@@ -1,4 +1,4 @@
-// One triangle over the whole picture, at the far plane.
+// One triangle over the whole viewport, at the far plane: for shaders that run once a pixel.
 #version 460
 
 void main() {

@@ -1,0 +1,409 @@
+// Every transparency method, held to what it promises. A method is a row of the table below; the tests are the same for
+// all: small scenes against the library's exact picture (linked-list, by default with hdr nodes) and against the
+// double-precision reference, the order of submission, and the options that it has not.
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <functional>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../../tool/scene/builtin.h"
+#include "../reference/compare.h"
+#include "../reference/test_scenes.h"
+#include "gpu_fixture.h"
+
+namespace vitrail::tool::test {
+namespace {
+
+using reference::addRectangle;
+using reference::Comparison;
+using reference::Reference;
+using reference::ReferenceOptions;
+using reference::straightView;
+using reference::unlitMaterial;
+
+// In which scenes a method's picture is the right one. Each has what the ones before it have.
+enum class Exact {
+  OneLayer,      // where no pixel has more than one transparent surface
+  ParallelPanes, // where an order of whole objects by distance is right
+  ParallelParts, // where an order of triangles by distance is right
+  Everywhere
+};
+
+struct MethodRow {
+  std::string name;
+  Exact exact = Exact::OneLayer;
+  bool orderFree = false;           // the order of submission does not change a bit
+  bool severalSamples = true;       // else one sample a pixel
+  std::vector<std::string> options; // that it has
+  // The nodes of the linked-list that an exact picture is within 1/255 of: hdr, unless fragments end at white as those
+  // of 12-byte nodes do.
+  VitrailNodeFormat nodes = VITRAIL_NODE_HDR;
+  bool wrongWhereSurfacesCross = false; // visibly so in `interlocked`
+};
+
+void PrintTo(const MethodRow& row, std::ostream* out) { *out << row.name; }
+
+const std::vector<MethodRow>& rows() {
+  static const std::vector<MethodRow> kRows = {
+      {.name = "linked-list",
+       .exact = Exact::Everywhere,
+       .orderFree = true,
+       .options = {"--nodes", "--resolve", "--msaa-resolve", "--layers", "--memory-budget"},
+       .nodes = VITRAIL_NODE_STANDARD},
+      {.name = "unsorted", .options = {}, .wrongWhereSurfacesCross = true},
+      {.name = "sorted", .exact = Exact::ParallelPanes, .options = {}, .wrongWhereSurfacesCross = true},
+      {.name = "sorted-triangles", .exact = Exact::ParallelParts, .options = {}, .wrongWhereSurfacesCross = true},
+      {.name = "insertion",
+       .exact = Exact::Everywhere,
+       .orderFree = true,
+       .severalSamples = false,
+       .options = {},
+       .nodes = VITRAIL_NODE_STANDARD},
+  };
+  return kRows;
+}
+
+struct TestScene {
+  Scene scene;
+  RenderOptions picture;
+};
+
+TestScene straightOn(Scene scene) {
+  TestScene result{std::move(scene), {}};
+  result.picture.width = 96;
+  result.picture.height = 64;
+  result.picture.view = straightView();
+  result.picture.background.srgb = {0.3F, 0.5F, 0.8F};
+  return result;
+}
+
+TestScene builtin(const std::string& name, std::optional<std::uint32_t> count = {}) {
+  BuiltinOptions options;
+  options.count = count;
+  TestScene result{makeBuiltinScene(name, options), {}};
+  result.picture = usualOptions(result.scene, 160, 90);
+  return result;
+}
+
+TestScene onePane() {
+  Scene scene;
+  addRectangle(scene, {glm::vec2(-0.9F, -0.7F), glm::vec2(0.8F, 0.6F), 0.0F}, unlitMaterial({0.8F, 0.3F, 0.1F, 0.4F}));
+  return straightOn(std::move(scene));
+}
+
+// Beside each other at depths of their own; one covers all that is behind it, one nearly nothing, one adds light.
+TestScene disjointPanes() {
+  Scene scene;
+  const std::array<glm::vec4, 4> colors{glm::vec4(0.9F, 0.1F, 0.2F, 0.5F), glm::vec4(0.1F, 0.8F, 0.3F, 1.0F),
+                                        glm::vec4(0.2F, 0.3F, 0.9F, 0.02F), glm::vec4(0.4F, 0.3F, 0.2F, 0.7F)};
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const float left = -1.4F + 0.7F * static_cast<float>(i);
+    Material material = unlitMaterial(colors[i]);
+    if (i == 3) material.blend = BlendMode::Additive;
+    addRectangle(scene, {glm::vec2(left, -0.8F), glm::vec2(left + 0.6F, 0.7F), i % 2 == 0 ? 3.0F : -3.0F}, material);
+  }
+  return straightOn(std::move(scene));
+}
+
+// Opaque: one sheet before the pane and one behind it, each over a part of it.
+TestScene paneBetweenSheets() {
+  TestScene result = onePane();
+  addRectangle(result.scene, {glm::vec2(-1.2F, -0.3F), glm::vec2(0.0F, 0.9F), 4.0F},
+               unlitMaterial({0.2F, 0.2F, 0.2F, 1.0F}, AlphaMode::Opaque));
+  addRectangle(result.scene, {glm::vec2(-0.5F, -0.9F), glm::vec2(1.2F, 0.2F), -4.0F},
+               unlitMaterial({0.9F, 0.8F, 0.1F, 1.0F}, AlphaMode::Opaque));
+  return result;
+}
+
+// Panes of several depths, cut in two by an opaque sheet that all but one are behind.
+TestScene occludedStack() {
+  Scene scene;
+  for (int i = 0; i < 6; ++i) {
+    const float t = static_cast<float>((i * 5) % 6) / 5.0F; // not in the order of their depths
+    addRectangle(scene, {glm::vec2(-1.3F + 0.1F * t, -0.9F), glm::vec2(1.3F, 0.9F - 0.3F * t), -5.0F + 6.0F * t},
+                 unlitMaterial({t, 1.0F - t, 0.4F, 0.3F + 0.3F * t}));
+  }
+  addRectangle(scene, {glm::vec2(-1.5F, -1.0F), glm::vec2(0.0F, 1.0F), 0.5F},
+               unlitMaterial({0.5F, 0.5F, 0.5F, 1.0F}, AlphaMode::Opaque));
+  return straightOn(std::move(scene));
+}
+
+// Glass that tints what is behind it and reflects some light, `count` sheets of it.
+TestScene tintedGlass(int count) {
+  TestScene result = straightOn({});
+  for (int i = 0; i < count; ++i) {
+    Material glass;
+    glass.baseColor = {0.9F - 0.3F * static_cast<float>(i), 0.5F, 0.3F + 0.3F * static_cast<float>(i), 1.0F};
+    glass.metallic = 0.0F;
+    glass.roughness = 0.6F;
+    glass.transmission = 1.0F - 0.2F * static_cast<float>(i);
+    const float z = i == 0 ? 0.0F : 3.0F - 2.0F * static_cast<float>(i);
+    addRectangle(result.scene, {glm::vec2(-1.0F, -0.8F + 0.2F * z), glm::vec2(1.1F, 0.6F)}, glass);
+    result.scene.draws.back().transform[3].z = z;
+  }
+  return result;
+}
+
+// Three objects of several panes each, one behind the other in turns: an unlit one, one that adds light, and a mirrored
+// tinted one.
+TestScene shuffledPanes() {
+  TestScene result = tintedGlass(1);
+  addRectangle(result.scene, {glm::vec2(-1.2F, -0.7F), glm::vec2(0.9F, 0.8F)}, unlitMaterial({0.2F, 0.7F, 0.4F, 0.4F}));
+  addRectangle(result.scene, {glm::vec2(-0.8F, -0.9F), glm::vec2(1.3F, 0.7F)}, unlitMaterial({0.5F, 0.1F, 0.3F, 0.5F}));
+  result.scene.materials[2].blend = BlendMode::Additive;
+  result.scene.draws[0].transform[0].x = -1.0F;
+  for (std::size_t object = 0; object < 3; ++object) {
+    Mesh& mesh = result.scene.meshes[object];
+    const Mesh first = mesh;
+    for (const int step : {2, 1, 3}) { // not in the order of their depths
+      const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (Vertex vertex : first.vertices) {
+        vertex.position.z = static_cast<float>(step) + 0.3F * static_cast<float>(object);
+        mesh.vertices.push_back(vertex);
+      }
+      for (const std::uint32_t index : first.indices) mesh.indices.push_back(base + index);
+    }
+    for (std::size_t i = 0; i < first.vertices.size(); ++i)
+      mesh.vertices[i].position.z = 0.3F * static_cast<float>(object);
+  }
+  return result;
+}
+
+TestScene nothingTransparent() {
+  Scene scene;
+  addRectangle(scene, {glm::vec2(-0.7F), glm::vec2(0.6F), 0.0F},
+               unlitMaterial({0.9F, 0.6F, 0.1F, 1.0F}, AlphaMode::Opaque));
+  return straightOn(std::move(scene));
+}
+
+// The picture of what no transparent surface is before: the same scene without them.
+TestScene withoutTransparent(const TestScene& scene) {
+  TestScene result = scene;
+  std::erase_if(result.scene.draws,
+                [&](const Draw& draw) { return isTransparent(scene.scene.materials[draw.material]); });
+  return result;
+}
+
+int largestDifference(const Picture& a, const Picture& b) {
+  int largest = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) largest = std::max(largest, std::abs(int{a.rgba[i]} - b.rgba[i]));
+  return largest;
+}
+
+// Pixels of which a channel differs by more than `bound`, as a share of all.
+double shareBeyond(const Picture& a, const Picture& b, int bound) {
+  std::size_t beyond = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
+    bool differs = false;
+    for (std::size_t c = i; c < i + 4; ++c) differs |= std::abs(int{a.rgba[c]} - b.rgba[c]) > bound;
+    beyond += differs ? 1 : 0;
+  }
+  return static_cast<double>(beyond) / static_cast<double>(a.rgba.size() / 4);
+}
+
+class MethodsTest : public GpuTest, public ::testing::WithParamInterface<MethodRow> {
+ protected:
+  static RenderResult draw(const TestScene& scene, const MethodOptions& method, DrawOrder order = DrawOrder::Forward) {
+    return renderOnce(gpu(), scene.scene, scene.picture, {}, order, method);
+  }
+
+  static MethodOptions options(std::uint32_t samples = 1) {
+    MethodOptions result;
+    result.name = GetParam().name;
+    result.samples = samples;
+    return result;
+  }
+
+  // The library's picture.
+  static Picture exactPicture(const TestScene& scene, std::uint32_t samples = 1) {
+    MethodOptions exact;
+    exact.nodes = GetParam().nodes;
+    exact.samples = samples;
+    return draw(scene, exact).picture;
+  }
+
+  // The method's picture is the right one: everywhere like the library's, away from edges like the reference.
+  static void expectRight(const TestScene& scene, const char* what, std::uint32_t samples = 1) {
+    SCOPED_TRACE(std::string(what) + ", " + std::to_string(samples) + " samples");
+    const RenderResult result = draw(scene, options(samples));
+    EXPECT_LE(largestDifference(result.picture, exactPicture(scene, samples)), 1);
+    ReferenceOptions same;
+    same.width = scene.picture.width;
+    same.height = scene.picture.height;
+    same.view = scene.picture.view;
+    same.background = scene.picture.background;
+    same.samples = samples;
+    same.nodeFormat = static_cast<std::uint32_t>(GetParam().nodes);
+    const Reference reference = renderReference(scene.scene, same);
+    const Comparison comparison = compare(result.picture, reference.exact, reference, 2);
+    EXPECT_LE(comparison.away, 2) << comparison;
+    EXPECT_TRUE(result.report.exact || GetParam().exact != Exact::Everywhere);
+  }
+};
+
+TEST_P(MethodsTest, OneLayerIsExact) {
+  expectRight(onePane(), "one pane");
+  expectRight(disjointPanes(), "disjoint panes");
+  expectRight(paneBetweenSheets(), "a pane between sheets");
+  expectRight(tintedGlass(1), "tinted glass");
+}
+
+TEST_P(MethodsTest, ParallelPanesAreExactWherePromised) {
+  if (GetParam().exact < Exact::ParallelPanes) GTEST_SKIP() << "not promised";
+  expectRight(builtin("planes"), "planes");
+  expectRight(occludedStack(), "a stack behind a sheet");
+  expectRight(tintedGlass(3), "tinted glass");
+}
+
+TEST_P(MethodsTest, PanesOfSeveralObjectsAreExactWherePromised) {
+  if (GetParam().exact < Exact::ParallelParts) GTEST_SKIP() << "not promised";
+  expectRight(shuffledPanes(), "shuffled panes");
+}
+
+// The scene above is one that an order of objects gets wrong.
+TEST_F(GpuTest, ShuffledPanesHaveNoOrderOfObjects) {
+  const TestScene scene = shuffledPanes();
+  MethodOptions sorted;
+  sorted.name = "sorted";
+  const auto picture = [&](const MethodOptions& method) {
+    return renderOnce(gpu(), scene.scene, scene.picture, {}, DrawOrder::Forward, method).picture;
+  };
+  EXPECT_GT(shareBeyond(picture(sorted), picture({}), 16), 0.1);
+}
+
+TEST_P(MethodsTest, EverySceneIsExactWherePromised) {
+  if (GetParam().exact < Exact::Everywhere) GTEST_SKIP() << "not promised";
+  expectRight(builtin("interlocked"), "interlocked");
+  expectRight(builtin("spheres"), "spheres");
+}
+
+// Else the rows that promise less than they could would go unseen, and so would the README's claim.
+TEST_P(MethodsTest, CrossingSurfacesLookWrongWhereSaid) {
+  if (!GetParam().wrongWhereSurfacesCross) GTEST_SKIP() << "not said";
+  const TestScene scene = builtin("interlocked");
+  EXPECT_GT(shareBeyond(draw(scene, options()).picture, exactPicture(scene), 16), 0.02);
+}
+
+// The opaque scene stands as it was drawn: without anything before it, and where it hides what is transparent.
+TEST_P(MethodsTest, OpaqueSurfacesStand) {
+  const TestScene nothing = nothingTransparent();
+  EXPECT_TRUE(draw(nothing, options()).picture.rgba == exactPicture(nothing).rgba);
+  const TestScene stack = occludedStack();
+  const Picture drawn = draw(stack, options()).picture;
+  const Picture bare = draw(withoutTransparent(stack), options()).picture;
+  // A part of the sheet that panes are behind, and none before.
+  for (std::uint32_t y = 5; y < 11; ++y) {
+    for (std::uint32_t c = 13 * 4; c < 45 * 4; ++c) {
+      const std::size_t i = std::size_t{y} * drawn.width * 4 + c;
+      ASSERT_EQ(drawn.rgba[i], bare.rgba[i]) << "channel " << c % 4 << " of pixel " << c / 4 << ", " << y;
+    }
+  }
+}
+
+TEST_P(MethodsTest, SubmissionOrderDoesNotMatterWherePromised) {
+  if (!GetParam().orderFree) GTEST_SKIP() << "not promised";
+  for (const TestScene& scene : {builtin("interlocked"), builtin("planes"), disjointPanes()}) {
+    const RenderResult forward = draw(scene, options(), DrawOrder::Forward);
+    EXPECT_TRUE(draw(scene, options(), DrawOrder::Reversed).picture.rgba == forward.picture.rgba);
+    EXPECT_TRUE(draw(scene, options(), DrawOrder::Shuffled).picture.rgba == forward.picture.rgba);
+  }
+}
+
+TEST_P(MethodsTest, RunsAreOne) {
+  const TestScene scene = builtin("interlocked");
+  Renderer renderer(gpu(), scene.scene, {}, DrawOrder::Forward, options());
+  const RenderResult first = renderer.render(scene.picture);
+  EXPECT_TRUE(renderer.render(scene.picture).picture.rgba == first.picture.rgba);
+  RenderOptions other = scene.picture; // another size in between
+  other.width = 75;
+  renderer.render(other);
+  EXPECT_TRUE(renderer.render(scene.picture).picture.rgba == first.picture.rgba);
+}
+
+TEST_P(MethodsTest, PassesAreNamed) {
+  const FrameReport report = draw(builtin("planes"), options()).report;
+  EXPECT_EQ(report.method, GetParam().name);
+  std::set<std::string> names;
+  for (const auto& [name, milliseconds] : report.passesMs) {
+    EXPECT_TRUE(names.insert(name).second) << name;
+    EXPECT_GE(milliseconds, 0.0) << name;
+  }
+  EXPECT_TRUE(names.empty() || names.size() > 2) << "opaque, encode, and nothing between them";
+}
+
+TEST_P(MethodsTest, SeveralSamplesAreRightOrRefused) {
+  for (const std::uint32_t samples : {2U, 4U, 8U}) {
+    if (GetParam().severalSamples) {
+      if ((gpu().features().sampleCounts & samples) == 0) continue;
+      expectRight(onePane(), "one pane", samples);
+      if (GetParam().exact >= Exact::ParallelPanes) expectRight(occludedStack(), "a stack behind a sheet", samples);
+      continue;
+    }
+    try {
+      checkMethodOptions(options(samples));
+      ADD_FAILURE() << samples << " samples are taken";
+    } catch (const std::invalid_argument& error) {
+      const std::string reason = error.what();
+      EXPECT_NE(reason.find(GetParam().name), std::string::npos) << reason;
+      EXPECT_NE(reason.find("--samples"), std::string::npos) << reason;
+      EXPECT_EQ(reason.find('\n'), std::string::npos) << reason;
+    }
+  }
+}
+
+// An option that a method has is taken; one that it has not is refused in a line that names both.
+TEST_P(MethodsTest, OptionsAreTakenOrRefused) {
+  using Set = std::function<void(MethodOptions&)>;
+  const std::vector<std::pair<std::string, Set>> choices = {
+      {"--nodes", [](MethodOptions& o) { o.nodes = VITRAIL_NODE_HDR; }},
+      {"--resolve", [](MethodOptions& o) { o.resolve = VITRAIL_RESOLVE_FRAGMENT; }},
+      {"--msaa-resolve",
+       [](MethodOptions& o) {
+         o.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
+         if (GetParam().severalSamples) o.samples = 4;
+       }},
+      {"--layers", [](MethodOptions& o) { o.maxLayers = 4; }},
+      {"--passes", [](MethodOptions& o) { o.passes = 4; }},
+      {"--memory-budget", {}},
+  };
+  for (const auto& [name, set] : choices) {
+    const auto& has = GetParam().options;
+    const bool taken = std::find(has.begin(), has.end(), name) != has.end();
+    std::string reason;
+    try {
+      MethodOptions chosen = options();
+      if (set) set(chosen);
+      checkMethodOptions(chosen);
+      checkPictureOptions(chosen.name, !set, false);
+    } catch (const std::invalid_argument& error) {
+      reason = error.what();
+    }
+    EXPECT_EQ(reason.empty(), taken) << name << ": " << reason;
+    if (taken) continue;
+    EXPECT_NE(reason.find(GetParam().name), std::string::npos) << reason;
+    EXPECT_NE(reason.find(name), std::string::npos) << reason;
+    EXPECT_EQ(reason.find('\n'), std::string::npos) << reason;
+  }
+}
+
+TEST(MethodRows, EveryMethodHasOne) {
+  std::set<std::string> tested;
+  for (const MethodRow& row : rows()) tested.insert(row.name);
+  const auto names = methodNames();
+  EXPECT_EQ(tested, std::set<std::string>(names.begin(), names.end()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, MethodsTest, ::testing::ValuesIn(rows()), [](const auto& row) {
+  std::string name = row.param.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+} // namespace
+} // namespace vitrail::tool::test
