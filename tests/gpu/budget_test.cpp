@@ -92,15 +92,16 @@ TEST_F(BudgetTest, ALargePictureOfEightLayersIsDrawnInTiles) {
 }
 
 // A pool beyond what one binding reaches on Mesa's CPU driver, 128 MiB.
-TEST_F(BudgetTest, APoolMayBeLargerThanABinding) {
-  if (!gpu().features().bufferDeviceAddress) GTEST_SKIP() << "this device has no buffer addresses";
+TEST_F(BudgetTest, APictureMayHaveMoreNodesThanABindingHolds) {
   const Scene scene = panes(4);
   const RenderResult small = renderOnce(gpu(), scene, paneOptions(4));
   const RenderResult large = renderOnce(gpu(), scene, paneOptions(2048));
   EXPECT_TRUE(large.report.exact);
-  EXPECT_EQ(large.report.tiles, 1U);
   EXPECT_EQ(large.report.fragmentsStored, 4ULL * 2048 * 2048);
-  EXPECT_GE(large.report.nodesBytes, 12ULL * 4 * 2048 * 2048);
+  if (gpu().features().poolByAddress) {
+    EXPECT_EQ(large.report.tiles, 1U);
+    EXPECT_GE(large.report.nodesBytes, 12ULL * 4 * 2048 * 2048);
+  }
   std::size_t different = 0;
   for (std::size_t i = 0; i < large.picture.rgba.size(); ++i) {
     if (large.picture.rgba[i] != small.picture.rgba[i % 4]) ++different;

@@ -41,7 +41,7 @@ void printDevice(const DeviceSummary& device) {
     return;
   }
   std::uint64_t pool = std::min(device.maxAllocationBytes, device.memoryBytes);
-  if (!device.features.bufferDeviceAddress) pool = std::min(pool, device.maxBindingBytes);
+  if (!device.features.poolByAddress) pool = std::min(pool, device.maxBindingBytes);
   line("renders", "yes, exactly");
   line("memory", sizeText(device.memoryBytes));
   line("fragments", fmt::format("any number, {:.1f} M at once ({}): pictures with more are drawn in tiles",

@@ -57,6 +57,7 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   vkGetPhysicalDeviceFeatures2(device, &features);
   GpuFeatures result;
   result.bufferDeviceAddress = features12.bufferDeviceAddress == VK_TRUE;
+  result.poolByAddress = result.bufferDeviceAddress && properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
   result.dualSourceBlending = features.features.dualSrcBlend == VK_TRUE;
   result.sampleRateShading = features.features.sampleRateShading == VK_TRUE;
   result.postDepthCoverage = hasExtension(device, VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);

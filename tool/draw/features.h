@@ -10,6 +10,9 @@ namespace vitrail::tool {
 // What the tool uses where a device has it, and does without where it has not.
 struct GpuFeatures {
   bool bufferDeviceAddress = false;
+  // Whether node pools are reached by their address, which has no limit of size. Not on CPU devices, which reach a
+  // binding faster (docs/performance.md).
+  bool poolByAddress = false;
   bool dualSourceBlending = false;
   bool sampleRateShading = false;
   bool postDepthCoverage = false;                          // VK_EXT_post_depth_coverage

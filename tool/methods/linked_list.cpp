@@ -30,7 +30,7 @@ void remember(VitrailLogSeverity severity, const char* message, void* reason) {
 
 std::uint32_t libraryFeatures(const GpuFeatures& features) {
   std::uint32_t bits = 0;
-  if (features.bufferDeviceAddress) bits |= VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS;
+  if (features.poolByAddress) bits |= VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS;
   if (features.dualSourceBlending) bits |= VITRAIL_FEATURE_DUAL_SRC_BLEND;
   if (features.sampleRateShading) bits |= VITRAIL_FEATURE_SAMPLE_RATE_SHADING;
   return bits;
@@ -105,7 +105,7 @@ void LinkedList::chooseResolve() {
 
 void LinkedList::makeSurfaces(const Surfaces& surfaces) {
   const bool coverage = options_.samples > 1 && gpu_.features().postDepthCoverage;
-  const bool address = gpu_.features().bufferDeviceAddress;
+  const bool address = gpu_.features().poolByAddress;
   const VitrailTargetDesc desc = targetDesc();
   VitrailSpecialization specialization{};
   vitrailCollectSpecialization(&desc, &specialization);
