@@ -60,7 +60,8 @@ struct FrameReport {
   // a multisampled picture has box_filter before encode. Summed over tiles. Empty, and frameMs 0, on devices without
   // timestamps.
   std::vector<std::pair<std::string, double>> passesMs;
-  double frameMs = 0.0; // GPU time of all passes
+  double frameMs = 0.0;                   // GPU time of all passes
+  std::vector<std::uint32_t> pixelLayers; // of the method layer-count alone: the fragments of each pixel
 };
 
 struct RenderResult {

@@ -2,6 +2,7 @@
 #include "method.h"
 
 #include "insertion.h"
+#include "layer_count.h"
 #include "linked_list.h"
 #include "unsorted.h"
 
@@ -10,6 +11,7 @@ namespace vitrail::tool {
 std::unique_ptr<Method> makeMethod(Gpu& gpu, const MethodOptions& options) {
   if (options.name == "unsorted") return std::make_unique<Unsorted>(gpu);
   if (options.name == "insertion") return std::make_unique<Insertion>(gpu);
+  if (options.name == kLayerCount) return std::make_unique<LayerCount>(gpu);
   return std::make_unique<LinkedList>(gpu, options);
 }
 
