@@ -134,7 +134,10 @@
     const marks = add(legend, "div");
     const most = report.layers_max;
     const parts = Math.max(1, Math.min(4, most));
-    for (let i = 0; i <= parts; ++i) add(marks, "span", whole(Math.round((most * i) / parts)));
+    for (let i = 0; i <= parts; ++i) {
+      const layers = Math.round((most * i) / parts);
+      add(marks, "span", whole(layers)).style.left = `${most > 0 ? (100 * layers) / most : 0}%`;
+    }
   }
 
   const PALETTE = ["#5b8def", "#e2884a", "#3fa77a", "#c069c4", "#c9a227", "#d0605e", "#6aa9b8", "#8a8f99"];
