@@ -32,11 +32,13 @@
       `${whole(report.exact_picture.fragments)} transparent fragments, up to ${report.layers_max} in one pixel.`;
     byId("machine").textContent =
       `${report.device} (${report.driver}), ${report.api}; medians of ${report.repeats} rounds.` +
-      (report.cpu ? " This device is a CPU: only ratios say something." : "");
+      (report.cpu ? " This device is a CPU, whose times are the machine's: ratios alone are shown." : "");
   }
 
   function fillTable() {
-    const columns = ["method", "PSNR", "SSIM", "FLIP", "worst", "off", "cost", "cost, ms", "frame, ms", "memory, MiB"];
+    const columns = ["method", "PSNR", "SSIM", "FLIP", "worst", "off", "cost", "frame"];
+    if (!report.cpu) columns.push("cost, ms", "frame, ms");
+    columns.push("memory, MiB");
     const table = byId("table");
     const head = add(add(table, "thead"), "tr");
     for (const column of columns) add(head, "th", column);
@@ -46,10 +48,11 @@
       const row = add(body, "tr");
       add(row, "td", method.method);
       add(row, "td", psnr(m.psnr_db), m.psnr_db === null ? { class: "equal" } : {});
-      for (const text of [ssim(m.ssim), flip(m.flip), worst(m.worst), share(m.off_share), ratio(method.cost_ratio),
-        method.cost_ms.median.toFixed(3), method.frame_ms.median.toFixed(3), (method.memory_bytes / MIB).toFixed(1)]) {
-        add(row, "td", text);
-      }
+      const texts = [ssim(m.ssim), flip(m.flip), worst(m.worst), share(m.off_share), ratio(method.cost_ratio),
+        ratio(method.frame_ratio)];
+      if (!report.cpu) texts.push(method.cost_ms.median.toFixed(3), method.frame_ms.median.toFixed(3));
+      texts.push((method.memory_bytes / MIB).toFixed(1));
+      for (const text of texts) add(row, "td", text);
     }
     if (report.refused.length === 0) return;
     const refused = byId("refused");
