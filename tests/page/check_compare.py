@@ -21,8 +21,8 @@ def expect(condition, what):
 
 
 def make_page(tool, folder):
-    subprocess.run([tool, "compare", "--scene", "interlocked", "--count", "3", "--size", f"{WIDTH}x{HEIGHT}", "--repeat",
-                    "1", "--quiet", "-o", folder], check=True)
+    subprocess.run([tool, "compare", "--scene", "interlocked", "--count", "3", "--size", f"{WIDTH}x{HEIGHT}",
+                    "--repeat", "1", "--quiet", "-o", folder], check=True)
     with open(os.path.join(folder, "report.json"), encoding="utf-8") as file:
         return json.load(file)
 

@@ -89,7 +89,7 @@ void runCompare(const CLI::App& command, CompareArguments arguments) {
 
 void addCompareCommand(CLI::App& app, std::function<void()>& run) {
   CLI::App* command = app.add_subcommand("compare");
-  setHelpPage(*command, kCompareHelp);
+  setHelpPage(*command, withSceneHelp(kCompareHelp));
   const auto arguments = std::make_shared<CompareArguments>();
   addCompareOptions(*command, *arguments);
   command->callback([command, arguments, &run] { run = [command, arguments] { runCompare(*command, *arguments); }; });

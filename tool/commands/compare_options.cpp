@@ -21,20 +21,7 @@ Of each method: how far its picture is from the exact one (PSNR, SSIM, FLIP, the
 share of pixels that are off by more than 2/255), what it costs against plain blending in no order
 (unsorted), and its memory. The exact picture is that of linked-list with hdr nodes.
 
-What to draw:
-  MODEL                 a .gltf, .glb, .obj, .ply or .stl file
-  --scene NAME          a built-in scene (vitrail scenes lists them)
-  --count N             how many spheres, planes, ... the scene has
-  --seed S              another arrangement of the same scene (default 1)
-
-How to look at it:
-  --size WxH            pixels (default 1280x720)
-  --camera N            camera N of the file, from 0 (default: the file's first camera;
-                        without one the whole model is seen from a three-quarter view)
-  --orbit AZ,EL[,ZOOM]  look from azimuth and elevation in degrees: 0,0 is the front, 90,0 the right,
-                        0,90 the top; ZOOM 2 shows it twice as large
-  --opacity A           X-ray: makes every material translucent, 0.004 to 1
-  --background B        a colour as #rrggbb (sRGB), sky, or transparent
+@scene@
 
 What to compare:
   --methods NAME,...    methods of vitrail render (default: all); unsorted is always there. What

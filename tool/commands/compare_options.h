@@ -34,6 +34,7 @@ void addCompareOptions(CLI::App& command, CompareArguments& arguments);
 // Checks what one option alone does not show, and takes the model from the files. Throws UsageError.
 void checkCompareArguments(const CLI::App& command, CompareArguments& arguments);
 
+// Has the mark of withSceneHelp().
 extern const char* const kCompareHelp;
 
 } // namespace vitrail::tool

@@ -55,7 +55,7 @@ void runRender(const RenderArguments& arguments) {
 
 void addRenderCommand(CLI::App& app, std::function<void()>& run) {
   CLI::App* command = app.add_subcommand("render");
-  setHelpPage(*command, kRenderHelp);
+  setHelpPage(*command, withSceneHelp(kRenderHelp));
   const auto arguments = std::make_shared<RenderArguments>();
   addRenderOptions(*command, *arguments);
   command->callback([arguments, &run] { run = [arguments] { runRender(*arguments); }; });

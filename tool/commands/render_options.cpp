@@ -18,20 +18,7 @@ Usage:
   vitrail render MODEL -o FILE [options]
   vitrail render --scene NAME -o FILE [options]
 
-What to draw:
-  MODEL                 a .gltf, .glb, .obj, .ply or .stl file
-  --scene NAME          a built-in scene (vitrail scenes lists them)
-  --count N             how many spheres, planes, ... the scene has
-  --seed S              another arrangement of the same scene (default 1)
-
-How to look at it:
-  --size WxH            pixels (default 1280x720)
-  --camera N            camera N of the file, from 0 (default: the file's first camera;
-                        without one the whole model is seen from a three-quarter view)
-  --orbit AZ,EL[,ZOOM]  look from azimuth and elevation in degrees: 0,0 is the front, 90,0 the right,
-                        0,90 the top; ZOOM 2 shows it twice as large
-  --opacity A           X-ray: makes every material translucent, 0.004 to 1
-  --background B        a colour as #rrggbb (sRGB), sky, or transparent (a PNG with alpha)
+@scene@
 
 How to blend it:
   --method M            linked-list (default): exact. For comparisons: unsorted, plain blending in

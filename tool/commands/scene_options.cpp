@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,6 +16,23 @@
 namespace vitrail::tool {
 
 namespace {
+
+constexpr std::string_view kMark = "@scene@";
+constexpr std::string_view kSceneHelp =
+    R"(What to draw:
+  MODEL                 a .gltf, .glb, .obj, .ply or .stl file
+  --scene NAME          a built-in scene (vitrail scenes lists them)
+  --count N             how many spheres, planes, ... the scene has
+  --seed S              another arrangement of the same scene (default 1)
+
+How to look at it:
+  --size WxH            pixels (default 1280x720)
+  --camera N            camera N of the file, from 0 (default: the file's first camera;
+                        without one the whole model is seen from a three-quarter view)
+  --orbit AZ,EL[,ZOOM]  look from azimuth and elevation in degrees: 0,0 is the front, 90,0 the right,
+                        0,90 the top; ZOOM 2 shows it twice as large
+  --opacity A           X-ray: makes every material translucent, 0.004 to 1
+  --background B        a colour as #rrggbb (sRGB), sky, or transparent (a PNG with alpha))";
 
 Orbit orbitOf(const std::string& text) {
   const std::vector<std::string> parts = split(text, ',');
@@ -82,6 +100,8 @@ void addSceneOptions(CLI::App& command, SceneArguments& arguments) {
   command.add_option_function<std::string>(
       "--background", [&arguments](const std::string& text) { arguments.background = backgroundOf(text); });
 }
+
+std::string withSceneHelp(std::string page) { return page.replace(page.find(kMark), kMark.size(), kSceneHelp); }
 
 void checkSceneArguments(const SceneArguments& arguments, const std::string& command) {
   if (arguments.model.empty() == arguments.scene.empty()) {

@@ -30,6 +30,9 @@ struct SceneArguments {
 // Adds all of them but MODEL. Texts that cannot be understood end the parse with a CLI::ValidationError.
 void addSceneOptions(CLI::App& command, SceneArguments& arguments);
 
+// A help page with all of them and MODEL in place of the mark @scene@.
+std::string withSceneHelp(std::string page);
+
 // Checks what one option alone does not show. Throws UsageError.
 void checkSceneArguments(const SceneArguments& arguments, const std::string& command);
 
