@@ -7,10 +7,12 @@ die() {
   exit 1
 }
 
-# The packages of the given groups in packages.txt.
+# The packages of the given groups in packages.txt, for this system.
 packages_of() {
-  local group name
-  while read -r group name; do
+  local group name only system
+  system=$(. /etc/os-release && printf '%s' "$ID")
+  while read -r group name only; do
+    [ "${only:-$system}" = "$system" ] || continue
     case " $* " in *" $group "*) printf '%s\n' "$name" ;; esac
   done < <(grep -v '^#' "$root/packages.txt")
 }

@@ -22,6 +22,8 @@ Usage:
   vitrail render MODEL -o picture.png     draw a glTF, OBJ, PLY or STL model
   vitrail render --scene NAME -o pic.png  draw a built-in scene
   vitrail scenes                          list the built-in scenes
+  vitrail compare MODEL -o DIR            compare transparency methods: their pictures and their costs
+  vitrail compare A.png B.png             compare two pictures
   vitrail bench                           measure what transparency costs on a device
   vitrail info                            list the Vulkan devices and what they can do for Vitrail
 
@@ -43,6 +45,7 @@ int runProgram(int argc, char** argv) {
   app.require_subcommand(0, 1);
   std::function<void()> run;
   vitrail::tool::addRenderCommand(app, run);
+  vitrail::tool::addCompareCommand(app, run);
   vitrail::tool::addBenchCommand(app, run);
   vitrail::tool::addInfoCommand(app, run);
   vitrail::tool::addScenesCommand(app, run);

@@ -6,17 +6,22 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <functional>
+#include <span>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "commands/output_file.h"
+#include "commands/output_folder.h"
 #include "process.h"
 
 namespace vitrail::tests {
 namespace {
 
 using tool::OutputFile;
+using tool::OutputFolder;
 
 const std::vector<std::byte> kContent(100000, std::byte{42});
 
@@ -74,6 +79,50 @@ TEST(OutputFile, WithoutCommitNothingStays) {
   file.write(kContent);
   file.commit();
   EXPECT_EQ(folder.names(), std::vector<std::string>{"a.png"});
+}
+
+TEST(OutputFolder, ASignalRemovesItWithWhatIsNotWhole) {
+  const TemporaryFolder folder;
+  const int status = inChild([&] {
+    OutputFolder out(folder.file("out"));
+    if (!folder.names().empty()) ::_exit(4); // nothing is made before there is something to write
+    for (int i = 0; i < 50; ++i) out.write(std::to_string(i), kContent);
+    if (folder.names().size() != 1) ::_exit(3);
+    ::raise(SIGTERM);
+  });
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM) << status;
+  EXPECT_EQ(folder.names(), std::vector<std::string>{});
+}
+
+TEST(OutputFolder, AFullDiskRemovesItWithWhatIsNotWhole) {
+  const TemporaryFolder folder;
+  const int status = inChild([&] {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{1000, 1000}; // bytes a file may have
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      OutputFolder out(folder.file("out"));
+      out.write("small", std::span(kContent).first(10));
+      out.write("large", kContent);
+    } catch (const std::runtime_error&) {
+      ::_exit(7);
+    }
+  });
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
+  EXPECT_EQ(folder.names(), std::vector<std::string>{});
+}
+
+TEST(OutputFolder, CommitGivesAllFilesTheirNames) {
+  const TemporaryFolder folder;
+  {
+    OutputFolder out(folder.file("out"));
+    out.write("a", kContent);
+    out.write("b", kContent);
+    out.commit();
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder.file("out/a")));
+  EXPECT_TRUE(std::filesystem::exists(folder.file("out/b")));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path() / "out"), {}), 2);
 }
 
 TEST(OutputFile, TheSameFileUnderTwoNames) {

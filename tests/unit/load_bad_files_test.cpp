@@ -176,7 +176,7 @@ TEST(LoadBadFiles, EachIsRefusedWithOneLineThatSaysWhatIsWrong) {
 
 TEST(LoadBadFiles, WhatIsNoFileIsRefused) {
   EXPECT_EQ(failureOf(corpus() / "not-there.glb"), "no such file");
-  EXPECT_EQ(failureOf(corpus()), "is a directory, not a model file");
+  EXPECT_EQ(failureOf(corpus()), "is a directory, not a file");
   EXPECT_EQ(failureOf("/dev/zero"), "is not a regular file");
   EXPECT_EQ(failureOf(corpus() / "make_corpus.py"),
             "has the unknown extension .py; .gltf, .glb, .obj, .ply and .stl can be read");

@@ -45,7 +45,7 @@ std::optional<double> fragmentsOf(const Measurement& measured, const std::vector
 }
 
 void addFloor(Measurement& measured, double bytesPerSecond) {
-  if (!measured.report.counted) return;
+  if (!measured.report.counted || bytesPerSecond <= 0.0) return;
   const std::uint64_t bytes = leastBytes(shapeOf(measured.report, measured.options.nodes));
   measured.floorBytes = bytes;
   measured.floorMs = static_cast<double>(bytes) / bytesPerSecond * 1e3;

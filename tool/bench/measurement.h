@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../draw/renderer.h"
+#include "machine.h"
 #include "statistics.h"
 
 namespace vitrail::tool {
@@ -46,11 +47,7 @@ struct SceneMeasurement {
   std::vector<SkippedSetting> skipped;
 };
 
-struct BenchReport {
-  std::string device;
-  std::string driver;
-  std::string api;
-  bool isCpu = false; // only ratios mean anything
+struct BenchReport : Machine {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t repeats = 0;
@@ -66,7 +63,8 @@ using PassTimes = std::vector<std::pair<std::string, double>>;
 // by compare().
 Measurement summarize(const MethodOptions& options, const FrameReport& report, const std::vector<PassTimes>& frames);
 
-// Fills in ratios, rates and floors of all measurements of a scene. Each sample count has its baseline.
+// Fills in ratios, rates and floors of all measurements of a scene. Each sample count has its baseline. Without a
+// bandwidth, 0, there are no floors.
 void compare(std::vector<Measurement>& measurements, double bytesPerSecond);
 
 } // namespace vitrail::tool

@@ -78,6 +78,7 @@ SceneMeasurement measureScene(Gpu& gpu, const Scene& scene, const BenchRun& run)
     }
   }
   for (const Contender& contender : contenders) {
+    if (run.takePicture) run.takePicture(contender.options, contender.renderer->render(run.picture));
     result.measurements.push_back(summarize(contender.options, contender.report, contender.frames));
   }
   compare(result.measurements, run.bytesPerSecond);

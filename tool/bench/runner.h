@@ -17,9 +17,11 @@ struct BenchRun {
   std::optional<float> opacity; // of every material
   std::uint32_t repeats = 1;    // rounds, at least 1
   std::uint32_t warmups = 1;    // frames before the first round, at least 1: the first one makes room for the others
-  double bytesPerSecond = 0.0;  // measureBandwidth()
+  double bytesPerSecond = 0.0;  // measureBandwidth(); 0: floors are not wanted
   // Told of every step, for people who wait: "linked-list, standard, 4 samples", "round 3 of 31".
   std::function<void(const std::string& step)> progress;
+  // Given the picture of every setting, after the last round; not drawn where nobody wants it.
+  std::function<void(const MethodOptions& options, RenderResult result)> takePicture;
 };
 
 // Every round draws one frame of each setting, starting one setting later than the round before it, so that a device

@@ -2,8 +2,6 @@
 
 #include <optional>
 
-#include <nlohmann/json.hpp>
-
 namespace vitrail::tool {
 
 namespace {
@@ -16,15 +14,6 @@ Json orNull(const std::optional<Value>& value) {
 }
 
 Json orNull(std::string_view name) { return name.empty() ? Json(nullptr) : Json(name); }
-
-// Milliseconds.
-Json toJson(const Spread& spread) {
-  return {{"median", spread.median},
-          {"lower_quartile", spread.lowerQuartile},
-          {"upper_quartile", spread.upperQuartile},
-          {"min", spread.min},
-          {"max", spread.max}};
-}
 
 Json toJson(const Measurement& measured) {
   const FrameReport& frame = measured.report;
@@ -81,6 +70,14 @@ Json toJson(const SceneMeasurement& scene) {
 }
 
 } // namespace
+
+nlohmann::ordered_json toJson(const Spread& spread) {
+  return {{"median", spread.median},
+          {"lower_quartile", spread.lowerQuartile},
+          {"upper_quartile", spread.upperQuartile},
+          {"min", spread.min},
+          {"max", spread.max}};
+}
 
 std::string toJson(const BenchReport& report) {
   Json scenes = Json::array();

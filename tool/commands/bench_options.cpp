@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <functional>
 #include <string_view>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "errors.h"
+#include "option_values.h"
 
 namespace vitrail::tool {
 
@@ -57,82 +55,9 @@ Examples:
 
 namespace {
 
-constexpr std::uint32_t kMaxSide = 65536; // a sane bound; the device's own is checked when it is known
-constexpr std::uint32_t kMaxFrames = 100000;
-
-std::optional<std::uint32_t> wholeNumber(std::string_view text) {
-  std::uint32_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end) return {};
-  return value;
-}
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (std::size_t at = 0;;) {
-    const std::size_t next = text.find(separator, at);
-    parts.push_back(text.substr(at, next - at));
-    if (next == std::string::npos) return parts;
-    at = next + 1;
-  }
-}
-
-// An option that is a list of what `parse` understands of each part; `known` says in words what that is.
-template <class Value>
-void addList(CLI::App& command, const std::string& name, std::vector<Value>& target, const std::string& known,
-             std::function<std::optional<Value>(const std::string&)> parse) {
-  command.add_option_function<std::string>(name, [=, &target](const std::string& text) {
-    target.clear();
-    for (const std::string& part : split(text, ',')) {
-      const std::optional<Value> value = parse(part);
-      if (!value) throw CLI::ValidationError(name, fmt::format("'{}' is not {}", part, known));
-      target.push_back(*value);
-    }
-  });
-}
-
-void addFrames(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& target) {
-  command.add_option_function<std::string>(name, [name, &target](const std::string& text) {
-    target = wholeNumber(text);
-    if (!target || *target < 1 || *target > kMaxFrames) {
-      throw CLI::ValidationError(name, fmt::format("'{}' is not a whole number from 1 to {}", text, kMaxFrames));
-    }
-  });
-}
-
-void addSize(CLI::App& command, BenchArguments& arguments) {
-  command.add_option_function<std::string>("--size", [&arguments](const std::string& text) {
-    const std::vector<std::string> parts = split(text, 'x');
-    const std::uint32_t width = parts.size() == 2 ? wholeNumber(parts[0]).value_or(0) : 0;
-    const std::uint32_t height = parts.size() == 2 ? wholeNumber(parts[1]).value_or(0) : 0;
-    if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) {
-      throw CLI::ValidationError("--size", fmt::format("'{}' is not a size such as 1280x720", text));
-    }
-    arguments.width = width;
-    arguments.height = height;
-  });
-}
-
-void addOpacity(CLI::App& command, BenchArguments& arguments) {
-  command.add_option_function<std::string>("--opacity", [&arguments](const std::string& text) {
-    float value = 0.0F;
-    const char* end = text.data() + text.size();
-    // The first opacity that the standard node format does not round to none.
-    if (std::from_chars(text.data(), end, value).ptr != end || !(value >= 1.0F / 255.0F) || value > 1.0F) {
-      throw CLI::ValidationError("--opacity", fmt::format("'{}' is not between 1/255 (0.004) and 1", text));
-    }
-    arguments.opacity = value;
-  });
-}
-
-std::optional<std::string> methodNamed(const std::string& name) {
-  return std::ranges::count(methodNames(), name) > 0 ? std::optional(name) : std::nullopt;
-}
-
 std::optional<std::uint32_t> sampleCount(const std::string& text) {
   constexpr std::array<std::string_view, 4> kCounts{"1", "2", "4", "8"};
-  return std::ranges::count(kCounts, text) > 0 ? wholeNumber(text) : std::nullopt;
+  return std::ranges::count(kCounts, text) > 0 ? numberOf<std::uint32_t>(text) : std::nullopt;
 }
 
 } // namespace
@@ -142,16 +67,16 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
   command.add_option("--json", arguments.json);
   command.add_option("--device", arguments.device);
   command.add_flag("--quiet", arguments.quiet);
-  addSize(command, arguments);
-  addOpacity(command, arguments);
+  addSize(command, arguments.width, arguments.height);
+  addOpacity(command, arguments.opacity);
   addFrames(command, "--repeat", arguments.repeats);
   addFrames(command, "--warmup", arguments.warmups);
   BenchMatrix& matrix = arguments.matrix;
   addList<std::string>(command, "--scene", arguments.scenes, "the name of a scene",
                        [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); });
-  addList<std::uint32_t>(command, "--count", arguments.counts, "a whole number from 0", wholeNumber);
-  addList<std::string>(command, "--methods", matrix.methods,
-                       fmt::format("a method; there are {}", fmt::join(methodNames(), ", ")), methodNamed);
+  addList<std::uint32_t>(command, "--count", arguments.counts, "a whole number from 0",
+                         [](const std::string& text) { return numberOf<std::uint32_t>(text); });
+  addMethods(command, matrix.methods);
   addList<VitrailNodeFormat>(command, "--nodes", matrix.nodes, "a node format: standard, compact or hdr",
                              nodeFormatNamed);
   addList<std::uint32_t>(command, "--samples", matrix.samples, "1, 2, 4 or 8", sampleCount);

@@ -19,16 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The temporary files that a signal must remove: a picture and its report.
+// The temporary files that a signal must remove: a picture and its report, or those of a whole folder and it.
 struct Slot {
   std::array<char, 4096> path{};
   std::atomic<bool> used{false};
 };
-std::array<Slot, 4> slots;
+std::array<Slot, 128> slots;
 
 void removeTemporaries(int signal) {
-  for (const Slot& slot : slots) {
-    if (slot.used.load()) ::unlink(slot.path.data());
+  for (auto slot = slots.rbegin(); slot != slots.rend(); ++slot) { // a folder after the files in it
+    if (slot->used.load() && ::unlink(slot->path.data()) != 0) ::rmdir(slot->path.data());
   }
   ::signal(signal, SIG_DFL); // and end the way the signal ends a program
   ::raise(signal);
@@ -136,5 +136,8 @@ void OutputFile::commit() {
   unwatch(temporary_);
   temporary_.clear();
 }
+
+void watchFolder(const fs::path& folder) { watch(folder); }
+void unwatchFolder(const fs::path& folder) { unwatch(folder); }
 
 } // namespace vitrail::tool

@@ -39,4 +39,8 @@ class OutputFile {
   bool isSpecial_ = false;
 };
 
+// Has a signal remove a folder too, where it is empty by then. Watch it before the files in it.
+void watchFolder(const std::filesystem::path& folder);
+void unwatchFolder(const std::filesystem::path& folder);
+
 } // namespace vitrail::tool

@@ -8,23 +8,12 @@
 #include <CLI/CLI.hpp>
 
 #include "../methods/method_options.h"
-#include "../scene/camera.h"
-#include "../scene/scene.h"
+#include "scene_options.h"
 
 namespace vitrail::tool {
 
-struct RenderArguments {
-  std::string model; // empty: a built-in scene
-  std::string scene;
-  std::optional<std::uint32_t> count;
-  std::optional<std::uint32_t> seed;
+struct RenderArguments : SceneArguments {
   std::string output;
-  std::uint32_t width = 1280;
-  std::uint32_t height = 720;
-  std::optional<std::uint32_t> camera;
-  std::optional<Orbit> orbit;
-  std::optional<float> opacity;
-  std::optional<Background> background;
   MethodOptions method;
   std::optional<std::uint32_t> memoryBudget; // MiB
   std::string device;
@@ -39,6 +28,7 @@ void addRenderOptions(CLI::App& command, RenderArguments& arguments);
 // Checks what one option alone does not show. Throws UsageError.
 void checkRenderArguments(const RenderArguments& arguments);
 
+// Has the mark of withSceneHelp().
 extern const char* const kRenderHelp;
 
 } // namespace vitrail::tool

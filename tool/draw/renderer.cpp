@@ -206,6 +206,7 @@ FrameReport Renderer::Impl::report(const RenderOptions& picture, const MethodSta
   report.headsBytes = stats.headsBytes;
   report.totalBytes = stats.totalBytes;
   report.peakBytes = gpu.peakMemory();
+  report.pixelLayers = stats.pixelLayers;
   report.passesMs = timers.milliseconds();
   for (const auto& [name, milliseconds] : report.passesMs) report.frameMs += milliseconds;
   return report;

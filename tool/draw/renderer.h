@@ -61,7 +61,8 @@ struct FrameReport {
   // host works on a frame before the GPU can go on stands among them, as sort. Empty, and frameMs 0, on devices without
   // timestamps.
   std::vector<std::pair<std::string, double>> passesMs;
-  double frameMs = 0.0; // of all passes
+  double frameMs = 0.0;                   // of all passes
+  std::vector<std::uint32_t> pixelLayers; // of the method layer-count alone: the fragments of each pixel
 };
 
 struct RenderResult {

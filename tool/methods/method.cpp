@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "insertion.h"
+#include "layer_count.h"
 #include "linked_list.h"
 #include "sorted.h"
 #include "sorted_triangles.h"
@@ -17,6 +18,7 @@ std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& 
   if (options.name == "sorted") return std::make_unique<Sorted>(host, options);
   if (options.name == "sorted-triangles") return std::make_unique<SortedTriangles>(host, options);
   if (options.name == "insertion") return std::make_unique<Insertion>(host);
+  if (options.name == kLayerCount) return std::make_unique<LayerCount>(host);
   throw std::logic_error("a method that cannot be made: " + options.name);
 }
 

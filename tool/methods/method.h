@@ -63,7 +63,8 @@ struct MethodStats {
   std::uint32_t tiles = 1; // areas that were resolved
   std::uint64_t nodesBytes = 0;
   std::uint64_t headsBytes = 0;
-  std::uint64_t totalBytes = 0; // all that the method keeps on the device for its target
+  std::uint64_t totalBytes = 0;             // all that the method keeps on the device for its target
+  std::vector<std::uint32_t> pixelLayers{}; // of layer-count: the fragments of each pixel, rows top to bottom
 };
 
 class Method {

@@ -19,7 +19,7 @@ std::vector<std::byte> readFile(const std::filesystem::path& path) {
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) throw LoadError("no such file");
   if (error) throw LoadError(fmt::format("cannot be read: {}", error.message()));
-  if (std::filesystem::is_directory(status)) throw LoadError("is a directory, not a model file");
+  if (std::filesystem::is_directory(status)) throw LoadError("is a directory, not a file");
   // A pipe or a device could deliver bytes for ever.
   if (!std::filesystem::is_regular_file(status)) throw LoadError("is not a regular file");
 

@@ -1,0 +1,95 @@
+// The fragments of each pixel that the method layer-count finds, against the reference's and against what fragment
+// lists store.
+#include <numeric>
+
+#include "../../tool/methods/layer_count.h"
+#include "../../tool/scene/builtin.h"
+#include "../reference/reference.h"
+#include "../reference/test_scenes.h"
+#include "gpu_fixture.h"
+
+namespace vitrail::tool::test {
+namespace {
+
+using reference::addRectangle;
+using reference::straightView;
+using reference::unlitMaterial;
+
+FrameReport countLayers(Gpu& gpu, const Scene& scene, const RenderOptions& options) {
+  MethodOptions method;
+  method.name = kLayerCount;
+  return Renderer(gpu, scene, {}, DrawOrder::Forward, method).measure(options);
+}
+
+class LayerCountTest : public GpuTest {
+ protected:
+  void expectLikeReference(const std::string& name, std::optional<std::uint32_t> count = {}) {
+    SCOPED_TRACE(name);
+    BuiltinOptions builtin;
+    builtin.count = count;
+    const Scene scene = makeBuiltinScene(name, builtin);
+    const RenderOptions options = usualOptions(scene, 120, 80);
+    const FrameReport report = countLayers(gpu(), scene, options);
+    reference::ReferenceOptions same;
+    same.width = options.width;
+    same.height = options.height;
+    same.view = options.view;
+    same.background = options.background;
+    same.nodeFormat = VITRAIL_NODE_HDR;
+    const reference::Reference expected = renderReference(scene, same);
+    ASSERT_EQ(report.pixelLayers.size(), expected.layerRanges.size());
+    for (std::size_t i = 0; i < report.pixelLayers.size(); ++i) {
+      ASSERT_GE(report.pixelLayers[i], expected.layerRanges[i].least) << i % 120 << ", " << i / 120;
+      ASSERT_LE(report.pixelLayers[i], expected.layerRanges[i].most) << i % 120 << ", " << i / 120;
+    }
+    MethodOptions lists;
+    lists.nodes = VITRAIL_NODE_HDR;
+    const FrameReport stored = renderOnce(gpu(), scene, options, {}, DrawOrder::Forward, lists).report;
+    EXPECT_EQ(std::accumulate(report.pixelLayers.begin(), report.pixelLayers.end(), std::uint64_t{0}),
+              stored.fragmentsStored);
+    EXPECT_EQ(report.layersMax, stored.layersMax);
+    EXPECT_DOUBLE_EQ(report.layersMean, stored.layersMean);
+  }
+};
+
+TEST_F(LayerCountTest, BuiltinScenes) {
+  expectLikeReference("interlocked");
+  expectLikeReference("mannequins"); // among opaque surfaces
+  expectLikeReference("planes", 300);
+}
+
+// Three panes, one behind an opaque wall, one that covers half of the picture, one that cannot be seen.
+TEST_F(LayerCountTest, PanesByHand) {
+  Scene scene;
+  addRectangle(scene, {{-2.0F, -2.0F}, {2.0F, 2.0F}, -1.0F}, unlitMaterial({0.0F, 1.0F, 0.0F, 0.5F}));
+  addRectangle(scene, {{-2.0F, -2.0F}, {2.0F, 0.0F}, 0.0F}, unlitMaterial({1.0F, 1.0F, 1.0F, 1.0F}, AlphaMode::Opaque));
+  addRectangle(scene, {{-2.0F, -2.0F}, {0.0F, 2.0F}, 1.0F}, unlitMaterial({1.0F, 0.0F, 0.0F, 0.5F}));
+  addRectangle(scene, {{-2.0F, -2.0F}, {2.0F, 2.0F}, 2.0F}, unlitMaterial({1.0F, 0.0F, 0.0F, 0.0F}));
+  RenderOptions options;
+  options.width = 8;
+  options.height = 8;
+  options.view = straightView();
+  const FrameReport report = countLayers(gpu(), scene, options);
+  ASSERT_EQ(report.pixelLayers.size(), 64U);
+  for (std::size_t y = 0; y < 8; ++y) {
+    for (std::size_t x = 0; x < 8; ++x) {
+      const std::uint32_t expected = (x < 4 ? 1U : 0U) + (y < 4 ? 1U : 0U); // the wall is the lower half
+      EXPECT_EQ(report.pixelLayers[y * 8 + x], expected) << x << ", " << y;
+    }
+  }
+  EXPECT_EQ(report.layersMax, 2U);
+  // Other sizes follow in the same renderer.
+  MethodOptions method;
+  method.name = kLayerCount;
+  Renderer renderer(gpu(), scene, {}, DrawOrder::Forward, method);
+  for (const std::uint32_t side : {4U, 16U}) {
+    options.width = side;
+    options.height = side;
+    const FrameReport sized = renderer.measure(options);
+    ASSERT_EQ(sized.pixelLayers.size(), std::size_t{side} * side);
+    EXPECT_EQ(sized.fragmentsRequested, std::uint64_t{side} * side);
+  }
+}
+
+} // namespace
+} // namespace vitrail::tool::test

@@ -1,0 +1,104 @@
+"""The page of `vitrail compare -o`, in headless Chromium: it opens without an error and without a network, all that it
+shows is there, and the slider moves.
+
+Usage: check_compare.py VITRAIL [PICTURE]     PICTURE: where to leave a screenshot of the whole page"""
+import base64
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+from browser import Browser
+
+WIDTH, HEIGHT = 96, 64
+failures = []
+
+
+def expect(condition, what):
+    if not condition:
+        failures.append(what)
+
+
+def make_page(tool, folder):
+    subprocess.run([tool, "compare", "--scene", "interlocked", "--count", "3", "--size", f"{WIDTH}x{HEIGHT}",
+                    "--repeat", "1", "--quiet", "-o", folder], check=True)
+    with open(os.path.join(folder, "report.json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def check_content(browser, report):
+    names = [method["method"] for method in report["methods"]]
+    rows = browser.value("[...document.querySelectorAll('#table tbody tr')].map((row) => row.cells[0].textContent)")
+    expect(rows == names, f"the table has {rows}, not {names}")
+    images = browser.value("[...document.images].map((i) => [i.complete, i.naturalWidth, i.naturalHeight, i.alt])")
+    expect(len(images) == 4 + 2 * len(names), f"{len(images)} pictures for {len(names)} methods")
+    for complete, width, height, alt in images:
+        expect(complete and (width, height) == (WIDTH, HEIGHT) and alt, f"the picture '{alt}' has {width}x{height}")
+    for name in ("cost", "error", "memory"):
+        drawn = browser.value(f"Chart.getChart('{name}').data.labels")
+        expect(drawn == names, f"the chart {name} has {drawn}")
+        blank = browser.value(f"(() => {{ const drawn = document.getElementById('{name}'); const blank = drawn.cloneNode();"
+                              "return drawn.width === 0 || drawn.toDataURL() === blank.toDataURL(); })()")
+        expect(not blank, f"the chart {name} is blank")
+    marks = browser.value("[...document.querySelectorAll('#layers-legend span')].map((mark) => mark.textContent)")
+    expect(marks[0] == "0" and marks[-1] == str(report["layers_max"]), f"the legend of the layers has {marks}")
+    text = browser.value("document.body.innerText")
+    for words in (report["device"], "Chart.js 3", "MIT License"):
+        expect(words in text, f"the page does not say {words}")
+
+
+def place_of_handle(browser):
+    return browser.value("(() => { const slider = document.getElementById('slider').getBoundingClientRect();"
+                         "const handle = document.getElementById('handle').getBoundingClientRect();"
+                         "return (handle.x + handle.width / 2 - slider.x) / slider.width; })()")
+
+
+def check_slider(browser):
+    browser.value("document.getElementById('slider').scrollIntoView({ block: 'center' })")
+    box = browser.value("document.getElementById('slider').getBoundingClientRect().toJSON()")
+    clip = {name: box[name] for name in ("x", "y", "width", "height")}
+    clip["y"] += browser.value("scrollY")
+    at = lambda share: (box["x"] + share * box["width"], box["y"] + box["height"] / 2)
+    before = browser.screenshot(clip)
+    expect(abs(place_of_handle(browser) - 0.5) < 0.01, "the slider does not begin in the middle")
+    browser.mouse("mousePressed", *at(0.5), True)
+    browser.mouse("mouseMoved", *at(0.4), True)
+    browser.mouse("mouseMoved", *at(0.2), True)
+    browser.mouse("mouseReleased", *at(0.2), True)
+    expect(abs(place_of_handle(browser) - 0.2) < 0.01, f"dragged to 0.2, the slider is at {place_of_handle(browser)}")
+    expect(browser.screenshot(clip) != before, "the slider moved and the picture did not change")
+    browser.mouse("mouseMoved", *at(0.8), False)
+    expect(abs(place_of_handle(browser) - 0.2) < 0.01, "the slider moves without being held")
+    browser.value("document.getElementById('handle').focus()")
+    browser.key("End")
+    expect(abs(place_of_handle(browser) - 1.0) < 0.01, "the key End does not move the slider")
+    # All of the left picture is seen: choosing another one there changes what is seen.
+    left = browser.screenshot(clip)
+    browser.value("(() => { const left = document.getElementById('left'); left.selectedIndex = 0;"
+                  "left.dispatchEvent(new Event('change')); return document.getElementById('slider-left').decode(); })()")
+    expect(browser.screenshot(clip) != left, "another picture was chosen and none is seen")
+
+
+def main():
+    tool, picture = sys.argv[1], sys.argv[2:3]
+    with tempfile.TemporaryDirectory(dir=os.getcwd()) as folder: # not /tmp: a snap does not see it
+        page = os.path.join(folder, "page")
+        report = make_page(tool, page)
+        browser = Browser()
+        try:
+            browser.open(os.path.join(page, "index.html"))
+            check_content(browser, report)
+            if picture:
+                with open(picture[0], "wb") as file:
+                    file.write(base64.b64decode(browser.screenshot(whole=True)))
+            check_slider(browser)
+        finally:
+            browser.close()
+    failures.extend(browser.errors)
+    for failure in failures:
+        print(failure)
+    sys.exit(1 if failures else 0)
+
+
+main()

@@ -1,0 +1,146 @@
+// `vitrail compare A.png B.png` as a user meets it.
+#include <gtest/gtest.h>
+
+#include <png.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+
+#include "png_reader.h"
+#include "process.h"
+
+namespace vitrail::tests {
+namespace {
+
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+const std::string kTool = VITRAIL_TEST_TOOL;
+const std::string kSanitizedTool = VITRAIL_TEST_SANITIZED_TOOL;
+
+ProcessResult in(const TemporaryFolder& folder, const std::string& tool, Words arguments) {
+  arguments.insert(arguments.begin(), tool);
+  ProcessOptions options;
+  options.folder = folder.path();
+  return run(arguments, options);
+}
+
+// A grey picture with one pixel of another grey, written by libpng's simplified interface.
+void writePng(const std::string& path, std::uint32_t width, std::uint32_t height, std::uint8_t grey,
+              std::uint8_t special) {
+  std::vector<std::uint8_t> rgba(std::size_t{width} * height * 4, grey);
+  for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = 255;
+  const std::size_t at = (std::size_t{5} * width + 7) * 4; // (7, 5)
+  std::fill_n(rgba.begin() + static_cast<std::ptrdiff_t>(at), 3, special);
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = width;
+  image.height = height;
+  image.format = PNG_FORMAT_RGBA;
+  ASSERT_NE(png_image_write_to_file(&image, path.c_str(), 0, rgba.data(), 0, nullptr), 0);
+}
+
+TEST(ComparePictures, TableReportAndHeatmap) {
+  const TemporaryFolder folder;
+  writePng(folder.file("a.png"), 20, 10, 100, 100);
+  writePng(folder.file("b.png"), 20, 10, 100, 160);
+  const ProcessResult result =
+      in(folder, kTool, {"compare", "a.png", "b.png", "--json", "r.json", "--heatmap", "h.png"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_EQ(result.error, "");
+  EXPECT_EQ(folder.names(), (Words{"a.png", "b.png", "h.png", "r.json"}));
+  // 10 log10(255^2 * 200 / 60^2)
+  EXPECT_NE(result.out.find("35.58"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("60/255   at 7,5"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("0.5 %"), std::string::npos) << result.out;
+
+  std::ifstream file(folder.file("r.json"));
+  const Json json = Json::parse(file);
+  EXPECT_EQ(json.at("expected"), "a.png");
+  EXPECT_EQ(json.at("test"), "b.png");
+  EXPECT_EQ(json.at("width"), 20);
+  EXPECT_EQ(json.at("height"), 10);
+  EXPECT_NEAR(json.at("psnr_db").get<double>(), 35.578079, 1e-5);
+  EXPECT_LT(json.at("ssim"), 1.0);
+  EXPECT_GT(json.at("flip"), 0.0);
+  EXPECT_EQ(json.at("worst"), (Json{{"x", 7}, {"y", 5}, {"difference", 60}}));
+  EXPECT_DOUBLE_EQ(json.at("off_share").get<double>(), 0.005);
+
+  const ReadPng heatmap = readPng(folder.file("h.png"));
+  ASSERT_EQ(heatmap.width, 20U);
+  ASSERT_EQ(heatmap.height, 10U);
+  // Brightest where the pictures differ, black in the far corner.
+  const auto brightness = [&](std::size_t x, std::size_t y) {
+    const std::uint8_t* pixel = &heatmap.rgba[(y * 20 + x) * 4];
+    return int{pixel[0]} + int{pixel[1]} + int{pixel[2]};
+  };
+  for (std::size_t x = 0; x < 20; ++x) EXPECT_LE(brightness(x, 5), brightness(7, 5)) << x;
+  EXPECT_GT(brightness(7, 5), 100);
+  EXPECT_EQ(brightness(19, 9), 4); // magma's first colour
+}
+
+TEST(ComparePictures, EqualPictures) {
+  const TemporaryFolder folder;
+  writePng(folder.file("a.png"), 12, 12, 9, 200);
+  const ProcessResult result = in(folder, kTool, {"compare", "a.png", "a.png", "--json", "/dev/stdout"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json json = Json::parse(result.out); // and nothing else
+  EXPECT_TRUE(json.at("psnr_db").is_null());
+  EXPECT_NEAR(json.at("ssim").get<double>(), 1.0, 1e-12);
+  EXPECT_EQ(json.at("flip"), 0.0);
+  EXPECT_EQ(json.at("worst").at("difference"), 0);
+  EXPECT_NE(in(folder, kTool, {"compare", "a.png", "a.png"}).out.find("inf"), std::string::npos);
+  EXPECT_EQ(in(folder, kTool, {"compare", "a.png", "a.png", "--quiet"}).out, "");
+}
+
+TEST(ComparePictures, WhatCannotBeComparedIsOneLine) {
+  const TemporaryFolder folder;
+  writePng(folder.file("a.png"), 20, 10, 100, 100);
+  writePng(folder.file("b.png"), 10, 20, 100, 100);
+  std::ofstream(folder.file("text.png")) << "no picture";
+  std::ofstream(folder.file("empty.png"));
+  {
+    std::ifstream whole(folder.file("a.png"), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(whole), std::istreambuf_iterator<char>()};
+    std::ofstream(folder.file("half.png"), std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+  }
+  std::filesystem::create_directory(folder.path() / "folder.png");
+  const Words before = folder.names();
+  const std::vector<std::tuple<Words, int, std::string>> cases = {
+      {{"a.png", "b.png"}, 1, "20x10"},
+      {{"a.png", "text.png"}, 1, "text.png: is not a PNG"},
+      {{"a.png", "empty.png"}, 1, "empty.png: is empty"},
+      {{"half.png", "a.png"}, 1, "half.png"},
+      {{"a.png", "folder.png"}, 1, "folder.png: is a directory"},
+      {{"a.png", "none.png"}, 1, "none.png: no such file"},
+      {{"a.png", "a.png", "--json", "nowhere/r.json"}, 1, "nowhere"},
+      {{"a.png"}, 2, "compare it with"},
+      {{"a.png", "b.png", "c.png"}, 2, "At Most 2"},
+      {{"a.png", "b.png", "--size", "10x10"}, 2, "--size"},
+      {{"a.png", "b.png", "-o", "folder"}, 2, "--output"},
+      {{"a.png", "b.png", "--scene", "spheres"}, 2, "--scene"},
+      {{"a.png", "b.png", "--json", "x", "--heatmap", "x"}, 2, "same file"},
+      {{"a.png", "b.png", "--heatmap", "./a.png"}, 2, "written over"},
+      {{}, 2, "nothing to draw"},
+      {{"--scene", "spheres", "--heatmap", "h.png"}, 2, "--heatmap"},
+      {{"--scene", "spheres", "--methods", "sorting"}, 2, "sorting"},
+      {{"--scene", "spheres", "--samples", "3"}, 2, "1, 2, 4 or 8"},
+  };
+  for (const std::string& tool : {kTool, kSanitizedTool}) {
+    for (auto [arguments, exitCode, reason] : cases) {
+      arguments.insert(arguments.begin(), "compare");
+      const ProcessResult result = in(folder, tool, arguments);
+      SCOPED_TRACE(reason);
+      EXPECT_EQ(result.exitCode, exitCode) << result.error;
+      EXPECT_EQ(result.out, "");
+      EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+      EXPECT_NE(result.error.find(reason), std::string::npos) << result.error;
+      EXPECT_EQ(folder.names(), before);
+    }
+  }
+}
+
+} // namespace
+} // namespace vitrail::tests

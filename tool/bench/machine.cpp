@@ -1,0 +1,39 @@
+#include "machine.h"
+
+#include <fmt/format.h>
+
+namespace vitrail::tool {
+
+namespace {
+
+constexpr std::uint32_t kGpuRounds = 31;
+constexpr std::uint32_t kGpuWarmups = 3;
+constexpr std::uint32_t kCpuRounds = 3; // a frame takes seconds there
+constexpr std::uint32_t kCpuWarmups = 1;
+
+} // namespace
+
+Machine machineOf(const Gpu& gpu) {
+  VkPhysicalDeviceDriverProperties driver{};
+  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = &driver;
+  vkGetPhysicalDeviceProperties2(gpu.physicalDevice(), &properties);
+  Machine machine;
+  machine.device = gpu.properties().deviceName;
+  machine.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
+  machine.api = "Vulkan 1.3";
+  machine.isCpu = gpu.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  return machine;
+}
+
+std::uint32_t roundsOn(const Machine& machine, std::optional<std::uint32_t> asked) {
+  return asked.value_or(machine.isCpu ? kCpuRounds : kGpuRounds);
+}
+
+std::uint32_t warmupsOn(const Machine& machine, std::optional<std::uint32_t> asked) {
+  return asked.value_or(machine.isCpu ? kCpuWarmups : kGpuWarmups);
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,98 @@
+// `vitrail compare`: how far pictures are from each other, and transparency methods from the exact picture.
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "../compare/comparison.h"
+#include "../compare/page.h"
+#include "../compare/table.h"
+#include "commands.h"
+#include "compare_options.h"
+#include "comparison_json.h"
+#include "file_comparison.h"
+#include "output_folder.h"
+#include "progress.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+Comparison measure(const CompareArguments& arguments) {
+  const Progress progress(!arguments.quiet);
+  progress.show("preparing");
+  const Scene scene = openScene(arguments);
+  Gpu gpu({arguments.device, arguments.validate});
+  const Machine machine = machineOf(gpu);
+  ComparisonRun run;
+  run.methods = arguments.methods;
+  run.samples = arguments.samples;
+  run.picture = pictureOf(arguments, scene);
+  run.opacity = arguments.opacity;
+  run.repeats = roundsOn(machine, arguments.repeats);
+  run.warmups = warmupsOn(machine, arguments.warmups);
+  run.progress = [&](const std::string& step) { progress.show(step); };
+  Comparison comparison = compareMethods(gpu, scene, run);
+  comparison.scene =
+      arguments.scene.empty() ? std::filesystem::path(arguments.model).filename().string() : arguments.scene;
+  comparison.count = arguments.count;
+  closeValidated(gpu);
+  return comparison;
+}
+
+void writeFolder(OutputFolder& folder, const Comparison& comparison, const std::string& json) {
+  const ComparisonPictures pictures = encodePictures(comparison);
+  folder.write("exact.png", pictures.exact);
+  folder.write("layers.png", pictures.layers);
+  for (std::size_t i = 0; i < pictures.methods.size(); ++i) {
+    const std::string& name = comparison.methods[i].measurement.options.name;
+    folder.write(name + ".png", pictures.methods[i].picture);
+    folder.write(name + "-error.png", pictures.methods[i].error);
+  }
+  folder.write("report.json", std::as_bytes(std::span(json)));
+  const std::string page = toPage(comparison, pictures, json);
+  folder.write("index.html", std::as_bytes(std::span(page)));
+}
+
+void compareOnDevice(const CompareArguments& arguments) {
+  std::optional<OutputFile> report;
+  std::optional<OutputFolder> folder;
+  if (!arguments.json.empty()) report.emplace(arguments.json);
+  if (!arguments.folder.empty()) folder.emplace(arguments.folder);
+
+  const Comparison comparison = measure(arguments);
+
+  const std::string json = toJson(comparison);
+  if (folder) writeFolder(*folder, comparison, json);
+  if (report) report->write(std::as_bytes(std::span(json)));
+  if (folder) folder->commit();
+  if (report) report->commit();
+  const bool outputIsTaken = report && report->isSpecial(); // it may be standard output
+  if (arguments.quiet || outputIsTaken) return;
+  fmt::print("{}", toTable(comparison));
+  if (folder) fmt::print("\n{}\n", (std::filesystem::path(arguments.folder) / "index.html").string());
+}
+
+void runCompare(const CLI::App& command, CompareArguments arguments) {
+  checkCompareArguments(command, arguments);
+  if (arguments.pictures()) {
+    compareFiles({arguments.files[0], arguments.files[1], arguments.heatmap, arguments.json, arguments.quiet});
+  } else {
+    compareOnDevice(arguments);
+  }
+}
+
+} // namespace
+
+void addCompareCommand(CLI::App& app, std::function<void()>& run) {
+  CLI::App* command = app.add_subcommand("compare");
+  setHelpPage(*command, withSceneHelp(kCompareHelp));
+  const auto arguments = std::make_shared<CompareArguments>();
+  addCompareOptions(*command, *arguments);
+  command->callback([command, arguments, &run] { run = [command, arguments] { runCompare(*command, *arguments); }; });
+}
+
+} // namespace vitrail::tool

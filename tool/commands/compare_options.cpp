@@ -1,0 +1,98 @@
+#include "compare_options.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "errors.h"
+#include "option_values.h"
+
+namespace vitrail::tool {
+
+const char* const kCompareHelp =
+    R"(Compares transparency methods with the exact picture, or one picture with another.
+
+Usage:
+  vitrail compare MODEL [options]
+  vitrail compare --scene NAME [options]
+  vitrail compare EXPECTED.png PICTURE.png [--heatmap FILE] [--json FILE] [--quiet]
+
+Of each method: how far its picture is from the exact one (PSNR, SSIM, FLIP, the worst pixel, the
+share of pixels that are off by more than 2/255), what it costs against plain blending in no order
+(unsorted), and its memory. The exact picture is that of linked-list with hdr nodes.
+
+@scene@
+
+What to compare:
+  --methods NAME,...    methods of vitrail render (default: all); unsorted is always there. What
+                        the device or the options do not allow is listed with the reason
+  --samples N           1 (default), 2, 4 or 8 samples a pixel
+  --repeat N            rounds, each of which draws one frame with every method (default 31, on a
+                        CPU 3)
+  --warmup N            frames of every method before the first round (default 3, on a CPU 1)
+
+Where to:
+  -o, --output DIR      a folder, made where there is none, for index.html, one page that needs
+                        nothing beside it, report.json and the pictures; files appear whole
+  --heatmap FILE        of two pictures: the FLIP error of each pixel as a .png, dark to bright
+  --json FILE           everything that was measured
+  --quiet               print nothing but errors
+
+Which device:
+  --device D            a number or a part of a name from `vitrail info`, or cpu
+                        (default: the best GPU, else the CPU)
+  --validate            run under the Vulkan validation layer and fail on any error
+
+Examples:
+  vitrail compare --scene interlocked -o comparison
+  vitrail compare engine.glb --opacity 0.25 --methods linked-list,unsorted --size 1920x1080
+  vitrail compare before.png after.png --heatmap difference.png
+)";
+
+namespace {
+
+bool isPng(const std::string& file) { return std::filesystem::path(file).extension() == ".png"; }
+
+// Options that only drawing has.
+void checkPictureOptions(const CLI::App& command) {
+  for (const char* name : {"--scene", "--count", "--seed", "--size", "--camera", "--orbit", "--opacity", "--background",
+                           "--methods", "--samples", "--repeat", "--warmup", "--output", "--device", "--validate"}) {
+    if (command.count(name) > 0) {
+      throw UsageError(fmt::format("{} is for comparing methods: two pictures are compared as they are", name));
+    }
+  }
+}
+
+} // namespace
+
+void addCompareOptions(CLI::App& command, CompareArguments& arguments) {
+  command.add_option("FILES", arguments.files)->expected(0, 2);
+  addSceneOptions(command, arguments);
+  addMethods(command, arguments.methods);
+  addPositive(command, "--samples", arguments.samples);
+  addFrames(command, "--repeat", arguments.repeats);
+  addFrames(command, "--warmup", arguments.warmups);
+  command.add_option("-o,--output", arguments.folder);
+  command.add_option("--heatmap", arguments.heatmap);
+  command.add_option("--json", arguments.json);
+  command.add_option("--device", arguments.device);
+  command.add_flag("--validate", arguments.validate);
+  command.add_flag("--quiet", arguments.quiet);
+}
+
+void checkCompareArguments(const CLI::App& command, CompareArguments& arguments) {
+  if (arguments.pictures()) return checkPictureOptions(command);
+  if (!arguments.files.empty()) arguments.model = arguments.files[0];
+  if (isPng(arguments.model)) {
+    throw UsageError(fmt::format("{} is a picture: name the picture to compare it with as well", arguments.model));
+  }
+  checkSceneArguments(arguments, "compare");
+  if (arguments.samples != 1 && arguments.samples != 2 && arguments.samples != 4 && arguments.samples != 8) {
+    throw UsageError(fmt::format("a pixel has 1, 2, 4 or 8 samples, not {}", arguments.samples));
+  }
+  if (!arguments.heatmap.empty()) {
+    throw UsageError("--heatmap is for two pictures: -o DIR has a heatmap of every method");
+  }
+}
+
+} // namespace vitrail::tool

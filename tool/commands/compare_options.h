@@ -1,0 +1,40 @@
+// What `vitrail compare` was asked for, with every text already understood.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "scene_options.h"
+
+namespace vitrail::tool {
+
+struct CompareArguments : SceneArguments {
+  std::vector<std::string> files;   // two pictures, one model, or none: a built-in scene
+  std::vector<std::string> methods; // none: all
+  std::uint32_t samples = 1;
+  std::optional<std::uint32_t> repeats; // default: by the kind of device
+  std::optional<std::uint32_t> warmups;
+  std::string folder;  // empty: no page and no pictures
+  std::string heatmap; // empty: none
+  std::string json;    // empty: no report
+  std::string device;
+  bool validate = false;
+  bool quiet = false;
+
+  bool pictures() const { return files.size() == 2; }
+};
+
+// Adds the options to a command. Texts that cannot be understood end the parse with a CLI::ValidationError.
+void addCompareOptions(CLI::App& command, CompareArguments& arguments);
+
+// Checks what one option alone does not show, and takes the model from the files. Throws UsageError.
+void checkCompareArguments(const CLI::App& command, CompareArguments& arguments);
+
+// Has the mark of withSceneHelp().
+extern const char* const kCompareHelp;
+
+} // namespace vitrail::tool

@@ -1,0 +1,16 @@
+#include "metrics_report.h"
+
+#include <cmath>
+
+namespace vitrail::tool {
+
+nlohmann::ordered_json toJson(const Metrics& metrics) {
+  using Json = nlohmann::ordered_json;
+  return {{"psnr_db", std::isinf(metrics.psnr) ? Json(nullptr) : Json(metrics.psnr)},
+          {"ssim", metrics.ssim},
+          {"flip", metrics.flip},
+          {"worst", {{"x", metrics.worstX}, {"y", metrics.worstY}, {"difference", metrics.worst}}},
+          {"off_share", metrics.offShare}};
+}
+
+} // namespace vitrail::tool

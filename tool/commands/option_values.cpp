@@ -1,0 +1,77 @@
+#include "option_values.h"
+
+#include <algorithm>
+
+#include <fmt/ranges.h>
+
+#include "../methods/method_options.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+constexpr std::uint32_t kMaxSide = 65536; // a sane bound; the device's own is checked when it is known
+constexpr std::uint32_t kMaxFrames = 100000;
+
+std::optional<std::string> methodNamed(const std::string& name) {
+  return std::ranges::count(methodNames(), name) > 0 ? std::optional(name) : std::nullopt;
+}
+
+} // namespace
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0;;) {
+    const std::size_t next = text.find(separator, at);
+    parts.push_back(text.substr(at, next - at));
+    if (next == std::string::npos) return parts;
+    at = next + 1;
+  }
+}
+
+void addSize(CLI::App& command, std::uint32_t& width, std::uint32_t& height) {
+  command.add_option_function<std::string>("--size", [&width, &height](const std::string& text) {
+    const std::vector<std::string> parts = split(text, 'x');
+    const std::uint32_t wide = parts.size() == 2 ? numberOf<std::uint32_t>(parts[0]).value_or(0) : 0;
+    const std::uint32_t high = parts.size() == 2 ? numberOf<std::uint32_t>(parts[1]).value_or(0) : 0;
+    if (wide < 1 || high < 1 || wide > kMaxSide || high > kMaxSide) {
+      throw CLI::ValidationError("--size", fmt::format("'{}' is not a size such as 1280x720", text));
+    }
+    width = wide;
+    height = high;
+  });
+}
+
+void addOpacity(CLI::App& command, std::optional<float>& opacity) {
+  command.add_option_function<std::string>("--opacity", [&opacity](const std::string& text) {
+    const auto value = numberOf<float>(text);
+    // The first opacity that the standard node format does not round to none.
+    if (!value || !(*value >= 1.0F / 255.0F) || *value > 1.0F) {
+      throw CLI::ValidationError("--opacity", fmt::format("'{}' is not between 1/255 (0.004) and 1", text));
+    }
+    opacity = *value;
+  });
+}
+
+void addCount(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& target) {
+  command.add_option_function<std::string>(name, [name, &target](const std::string& text) {
+    target = numberOf<std::uint32_t>(text);
+    if (!target) throw CLI::ValidationError(name, fmt::format("'{}' is not a whole number from 0", text));
+  });
+}
+
+void addFrames(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& target) {
+  command.add_option_function<std::string>(name, [name, &target](const std::string& text) {
+    target = numberOf<std::uint32_t>(text);
+    if (!target || *target < 1 || *target > kMaxFrames) {
+      throw CLI::ValidationError(name, fmt::format("'{}' is not a whole number from 1 to {}", text, kMaxFrames));
+    }
+  });
+}
+
+void addMethods(CLI::App& command, std::vector<std::string>& methods) {
+  addList<std::string>(command, "--methods", methods,
+                       fmt::format("a method; there are {}", fmt::join(methodNames(), ", ")), methodNamed);
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,38 @@
+// A folder of files that appear together, each whole.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "output_file.h"
+
+namespace vitrail::tool {
+
+// Files are written beside their final names in the folder, and get these by commit(). Until then files that were there
+// are untouched; the temporary ones are removed as OutputFile does it, and so is the folder where it was made for them.
+class OutputFolder {
+ public:
+  // Checks that the folder can be made, or is there and can be written to: throws std::runtime_error with a one-line
+  // reason. Makes nothing yet.
+  explicit OutputFolder(std::filesystem::path path);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  // Writes a whole file under a temporary name; the folder is made where there is none. Throws std::runtime_error.
+  void write(const std::string& name, std::span<const std::byte> content);
+
+  // Gives all files their names. Throws std::runtime_error.
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  bool made_ = false; // and not committed yet
+  std::vector<std::unique_ptr<OutputFile>> files_;
+};
+
+} // namespace vitrail::tool

@@ -1,0 +1,51 @@
+// What a picture is of and how it is looked at: the options that render and compare share.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "../draw/renderer.h"
+#include "../scene/builtin.h"
+#include "../scene/camera.h"
+#include "../scene/scene.h"
+
+namespace vitrail::tool {
+
+struct SceneArguments {
+  std::string model; // empty: a built-in scene
+  std::string scene;
+  std::optional<std::uint32_t> count;
+  std::optional<std::uint32_t> seed;
+  std::uint32_t width = 1280;
+  std::uint32_t height = 720;
+  std::optional<std::uint32_t> camera;
+  std::optional<Orbit> orbit;
+  std::optional<float> opacity;
+  std::optional<Background> background;
+};
+
+// Adds all of them but MODEL. Texts that cannot be understood end the parse with a CLI::ValidationError.
+void addSceneOptions(CLI::App& command, SceneArguments& arguments);
+
+// A help page with all of them and MODEL in place of the mark @scene@.
+std::string withSceneHelp(std::string page);
+
+// Checks what one option alone does not show. Throws UsageError.
+void checkSceneArguments(const SceneArguments& arguments, const std::string& command);
+
+// Throws std::runtime_error that names the file, or UsageError.
+Scene openModel(const std::string& file);
+Scene openBuiltin(const std::string& name, const BuiltinOptions& options);
+Scene openScene(const SceneArguments& arguments);
+
+// Size, view and background. Throws UsageError where the scene does not have the camera.
+RenderOptions pictureOf(const SceneArguments& arguments, const Scene& scene);
+
+// Destroys the device once all that was made on it is gone. Throws std::runtime_error where the validation layer has
+// reported errors.
+void closeValidated(Gpu& gpu);
+
+} // namespace vitrail::tool

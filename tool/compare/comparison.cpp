@@ -1,0 +1,112 @@
+#include "comparison.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "../bench/matrix.h"
+#include "../bench/runner.h"
+#include "../methods/layer_count.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+void tell(const ComparisonRun& run, const std::string& step) {
+  if (run.progress) run.progress(step);
+}
+
+RenderResult drawExact(Gpu& gpu, const Scene& scene, const ComparisonRun& run) {
+  MethodOptions options;
+  options.nodes = VITRAIL_NODE_HDR;
+  options.samples = run.samples;
+  Renderer renderer(gpu, scene, run.opacity, DrawOrder::Forward, options);
+  return renderer.render(run.picture);
+}
+
+// Fills in the fragments of each pixel.
+void countLayers(Gpu& gpu, const Scene& scene, const ComparisonRun& run, Comparison& result) {
+  MethodOptions options;
+  options.name = kLayerCount;
+  Renderer renderer(gpu, scene, run.opacity, DrawOrder::Forward, options);
+  const FrameReport frame = renderer.measure(run.picture);
+  result.layers = Plane(run.picture.width, run.picture.height);
+  std::ranges::copy(frame.pixelLayers, result.layers.values.begin());
+  result.layersMax = frame.layersMax;
+}
+
+// The baseline and the methods that were asked for, each once, less those that the options do not allow.
+std::vector<MethodOptions> settingsOf(const ComparisonRun& run, std::vector<RefusedMethod>& refused) {
+  std::vector<std::string> names{std::string(kBaselineMethod)};
+  const auto add = [&](const std::string& name) {
+    if (std::ranges::count(names, name) == 0) names.push_back(name);
+  };
+  if (run.methods.empty()) {
+    for (const std::string_view name : methodNames()) add(std::string(name));
+  }
+  for (const std::string& name : run.methods) add(name);
+
+  std::vector<MethodOptions> settings;
+  for (const std::string& name : names) {
+    MethodOptions options;
+    options.name = name;
+    options.samples = run.samples;
+    try {
+      checkMethodOptions(options);
+      settings.push_back(options);
+    } catch (const std::invalid_argument& error) {
+      refused.push_back({name, error.what()});
+    }
+  }
+  return settings;
+}
+
+BenchRun benchOf(const ComparisonRun& run, std::vector<MethodOptions> settings) {
+  BenchRun bench;
+  bench.settings = std::move(settings);
+  bench.picture = run.picture;
+  bench.opacity = run.opacity;
+  bench.repeats = run.repeats;
+  bench.warmups = run.warmups;
+  bench.progress = run.progress;
+  return bench;
+}
+
+} // namespace
+
+Comparison compareMethods(Gpu& gpu, const Scene& scene, const ComparisonRun& run) {
+  Comparison result;
+  static_cast<Machine&>(result) = machineOf(gpu);
+  result.width = run.picture.width;
+  result.height = run.picture.height;
+  result.samples = run.samples;
+  result.repeats = run.repeats;
+  result.warmups = run.warmups;
+  tell(run, "the exact picture");
+  RenderResult exact = drawExact(gpu, scene, run);
+  result.exact = std::move(exact.picture);
+  result.exactFrame = std::move(exact.report);
+  tell(run, "depth complexity");
+  countLayers(gpu, scene, run, result);
+
+  BenchRun bench = benchOf(run, settingsOf(run, result.refused));
+  std::vector<Picture> pictures; // in the order of the measurements
+  bench.takePicture = [&](const MethodOptions& options, RenderResult drawn) {
+    tell(run, "picture of " + options.name);
+    pictures.push_back(std::move(drawn.picture));
+  };
+  SceneMeasurement measured = measureScene(gpu, scene, bench);
+  result.triangles = measured.triangles;
+  for (const SkippedSetting& skipped : measured.skipped)
+    result.refused.push_back({skipped.options.name, skipped.reason});
+
+  const ComparedPicture reference(result.exact);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    tell(run, "difference of " + measured.measurements[i].options.name);
+    Difference difference = reference.differenceTo(pictures[i]);
+    result.methods.push_back({std::move(measured.measurements[i]), std::move(pictures[i]), std::move(difference)});
+  }
+  return result;
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,103 @@
+#include "page.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "../image/color_map.h"
+#include "../image/png_encode.h"
+#include "files/chart.min.js.h"
+#include "files/page.css.h"
+#include "files/page.html.h"
+#include "files/page.js.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+std::string_view textOf(std::span<const unsigned char> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// RFC 4648.
+std::string base64(std::span<const std::byte> bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = i; k < i + 3; ++k) {
+      group = group << 8U | (k < bytes.size() ? std::to_integer<std::uint32_t>(bytes[k]) : 0U);
+    }
+    const std::size_t present = std::min<std::size_t>(3, bytes.size() - i);
+    for (std::size_t digit = 0; digit < 4; ++digit) {
+      text += digit <= present ? kDigits[group >> (18 - 6 * digit) & 63U] : '=';
+    }
+  }
+  return text;
+}
+
+std::string pngUri(std::span<const std::byte> png) { return "\"data:image/png;base64," + base64(png) + "\""; }
+
+std::string colorsOf(const ColorMap& map) {
+  std::string text;
+  for (const auto& color : map) {
+    text += fmt::format("{}\"rgb({} {} {})\"", text.empty() ? "[" : ",", color[0], color[1], color[2]);
+  }
+  return text + "]";
+}
+
+// JSON inside a page must not end the element that it lies in.
+std::string withoutTags(std::string json) {
+  constexpr std::string_view kEscaped = "\\u003c";
+  for (std::size_t at = json.find('<'); at != std::string::npos; at = json.find('<', at + kEscaped.size())) {
+    json.replace(at, 1, kEscaped);
+  }
+  return json;
+}
+
+std::string dataOf(const Comparison& comparison, const ComparisonPictures& pictures, const std::string& report) {
+  std::string methods;
+  for (std::size_t i = 0; i < pictures.methods.size(); ++i) {
+    methods += fmt::format("{}{{\"name\":\"{}\",\"picture\":{},\"error\":{}}}", i == 0 ? "" : ",",
+                           comparison.methods[i].measurement.options.name, pngUri(pictures.methods[i].picture),
+                           pngUri(pictures.methods[i].error));
+  }
+  return fmt::format(R"({{"report":{},"exact":{},"layers":{},"error_colors":{},"layers_colors":{},"methods":[{}]}})",
+                     withoutTags(report), pngUri(pictures.exact), pngUri(pictures.layers), colorsOf(kMagma),
+                     colorsOf(kViridis), methods);
+}
+
+} // namespace
+
+ComparisonPictures encodePictures(const Comparison& comparison) {
+  ComparisonPictures pictures;
+  pictures.exact = encodePng(comparison.exact);
+  pictures.layers = encodePng(heatmap(comparison.layers, comparison.layersMax, kViridis));
+  for (const ComparedMethod& method : comparison.methods) {
+    pictures.methods.push_back({encodePng(method.picture), encodePng(heatmap(method.difference.flip, 1.0, kMagma))});
+  }
+  return pictures;
+}
+
+std::string toPage(const Comparison& comparison, const ComparisonPictures& pictures, const std::string& report) {
+  const std::string data = dataOf(comparison, pictures, report);
+  const std::pair<std::string_view, std::string_view> parts[] = {{"@style@", textOf(files::page_css)},
+                                                                 {"@version@", VITRAIL_VERSION},
+                                                                 {"@data@", data},
+                                                                 {"@charts@", textOf(files::chart_min_js)},
+                                                                 {"@script@", textOf(files::page_js)}};
+  std::string page;
+  std::string_view rest = textOf(files::page_html);
+  for (const auto& [mark, content] : parts) { // in the order in which the page has them
+    const std::size_t at = rest.find(mark);
+    page.append(rest.substr(0, at)).append(content);
+    rest.remove_prefix(at + mark.size());
+  }
+  return page.append(rest);
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,199 @@
+// Fills the page with what the comparison says. Everything lies in the page itself.
+"use strict";
+{
+  const comparison = JSON.parse(document.getElementById("comparison").textContent);
+  const report = comparison.report;
+  const byId = (id) => document.getElementById(id);
+
+  function add(parent, tag, text, attributes = {}) {
+    const element = document.createElement(tag);
+    if (text !== undefined) element.textContent = text;
+    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+    parent.append(element);
+    return element;
+  }
+
+  const MIB = 1024 * 1024;
+  const whole = (value) => value.toLocaleString("en");
+  const ratio = (value) => (value === null ? "–" : value.toFixed(2) + "×");
+  const psnr = (value) => (value === null ? "∞" : value.toFixed(2));
+  const flip = (value) => (value > 0 && value < 0.00005 ? "<0.0001" : value.toFixed(4));
+  const ssim = (value) => (value < 1 - 1e-12 && value >= 0.99995 ? ">0.9999" : value.toFixed(4));
+  const share = (value) => (value === 0 ? "0" : value < 0.0005 ? "<0.1 %" : (100 * value).toFixed(1) + " %");
+  const worst = (w) => (w.difference === 0 ? "0" : `${w.difference} at ${w.x},${w.y}`);
+
+  function fillHeader() {
+    const name = report.scene + (report.count === null ? "" : ` × ${report.count}`);
+    byId("title").textContent = `Transparency methods compared: ${name}`;
+    document.title = `${name} – transparency methods compared`;
+    const samples = report.samples > 1 ? `, ${report.samples} samples a pixel` : "";
+    byId("subject").textContent =
+      `${report.width} × ${report.height} pixels${samples}; ${whole(report.triangles)} triangles, ` +
+      `${whole(report.exact_picture.fragments)} transparent fragments, up to ${report.layers_max} in one pixel.`;
+    byId("machine").textContent =
+      `${report.device} (${report.driver}), ${report.api}; medians of ${report.repeats} rounds.` +
+      (report.cpu ? " This device is a CPU, whose times are the machine's: ratios alone are shown." : "");
+  }
+
+  function fillTable() {
+    const columns = ["method", "PSNR", "SSIM", "FLIP", "worst", "off", "cost", "frame"];
+    if (!report.cpu) columns.push("cost, ms", "frame, ms");
+    columns.push("memory, MiB");
+    const table = byId("table");
+    const head = add(add(table, "thead"), "tr");
+    for (const column of columns) add(head, "th", column);
+    const body = add(table, "tbody");
+    for (const method of report.methods) {
+      const m = method.metrics;
+      const row = add(body, "tr");
+      add(row, "td", method.method);
+      add(row, "td", psnr(m.psnr_db), m.psnr_db === null ? { class: "equal" } : {});
+      const texts = [ssim(m.ssim), flip(m.flip), worst(m.worst), share(m.off_share), ratio(method.cost_ratio),
+        ratio(method.frame_ratio)];
+      if (!report.cpu) texts.push(method.cost_ms.median.toFixed(3), method.frame_ms.median.toFixed(3));
+      texts.push((method.memory_bytes / MIB).toFixed(1));
+      for (const text of texts) add(row, "td", text);
+    }
+    if (report.refused.length === 0) return;
+    const refused = byId("refused");
+    refused.append("Left out:");
+    const list = add(refused, "ul");
+    for (const method of report.refused) add(list, "li", `${method.method}: ${method.reason}`);
+  }
+
+  // The pictures that the slider chooses from.
+  const choices = [{ name: "exact", picture: comparison.exact }, ...comparison.methods];
+
+  function fillSlider() {
+    const show = (side) => {
+      const choice = choices[byId(side).selectedIndex];
+      const image = byId(`slider-${side}`);
+      image.src = choice.picture;
+      image.alt = choice.name;
+    };
+    for (const side of ["left", "right"]) {
+      for (const choice of choices) add(byId(side), "option", choice.name);
+      byId(side).addEventListener("change", () => show(side));
+    }
+    byId("left").selectedIndex = Math.max(1, choices.findIndex((choice) => choice.name === "unsorted"));
+    show("left");
+    show("right");
+  }
+
+  function moveSlider(percent) {
+    const at = Math.min(100, Math.max(0, percent));
+    byId("slider").style.setProperty("--at", `${at}%`);
+    byId("handle").setAttribute("aria-valuenow", at.toFixed(1));
+  }
+
+  function wireSlider() {
+    const slider = byId("slider");
+    const drag = (event) => {
+      const box = slider.getBoundingClientRect();
+      moveSlider(((event.clientX - box.left) / box.width) * 100);
+    };
+    slider.addEventListener("pointerdown", (event) => {
+      slider.setPointerCapture(event.pointerId);
+      drag(event);
+    });
+    slider.addEventListener("pointermove", (event) => {
+      if (slider.hasPointerCapture(event.pointerId)) drag(event);
+    });
+    byId("handle").addEventListener("keydown", (event) => {
+      const steps = { ArrowLeft: -2, ArrowRight: 2, Home: -100, End: 100 };
+      if (!(event.key in steps)) return;
+      moveSlider(Number(byId("handle").getAttribute("aria-valuenow")) + steps[event.key]);
+      event.preventDefault();
+    });
+    moveSlider(50);
+  }
+
+  function fillPictures() {
+    const pair = (name, note, first, second) => {
+      const group = add(byId("pictures"), "div", undefined, { class: "pair" });
+      const heading = add(group, "h3", name);
+      add(heading, "small", note);
+      for (const [kind, source] of [["picture", first], ["error", second]]) {
+        add(add(group, "figure"), "img", undefined, { src: source, alt: `${name}, ${kind}` });
+      }
+    };
+    comparison.methods.forEach((method, i) => {
+      const m = report.methods[i].metrics;
+      pair(method.name, m.psnr_db === null ? "equal to the exact picture" : `FLIP ${flip(m.flip)}, PSNR ${psnr(m.psnr_db)} dB`,
+        method.picture, method.error);
+    });
+  }
+
+  const gradient = (colors) => `linear-gradient(to right, ${colors.join(", ")})`;
+
+  function fillLegends() {
+    byId("error-legend").style.background = gradient(comparison.error_colors);
+    byId("exact").src = comparison.exact;
+    byId("exact-note").textContent =
+      `By ${report.exact_picture.method} with ${report.exact_picture.nodes} nodes; all pictures are compared with it`;
+    byId("layers").src = comparison.layers;
+    const legend = byId("layers-legend");
+    add(legend, "i").style.background = gradient(comparison.layers_colors);
+    const marks = add(legend, "div");
+    const most = report.layers_max;
+    const parts = Math.max(1, Math.min(4, most));
+    for (let i = 0; i <= parts; ++i) {
+      const layers = Math.round((most * i) / parts);
+      add(marks, "span", whole(layers)).style.left = `${most > 0 ? (100 * layers) / most : 0}%`;
+    }
+  }
+
+  const PALETTE = ["#5b8def", "#e2884a", "#3fa77a", "#c069c4", "#c9a227", "#d0605e", "#6aa9b8", "#8a8f99"];
+  let charts = [];
+
+  function drawChart(id, datasets, stacked, unit) {
+    const style = getComputedStyle(document.documentElement);
+    const ink = style.getPropertyValue("--ink").trim();
+    const line = style.getPropertyValue("--line").trim();
+    const names = report.methods.map((method) => method.method);
+    byId(id).parentElement.style.height = `${5 + 1.9 * names.length}rem`;
+    charts.push(new Chart(byId(id), {
+      type: "bar",
+      data: { labels: names, datasets },
+      options: {
+        indexAxis: "y", animation: false, maintainAspectRatio: false,
+        scales: {
+          x: { stacked, beginAtZero: true, grid: { color: line, borderColor: line }, ticks: { color: ink } },
+          y: { stacked, grid: { display: false, borderColor: line }, ticks: { color: ink, autoSkip: false } },
+        },
+        plugins: {
+          legend: { display: stacked, position: "bottom", labels: { color: ink, boxWidth: 12 } },
+          tooltip: { callbacks: { label: (item) => `${item.dataset.label}: ${item.parsed.x.toPrecision(3)}${unit}` } },
+        },
+      },
+    }));
+  }
+
+  function drawCharts() {
+    for (const chart of charts) chart.destroy();
+    charts = [];
+    const methods = report.methods;
+    const unit = methods[0].cost_ms.median; // the baseline stands first
+    const passes = [...new Set(methods.flatMap((method) => Object.keys(method.passes_ms)))].filter((p) => p !== "opaque");
+    const ofPass = (method, pass) => (pass in method.passes_ms && unit > 0 ? method.passes_ms[pass].median / unit : 0);
+    drawChart("cost", passes.map((pass, i) => ({
+      label: pass.replaceAll("_", " "), data: methods.map((method) => ofPass(method, pass)),
+      backgroundColor: PALETTE[i % PALETTE.length],
+    })), true, "×");
+    const plain = (label, data, color) => [{ label, data, backgroundColor: color }];
+    drawChart("error", plain("FLIP", methods.map((method) => method.metrics.flip), PALETTE[5]), false, "");
+    drawChart("memory", plain("memory", methods.map((method) => method.memory_bytes / MIB), PALETTE[0]), false, " MiB");
+  }
+
+  Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
+  byId("chart-version").textContent = `Chart.js ${Chart.version}`;
+  document.body.classList.toggle("coarse", report.width < 640);
+  fillHeader();
+  fillTable();
+  fillSlider();
+  wireSlider();
+  fillPictures();
+  fillLegends();
+  drawCharts();
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawCharts);
+}

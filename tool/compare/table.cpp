@@ -1,0 +1,72 @@
+#include "table.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "../image/metrics_text.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+// One row: method, five measures of the picture, cost and its ratio, frame, memory.
+constexpr char kRow[] = " {:<22}{:>8}{:>9}{:>9}{:>17}{:>9}{:>11}{:>8}{:>11}{:>13}\n";
+
+constexpr const char* kLegend =
+    R"(PSNR in dB, inf: equal to the exact picture. SSIM 1: equal. FLIP 0: no difference is seen, 1: the largest there is.
+worst: the largest difference of a channel, and its pixel. off: pixels that differ by more than 2/255 in any channel.
+cost: milliseconds of GPU time for the transparent surfaces, x: times unsorted's; frame: the opaque ones too. Medians.
+)";
+
+std::string milliseconds(double value) { return fmt::format("{:.{}f}", value, value < 1000.0 ? 3 : 1); }
+std::string ratio(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; }
+std::string mebibytes(std::uint64_t bytes) {
+  return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1024.0 * 1024.0));
+}
+
+std::string worstText(const Metrics& metrics) {
+  return metrics.worst == 0 ? "0" : fmt::format("{} at {},{}", metrics.worst, metrics.worstX, metrics.worstY);
+}
+
+std::string rowOf(const ComparedMethod& method) {
+  const Metrics& metrics = method.difference.metrics;
+  const Measurement& measured = method.measurement;
+  return fmt::format(kRow, measured.options.name, psnrText(metrics.psnr), ssimText(metrics.ssim),
+                     flipText(metrics.flip), worstText(metrics), shareText(metrics.offShare),
+                     milliseconds(measured.costMs.median), ratio(measured.costRatio),
+                     milliseconds(measured.frameMs.median), mebibytes(measured.report.totalBytes));
+}
+
+std::string passesOf(const ComparedMethod& method) {
+  std::string text = fmt::format(" {:<22}", method.measurement.options.name);
+  const char* separator = "";
+  for (const auto& [name, spread] : method.measurement.passes) {
+    text += fmt::format("{}{} {}", separator, name, milliseconds(spread.median));
+    separator = ", ";
+  }
+  return text + "\n";
+}
+
+} // namespace
+
+std::string toTable(const Comparison& comparison) {
+  std::string table =
+      fmt::format("{} ({}), {}\n{}", comparison.device, comparison.driver, comparison.api, comparison.scene);
+  if (comparison.count) table += fmt::format(" --count {}", *comparison.count);
+  table += fmt::format(", {}x{}, {} {} a pixel; {} transparent fragments, {} deep\n", comparison.width,
+                       comparison.height, comparison.samples, comparison.samples > 1 ? "samples" : "sample",
+                       comparison.exactFrame.fragmentsRequested, comparison.layersMax);
+  if (comparison.isCpu) table += "This device is a CPU: only the ratios say something, its times are the machine's.\n";
+  table += '\n';
+  table += fmt::format(kRow, "method", "PSNR", "SSIM", "FLIP", "worst", "off", "cost", "x", "frame", "memory");
+  for (const ComparedMethod& method : comparison.methods) table += rowOf(method);
+  table += "\n passes, ms\n";
+  for (const ComparedMethod& method : comparison.methods) table += passesOf(method);
+  for (const RefusedMethod& refused : comparison.refused) {
+    table += fmt::format(" left out {}: {}\n", refused.name, refused.reason);
+  }
+  return table + '\n' + kLegend;
+}
+
+} // namespace vitrail::tool
