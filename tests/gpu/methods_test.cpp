@@ -59,6 +59,21 @@ const std::vector<MethodRow>& rows() {
       {.name = "unsorted", .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "sorted", .exact = Exact::ParallelPanes, .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "sorted-triangles", .exact = Exact::ParallelParts, .options = {}, .wrongWhereSurfacesCross = true},
+      {.name = "depth-peeling",
+       .exact = Exact::Everywhere,
+       .orderFree = true, // but for surfaces at equal depths
+       .severalSamples = false,
+       .options = {"--layers"}},
+      {.name = "reverse-depth-peeling",
+       .exact = Exact::Everywhere,
+       .orderFree = true, // but for surfaces at equal depths
+       .severalSamples = false,
+       .options = {}},
+      {.name = "dual-depth-peeling",
+       .exact = Exact::Everywhere, // but for different surfaces at equal depths
+       .orderFree = true,
+       .severalSamples = false,
+       .options = {}},
       {.name = "insertion",
        .exact = Exact::Everywhere,
        .orderFree = true,

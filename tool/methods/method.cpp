@@ -3,8 +3,11 @@
 
 #include <stdexcept>
 
+#include "depth_peeling.h"
+#include "dual_depth_peeling.h"
 #include "insertion.h"
 #include "linked_list.h"
+#include "reverse_depth_peeling.h"
 #include "sorted.h"
 #include "sorted_triangles.h"
 #include "unsorted.h"
@@ -16,6 +19,9 @@ std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& 
   if (options.name == "unsorted") return std::make_unique<Unsorted>(host, options);
   if (options.name == "sorted") return std::make_unique<Sorted>(host, options);
   if (options.name == "sorted-triangles") return std::make_unique<SortedTriangles>(host, options);
+  if (options.name == "depth-peeling") return std::make_unique<DepthPeeling>(host, options);
+  if (options.name == "reverse-depth-peeling") return std::make_unique<ReverseDepthPeeling>(host, options);
+  if (options.name == "dual-depth-peeling") return std::make_unique<DualDepthPeeling>(host);
   if (options.name == "insertion") return std::make_unique<Insertion>(host);
   throw std::logic_error("a method that cannot be made: " + options.name);
 }
