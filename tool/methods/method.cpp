@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "a_buffer.h"
 #include "depth_peeling.h"
 #include "dual_depth_peeling.h"
 #include "insertion.h"
@@ -22,6 +23,7 @@ std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& 
   if (options.name == "depth-peeling") return std::make_unique<DepthPeeling>(host, options);
   if (options.name == "reverse-depth-peeling") return std::make_unique<ReverseDepthPeeling>(host, options);
   if (options.name == "dual-depth-peeling") return std::make_unique<DualDepthPeeling>(host);
+  if (options.name == "a-buffer") return std::make_unique<ABuffer>(host);
   if (options.name == "insertion") return std::make_unique<Insertion>(host);
   throw std::logic_error("a method that cannot be made: " + options.name);
 }

@@ -29,6 +29,7 @@ constexpr std::array kMethods{
     MethodTraits{.name = "depth-peeling", .severalSamples = false, .layers = true},
     MethodTraits{.name = "reverse-depth-peeling", .severalSamples = false},
     MethodTraits{.name = "dual-depth-peeling", .severalSamples = false},
+    MethodTraits{.name = "a-buffer", .severalSamples = false},
     MethodTraits{.name = "insertion", .severalSamples = false, .nodeCapacity = true},
 };
 
