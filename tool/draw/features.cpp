@@ -60,6 +60,8 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   result.poolByAddress = result.bufferDeviceAddress && properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
   result.dualSourceBlending = features.features.dualSrcBlend == VK_TRUE;
   result.sampleRateShading = features.features.sampleRateShading == VK_TRUE;
+  result.primitiveNumbers = features.features.geometryShader == VK_TRUE;
+  result.independentBlending = features.features.independentBlend == VK_TRUE;
   result.postDepthCoverage = hasExtension(device, VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
   result.sampleCounts = pictureSampleCounts(device, limits);
   const VkSampleCountFlags stencil =

@@ -47,16 +47,16 @@ GpuImage makeDepth(Gpu& gpu, const PictureImagesInfo& info) {
   return {gpu, image, "depth image"};
 }
 
-// A view that shaders sample, which may not show a stencil too.
-Unique<VkImageView> makeDepthView(Gpu& gpu, const GpuImage& depth) {
+// A view that shaders sample, which may show one aspect only.
+Unique<VkImageView> makeAspectView(Gpu& gpu, const GpuImage& depth, VkImageAspectFlags aspect, const char* name) {
   auto info = vkStruct<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
   info.image = depth.get();
   info.viewType = VK_IMAGE_VIEW_TYPE_2D;
   info.format = depth.info().format;
-  info.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
+  info.subresourceRange = {aspect, 0, 1, 0, 1};
   VkImageView view = VK_NULL_HANDLE;
-  check(vkCreateImageView(gpu.device(), &info, nullptr, &view), "vkCreateImageView (sampled depth)");
-  setDebugName(gpu.device(), VK_OBJECT_TYPE_IMAGE_VIEW, view, "sampled depth");
+  check(vkCreateImageView(gpu.device(), &info, nullptr, &view), "vkCreateImageView (sampled depth or stencil)");
+  setDebugName(gpu.device(), VK_OBJECT_TYPE_IMAGE_VIEW, view, name);
   return {gpu.device(), view, vkDestroyImageView};
 }
 
@@ -66,7 +66,12 @@ PictureImages::PictureImages(Gpu& gpu, const PictureImagesInfo& info) : info_(in
   checkExtent(gpu, info.extent);
   color_ = UsedImage(makeColor(gpu, info, VK_SAMPLE_COUNT_1_BIT, "colour image"));
   depth_ = UsedImage(makeDepth(gpu, info));
-  if ((info.depthUsage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0) sampledDepth_ = makeDepthView(gpu, depth_.get());
+  if ((info.depthUsage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0) {
+    sampledDepth_ = makeAspectView(gpu, depth_.get(), VK_IMAGE_ASPECT_DEPTH_BIT, "sampled depth");
+    if (info.stencil) {
+      sampledStencil_ = makeAspectView(gpu, depth_.get(), VK_IMAGE_ASPECT_STENCIL_BIT, "sampled stencil");
+    }
+  }
   if (info.samples > VK_SAMPLE_COUNT_1_BIT) {
     multisampled_ = UsedImage(makeColor(gpu, info, info.samples, "multisampled colour image"));
   }

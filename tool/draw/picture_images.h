@@ -31,6 +31,7 @@ class PictureImages {
   VkFormat depthFormat() const { return depthFormat(info_.stencil); }
   const GpuImage& multisampled() const { return multisampled_.get(); } // none at one sample
   VkImageView sampledDepth() const { return sampledDepth_.get(); }     // of the depth aspect; null unless sampled
+  VkImageView sampledStencil() const { return sampledStencil_.get(); } // of the stencil; null unless that is sampled
 
   // The picture: one sample, with storage usage.
   UsedImage& color() { return color_; }
@@ -70,6 +71,7 @@ class PictureImages {
   UsedImage multisampled_;
   UsedImage depth_;
   Unique<VkImageView> sampledDepth_;
+  Unique<VkImageView> sampledStencil_;
 };
 
 } // namespace vitrail::tool

@@ -125,6 +125,7 @@ void Renderer::Impl::prepare(const RenderOptions& picture) {
   target.color = images.color().get().view();
   target.opaque = images.multisampled().view();
   target.depth = images.sampledDepth();
+  target.stencil = images.sampledStencil();
   target.nodeCapacity = picture.nodeCapacity;
   target.memoryBudget = picture.memoryBudget;
   target.surfaces = !surfaces.scene().transparentDraws().empty();

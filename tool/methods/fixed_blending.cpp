@@ -9,12 +9,17 @@
 namespace vitrail::tool {
 
 SurfacePipelines makeBlendedSurfaces(const MethodHost& host, const MethodOptions& options, const std::string& method) {
+  return makeBlendedSurfaces(host, options, {.name = method}, [](std::uint32_t, GraphicsPipelineInfo&) {});
+}
+
+SurfacePipelines makeBlendedSurfaces(const MethodHost& host, const MethodOptions& options,
+                                     const SurfaceProgram& program, const SurfacePipelines::Describe& adjust) {
   const auto describe = [&](std::uint32_t features, GraphicsPipelineInfo& info) {
     const bool transmissive = (features & shaders::FEATURE_TRANSMISSION) != 0;
     if (transmissive && !host.gpu.features().dualSourceBlending) {
       throw GpuError(
           fmt::format("{} has no dual-source blending, which the method {} needs for surfaces that transmit light",
-                      host.gpu.properties().deviceName, method));
+                      host.gpu.properties().deviceName, program.name));
     }
     // The shader's first output plus what is there times the factor.
     const BlendFactors over{VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA};
@@ -25,8 +30,9 @@ SurfacePipelines makeBlendedSurfaces(const MethodHost& host, const MethodOptions
     info.samples = static_cast<VkSampleCountFlagBits>(options.samples); // a flag's value is its count
     info.colors = {{PictureImages::kColorFormat, transmissive ? blendWith(color, alpha) : blendWith(over, over)}};
     info.depthFormat = PictureImages::depthFormat(false);
+    adjust(features, info);
   };
-  return {host.surfaces, host.surfaces.scene().transparentDraws(), {.name = method}, describe};
+  return {host.surfaces, host.surfaces.scene().transparentDraws(), program, describe};
 }
 
 void cmdBeginBlending(Frame& frame) {

@@ -3,9 +3,13 @@
 
 #include <stdexcept>
 
+#include "a_buffer.h"
+#include "depth_peeling.h"
+#include "dual_depth_peeling.h"
 #include "insertion.h"
 #include "layer_count.h"
 #include "linked_list.h"
+#include "reverse_depth_peeling.h"
 #include "sorted.h"
 #include "sorted_triangles.h"
 #include "unsorted.h"
@@ -17,6 +21,10 @@ std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& 
   if (options.name == "unsorted") return std::make_unique<Unsorted>(host, options);
   if (options.name == "sorted") return std::make_unique<Sorted>(host, options);
   if (options.name == "sorted-triangles") return std::make_unique<SortedTriangles>(host, options);
+  if (options.name == "depth-peeling") return std::make_unique<DepthPeeling>(host, options);
+  if (options.name == "reverse-depth-peeling") return std::make_unique<ReverseDepthPeeling>(host, options);
+  if (options.name == "dual-depth-peeling") return std::make_unique<DualDepthPeeling>(host);
+  if (options.name == "a-buffer") return std::make_unique<ABuffer>(host);
   if (options.name == "insertion") return std::make_unique<Insertion>(host);
   if (options.name == kLayerCount) return std::make_unique<LayerCount>(host);
   throw std::logic_error("a method that cannot be made: " + options.name);

@@ -39,9 +39,10 @@ struct MethodHost {
 // colour; Frame::images() has them too.
 struct MethodTarget {
   VkExtent2D extent{};
-  VkImageView color = VK_NULL_HANDLE;  // single-sample, with storage usage
-  VkImageView opaque = VK_NULL_HANDLE; // samples > 1: the multisampled colour, with sampled usage unless perSample
-  VkImageView depth = VK_NULL_HANDLE;  // the opaque depth, where MethodNeeds::depthUsage has it sampled
+  VkImageView color = VK_NULL_HANDLE;   // single-sample, with storage usage
+  VkImageView opaque = VK_NULL_HANDLE;  // samples > 1: the multisampled colour, with sampled usage unless perSample
+  VkImageView depth = VK_NULL_HANDLE;   // the opaque depth, where MethodNeeds::depthUsage has it sampled
+  VkImageView stencil = VK_NULL_HANDLE; // and the stencil beside it, where MethodNeeds::stencil has one
   // Fixes the number of fragments that are kept; a frame that has more is blended approximately. Default: the frame's.
   // For methods that have it.
   std::optional<std::uint32_t> nodeCapacity;

@@ -26,6 +26,10 @@ constexpr std::array kMethods{
     MethodTraits{.name = "unsorted"},
     MethodTraits{.name = "sorted"},
     MethodTraits{.name = "sorted-triangles"},
+    MethodTraits{.name = "depth-peeling", .severalSamples = false, .layers = true},
+    MethodTraits{.name = "reverse-depth-peeling", .severalSamples = false},
+    MethodTraits{.name = "dual-depth-peeling", .severalSamples = false},
+    MethodTraits{.name = "a-buffer", .severalSamples = false},
     MethodTraits{.name = "insertion", .severalSamples = false, .nodeCapacity = true},
 };
 

@@ -1,0 +1,17 @@
+// What the shaders of the peeling methods and C++ share. This file is both GLSL and C++.
+#ifndef VITRAIL_TOOL_PEELING_SHARED_H
+#define VITRAIL_TOOL_PEELING_SHARED_H
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace vitrail::tool::shaders {
+using uint = std::uint32_t;
+#endif
+
+const uint PEELING_GROUP_SIDE = 8u;
+
+#ifdef __cplusplus
+} // namespace vitrail::tool::shaders
+#endif
+
+#endif

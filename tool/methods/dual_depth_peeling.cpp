@@ -1,0 +1,187 @@
+#include "dual_depth_peeling.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "../draw/accesses.h"
+#include "../draw/shaders/peeling_shared.h"
+#include "shaders/dual_depth_peeling.frag.h"
+#include "shaders/dual_depth_peeling_blend.comp.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+constexpr VkFormat kFoundFormat = VK_FORMAT_R32G32_SFLOAT;
+constexpr std::uint32_t kAttachments = 5;
+constexpr std::uint64_t kPixelBytes = 8 * 8;
+constexpr std::uint32_t kPassesPerSubmission = 24;
+
+std::uint32_t groups(std::uint32_t pixels) {
+  return (pixels + shaders::PEELING_GROUP_SIDE - 1) / shaders::PEELING_GROUP_SIDE;
+}
+
+// Throws GpuError where the device cannot blend what a pass writes.
+Gpu& withBlending(Gpu& gpu) {
+  VkFormatProperties format{};
+  vkGetPhysicalDeviceFormatProperties(gpu.physicalDevice(), kFoundFormat, &format);
+  const bool depths = (format.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT) != 0;
+  if (depths && gpu.features().independentBlending && gpu.properties().limits.maxColorAttachments >= kAttachments) {
+    return gpu;
+  }
+  throw GpuError(
+      fmt::format("{} does not blend five images each in its own way, one of 32-bit floats, which the "
+                  "method dual-depth-peeling needs: use depth-peeling",
+                  gpu.properties().deviceName));
+}
+
+SurfacePipelines makePeel(const MethodHost& host, VkDescriptorSetLayout set) {
+  const auto describe = [](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
+    const BlendFactors add{VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE};
+    auto most = blendWith(add, add);
+    most.colorBlendOp = most.alphaBlendOp = VK_BLEND_OP_MAX;
+    const auto sum = blendWith(add, add);
+    const auto product =
+        blendWith({VK_BLEND_FACTOR_ZERO, VK_BLEND_FACTOR_SRC_COLOR}, {VK_BLEND_FACTOR_ZERO, VK_BLEND_FACTOR_SRC_ALPHA});
+    info.fragmentShader = shaders::dual_depth_peeling_frag;
+    info.colors = {{kFoundFormat, most},
+                   {PictureImages::kColorFormat, sum},
+                   {PictureImages::kColorFormat, product},
+                   {PictureImages::kColorFormat, sum},
+                   {PictureImages::kColorFormat, product}};
+    info.depthFormat = PictureImages::depthFormat(true);
+  };
+  return {
+      host.surfaces, host.surfaces.scene().transparentDraws(), {.set = set, .name = "dual-depth-peeling"}, describe};
+}
+
+SingleSet makePeelSet(Gpu& gpu) {
+  return {gpu, {{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_FRAGMENT_BIT}}, "found depths"};
+}
+
+VkClearColorValue all(float value) {
+  VkClearColorValue clear{};
+  std::fill_n(clear.float32, 4, value);
+  return clear;
+}
+
+void clearTo(VkCommandBuffer commands, UsedImage& image, const VkClearColorValue& value) {
+  // The last frame's passes used the image -> it is cleared.
+  image.discard();
+  image.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kClear);
+  const VkImageSubresourceRange range = image.get().range();
+  vkCmdClearColorImage(commands, image.get().get(), VK_IMAGE_LAYOUT_GENERAL, &value, 1, &range);
+}
+
+} // namespace
+
+DualDepthPeeling::DualDepthPeeling(const MethodHost& host)
+    : gpu_(withBlending(host.gpu)),
+      complexity_(host, "dual-depth-peeling"),
+      peelSets_{makePeelSet(gpu_), makePeelSet(gpu_)},
+      blendSet_(gpu_, {7, {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}}, "dual-depth-peeling blend"),
+      surfaces_(makePeel(host, peelSets_[0].layout())),
+      layout_(makePipelineLayout(gpu_, {blendSet_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(std::uint32_t)},
+                                 "dual-depth-peeling blend")),
+      blend_(makeComputePipeline(gpu_, layout_.get(), shaders::dual_depth_peeling_blend_comp,
+                                 "dual-depth-peeling blend")) {}
+
+void DualDepthPeeling::setTarget(const MethodTarget& target) {
+  extent_ = target.extent;
+  complexity_.setTarget(target);
+  GpuImageInfo info;
+  info.extent = extent_;
+  info.format = kFoundFormat;
+  info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    found_[i].ensure(gpu_, info, "found depths");
+    peelSets_[i].writeImage(0, found_[i].get().view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  }
+  info.format = PictureImages::kColorFormat;
+  info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+  std::uint32_t binding = 0;
+  for (UsedImage& layer : layers_) {
+    layer.ensure(gpu_, info, "layer");
+    blendSet_.writeImage(binding++, layer.get().view(), VK_IMAGE_LAYOUT_GENERAL);
+  }
+  info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  for (UsedImage& front : front_) {
+    front.ensure(gpu_, info, "nearer layers");
+    blendSet_.writeImage(binding++, front.get().view(), VK_IMAGE_LAYOUT_GENERAL);
+  }
+  blendSet_.writeImage(binding, target.color, VK_IMAGE_LAYOUT_GENERAL);
+}
+
+void DualDepthPeeling::releaseTarget() {
+  complexity_.releaseTarget();
+  for (UsedImage& image : found_) image = UsedImage();
+  for (UsedImage& image : layers_) image = UsedImage();
+  for (UsedImage& image : front_) image = UsedImage();
+}
+
+// The first pass finds depths, and each after it takes two layers.
+void DualDepthPeeling::draw(Frame& frame) {
+  complexity_.measure(frame);
+  const std::uint32_t pairs = (complexity_.deepest() + 1) / 2;
+  if (pairs == 0) return;
+  clear(frame);
+  peel(frame, 0);
+  frame.endPass("peel");
+  for (std::uint32_t pass = 1; pass <= pairs; ++pass) {
+    peel(frame, pass);
+    frame.endPass("peel");
+    blend(frame, false);
+    frame.endPass("blend");
+    if (pass % kPassesPerSubmission == 0) frame.submitAndWait();
+  }
+  blend(frame, true);
+  frame.endPass("blend");
+}
+
+void DualDepthPeeling::clear(Frame& frame) {
+  clearTo(frame.commands(), front_[0], all(0.0F));
+  clearTo(frame.commands(), front_[1], all(1.0F));
+  clearTo(frame.commands(), found_[1], all(2.0F)); // all surfaces are between these
+}
+
+void DualDepthPeeling::peel(Frame& frame, std::uint32_t pass) {
+  UsedImage& last = found_[(pass + 1) % 2];
+  UsedImage& found = found_[pass % 2];
+  // The last pass found depths -> the fragments of this one read them.
+  last.cmdUse(frame.commands(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kFragmentSample);
+  Scope scope = frame.images().wholeScope();
+  found.discard();
+  scope.colors.push_back({.image = &found, .clear = all(-2.0F)}); // beyond all depths
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    layers_[i].discard();
+    scope.colors.push_back({.image = &layers_[i], .clear = all(i % 2 == 0 ? 0.0F : 1.0F)});
+  }
+  scope.depth = {.image = &frame.images().depth(), .depth = AspectUse::Test};
+  cmdBeginScope(frame.commands(), scope);
+  frame.drawSurfaces(surfaces_, peelSets_[(pass + 1) % 2].set());
+  vkCmdEndRendering(frame.commands());
+}
+
+void DualDepthPeeling::blend(Frame& frame, bool last) {
+  VkCommandBuffer commands = frame.commands();
+  // The pass wrote two layers -> they are read.
+  for (UsedImage& layer : layers_) layer.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeRead);
+  // The layers before them were blended -> so are these.
+  for (UsedImage& front : front_) front.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
+  frame.images().color().cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
+  const VkDescriptorSet set = blendSet_.set();
+  const std::uint32_t step = last ? 1 : 0;
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, blend_.get());
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
+  vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(step), &step);
+  vkCmdDispatch(commands, groups(extent_.width), groups(extent_.height), 1);
+}
+
+MethodStats DualDepthPeeling::stats() const {
+  MethodStats stats = complexity_.stats();
+  stats.totalBytes += kPixelBytes * extent_.width * extent_.height;
+  return stats;
+}
+
+} // namespace vitrail::tool
