@@ -39,6 +39,7 @@ struct MethodRow {
   std::string name;
   Exact exact = Exact::OneLayer;
   bool orderFree = false;           // the order of submission does not change a bit
+  bool orderRounds = false;         // it changes how sums are rounded, by 2/255 at most
   bool severalSamples = true;       // else one sample a pixel
   std::vector<std::string> options; // that it has
   // The nodes of the linked-list that an exact picture is within 1/255 of: hdr, unless fragments end at white as those
@@ -65,6 +66,7 @@ const std::vector<MethodRow>& rows() {
        .severalSamples = false,
        .options = {},
        .nodes = VITRAIL_NODE_STANDARD},
+      {.name = "weighted", .orderRounds = true, .options = {}},
   };
   return kRows;
 }
@@ -312,6 +314,16 @@ TEST_P(MethodsTest, SubmissionOrderDoesNotMatterWherePromised) {
     const RenderResult forward = draw(scene, options(), DrawOrder::Forward);
     EXPECT_TRUE(draw(scene, options(), DrawOrder::Reversed).picture.rgba == forward.picture.rgba);
     EXPECT_TRUE(draw(scene, options(), DrawOrder::Shuffled).picture.rgba == forward.picture.rgba);
+  }
+}
+
+// Blending adds in the order of submission, so the last bits of sums differ.
+TEST_P(MethodsTest, SubmissionOrderRoundsWhereSaid) {
+  if (!GetParam().orderRounds) GTEST_SKIP() << "not said";
+  for (const TestScene& scene : {builtin("interlocked"), builtin("planes"), shuffledPanes()}) {
+    const Picture forward = draw(scene, options(), DrawOrder::Forward).picture;
+    EXPECT_LE(largestDifference(draw(scene, options(), DrawOrder::Reversed).picture, forward), 2);
+    EXPECT_LE(largestDifference(draw(scene, options(), DrawOrder::Shuffled).picture, forward), 2);
   }
 }
 

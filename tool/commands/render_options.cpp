@@ -42,7 +42,8 @@ How to blend it:
                         the order of the file, wrong wherever a nearer surface comes first;
                         sorted, objects back to front, and sorted-triangles, the same for every
                         triangle, both wrong where surfaces cross or overlap in a cycle;
-                        insertion, lists as most published samples sort them
+                        insertion, lists as most published samples sort them;
+                        weighted, a mean of all surfaces weighted by depth: one pass, wrong colours
   --samples N           1 (default), 2, 4 or 8 samples a pixel, as the device offers
   --msaa-resolve R      per-pixel (default): the samples are blended and averaged at once.
                         per-sample: each is blended into a multisampled picture. The same picture

@@ -365,6 +365,7 @@ void Gpu::Impl::createDevice() {
   enabled.features.fragmentStoresAndAtomics = VK_TRUE;
   enabled.features.dualSrcBlend = features.dualSourceBlending ? VK_TRUE : VK_FALSE;
   enabled.features.sampleRateShading = features.sampleRateShading ? VK_TRUE : VK_FALSE;
+  enabled.features.independentBlend = features.independentBlending ? VK_TRUE : VK_FALSE;
   enabled.features.fullDrawIndexUint32 = supported.fullDrawIndexUint32; // for meshes beyond 16.7 M vertices
 
   const char* const postDepthCoverage = VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME;

@@ -12,6 +12,8 @@ struct GpuFeatures {
   bool bufferDeviceAddress = false;
   bool dualSourceBlending = false;
   bool sampleRateShading = false;
+  bool independentBlending = false;                        // colour attachments differ in how they blend
+  bool floatBlending = false;                              // 32-bit float colour attachments blend
   bool postDepthCoverage = false;                          // VK_EXT_post_depth_coverage
   bool stencil = false;                                    // images of D32_SFLOAT_S8_UINT
   VkSampleCountFlags sampleCounts = VK_SAMPLE_COUNT_1_BIT; // of a picture's images

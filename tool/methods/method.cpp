@@ -8,6 +8,7 @@
 #include "sorted.h"
 #include "sorted_triangles.h"
 #include "unsorted.h"
+#include "weighted.h"
 
 namespace vitrail::tool {
 
@@ -17,6 +18,7 @@ std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& 
   if (options.name == "sorted") return std::make_unique<Sorted>(host, options);
   if (options.name == "sorted-triangles") return std::make_unique<SortedTriangles>(host, options);
   if (options.name == "insertion") return std::make_unique<Insertion>(host);
+  if (options.name == "weighted") return std::make_unique<Weighted>(host, options);
   throw std::logic_error("a method that cannot be made: " + options.name);
 }
 

@@ -27,6 +27,7 @@ constexpr std::array kMethods{
     MethodTraits{.name = "sorted"},
     MethodTraits{.name = "sorted-triangles"},
     MethodTraits{.name = "insertion", .severalSamples = false, .nodeCapacity = true},
+    MethodTraits{.name = "weighted"},
 };
 
 constexpr std::array kNames = [] {
