@@ -5,8 +5,10 @@
 
 #include "insertion.h"
 #include "linked_list.h"
+#include "moment.h"
 #include "sorted.h"
 #include "sorted_triangles.h"
+#include "stochastic.h"
 #include "unsorted.h"
 #include "weighted.h"
 
@@ -19,6 +21,8 @@ std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& 
   if (options.name == "sorted-triangles") return std::make_unique<SortedTriangles>(host, options);
   if (options.name == "insertion") return std::make_unique<Insertion>(host);
   if (options.name == "weighted") return std::make_unique<Weighted>(host, options);
+  if (options.name == "moment") return std::make_unique<Moment>(host);
+  if (options.name == "stochastic") return std::make_unique<Stochastic>(host, options);
   throw std::logic_error("a method that cannot be made: " + options.name);
 }
 

@@ -28,6 +28,8 @@ constexpr std::array kMethods{
     MethodTraits{.name = "sorted-triangles"},
     MethodTraits{.name = "insertion", .severalSamples = false, .nodeCapacity = true},
     MethodTraits{.name = "weighted"},
+    MethodTraits{.name = "moment", .severalSamples = false},
+    MethodTraits{.name = "stochastic", .passes = true},
 };
 
 constexpr std::array kNames = [] {
