@@ -39,6 +39,8 @@ struct MethodRow {
   std::string name;
   Exact exact = Exact::OneLayer;
   bool orderFree = false;           // the order of submission does not change a bit
+  bool orderRounds = false;         // it changes how sums are rounded, by 2/255 at most
+  int twoPanes = 255;               // how far a picture of two panes, one behind the other, may be off
   bool severalSamples = true;       // else one sample a pixel
   std::vector<std::string> options; // that it has
   // The nodes of the linked-list that an exact picture is within 1/255 of: hdr, unless fragments end at white as those
@@ -86,6 +88,9 @@ const std::vector<MethodRow>& rows() {
        .severalSamples = false,
        .options = {},
        .nodes = VITRAIL_NODE_STANDARD},
+      {.name = "weighted", .orderRounds = true, .options = {}},
+      {.name = "moment", .orderRounds = true, .twoPanes = 5, .severalSamples = false, .options = {}},
+      {.name = "stochastic", .orderRounds = true, .options = {"--passes"}},
   };
   return kRows;
 }
@@ -152,6 +157,14 @@ TestScene occludedStack() {
   }
   addRectangle(scene, {glm::vec2(-1.5F, -1.0F), glm::vec2(0.0F, 1.0F), 0.5F},
                unlitMaterial({0.5F, 0.5F, 0.5F, 1.0F}, AlphaMode::Opaque));
+  return straightOn(std::move(scene));
+}
+
+// One behind the other, submitted the nearer one first.
+TestScene twoPanes() {
+  Scene scene;
+  addRectangle(scene, {glm::vec2(-0.9F, -0.7F), glm::vec2(0.8F, 0.6F), 3.0F}, unlitMaterial({0.8F, 0.3F, 0.1F, 0.6F}));
+  addRectangle(scene, {glm::vec2(-0.8F, -0.8F), glm::vec2(0.9F, 0.5F), -3.0F}, unlitMaterial({0.1F, 0.9F, 0.2F, 0.8F}));
   return straightOn(std::move(scene));
 }
 
@@ -275,6 +288,12 @@ TEST_P(MethodsTest, OneLayerIsExact) {
   expectRight(tintedGlass(1), "tinted glass");
 }
 
+TEST_P(MethodsTest, TwoPanesAreAsNearAsSaid) {
+  if (GetParam().twoPanes == 255) GTEST_SKIP() << "not said";
+  const TestScene scene = twoPanes();
+  EXPECT_LE(largestDifference(draw(scene, options()).picture, exactPicture(scene)), GetParam().twoPanes);
+}
+
 TEST_P(MethodsTest, ParallelPanesAreExactWherePromised) {
   if (GetParam().exact < Exact::ParallelPanes) GTEST_SKIP() << "not promised";
   expectRight(builtin("planes"), "planes");
@@ -333,6 +352,16 @@ TEST_P(MethodsTest, SubmissionOrderDoesNotMatterWherePromised) {
     const RenderResult forward = draw(scene, options(), DrawOrder::Forward);
     EXPECT_TRUE(draw(scene, options(), DrawOrder::Reversed).picture.rgba == forward.picture.rgba);
     EXPECT_TRUE(draw(scene, options(), DrawOrder::Shuffled).picture.rgba == forward.picture.rgba);
+  }
+}
+
+// Blending adds in the order of submission, so the last bits of sums differ.
+TEST_P(MethodsTest, SubmissionOrderRoundsWhereSaid) {
+  if (!GetParam().orderRounds) GTEST_SKIP() << "not said";
+  for (const TestScene& scene : {builtin("interlocked"), builtin("planes"), shuffledPanes()}) {
+    const Picture forward = draw(scene, options(), DrawOrder::Forward).picture;
+    EXPECT_LE(largestDifference(draw(scene, options(), DrawOrder::Reversed).picture, forward), 2);
+    EXPECT_LE(largestDifference(draw(scene, options(), DrawOrder::Shuffled).picture, forward), 2);
   }
 }
 

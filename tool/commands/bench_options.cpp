@@ -29,7 +29,8 @@ What to draw:
   --opacity A           makes every material translucent, 0.004 to 1
 
 What to compare with method unsorted, which is always measured:
-  --methods NAME,...    linked-list, insertion, sorted, sorted-triangles, unsorted
+  --methods NAME,...    linked-list, insertion, sorted, sorted-triangles, unsorted,
+                        weighted, moment, stochastic
                         (default linked-list,insertion)
   --nodes F,...         node formats of linked-list: standard, compact, hdr (default standard)
   --samples N,...       1, 2, 4, 8 (default 1)

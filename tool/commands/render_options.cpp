@@ -25,7 +25,10 @@ How to blend it:
                         the order of the file, wrong wherever a nearer surface comes first;
                         sorted, objects back to front, and sorted-triangles, the same for every
                         triangle, both wrong where surfaces cross or overlap in a cycle;
-                        insertion, lists as most published samples sort them
+                        insertion, lists as most published samples sort them;
+                        weighted, a mean of all surfaces weighted by depth: one pass, wrong colours;
+                        moment, surfaces dimmed by an estimate of what is before them: two passes;
+                        stochastic, surfaces cover random samples: noise instead of wrong colours
   --samples N           1 (default), 2, 4 or 8 samples a pixel, as the device offers
   --msaa-resolve R      per-pixel (default): the samples are blended and averaged at once.
                         per-sample: each is blended into a multisampled picture. The same picture
@@ -33,6 +36,8 @@ How to blend it:
                         coarser colours and depths), hdr (16 bytes, brighter than white)
   --resolve R           where the lists are sorted: compute or fragment shaders (default: the faster
                         one of the device). The same picture
+  --passes N            of stochastic: passes over the surfaces (default 16); four times as many halve
+                        the noise
   --layers N            blends only the nearest N surfaces of a pixel exactly (default: all)
   --memory-budget MIB   for fragments, at least 1; a picture that needs more is drawn in tiles, the
                         same picture (default: what the device can give)

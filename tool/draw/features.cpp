@@ -25,6 +25,12 @@ bool hasExtension(VkPhysicalDevice device, const char* name) {
   });
 }
 
+bool blends(VkPhysicalDevice device, VkFormat format) {
+  VkFormatProperties properties{};
+  vkGetPhysicalDeviceFormatProperties(device, format, &properties);
+  return (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT) != 0;
+}
+
 // The sample counts that images of a format can have for some use; 0 where there can be none.
 VkSampleCountFlags imageSampleCounts(VkPhysicalDevice device, VkFormat format, VkImageUsageFlags usage) {
   VkImageFormatProperties properties{};
@@ -62,6 +68,7 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   result.sampleRateShading = features.features.sampleRateShading == VK_TRUE;
   result.primitiveNumbers = features.features.geometryShader == VK_TRUE;
   result.independentBlending = features.features.independentBlend == VK_TRUE;
+  result.floatBlending = blends(device, VK_FORMAT_R32_SFLOAT) && blends(device, VK_FORMAT_R32G32B32A32_SFLOAT);
   result.postDepthCoverage = hasExtension(device, VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
   result.sampleCounts = pictureSampleCounts(device, limits);
   const VkSampleCountFlags stencil =

@@ -16,7 +16,8 @@ struct GpuFeatures {
   bool dualSourceBlending = false;
   bool sampleRateShading = false;
   bool primitiveNumbers = false;    // gl_PrimitiveID in fragment shaders, which comes with geometry shaders
-  bool independentBlending = false; // colour attachments of one pipeline blend each in its own way
+  bool independentBlending = false; // colour attachments differ in how they blend
+  bool floatBlending = false;       // 32-bit float colour attachments blend
   bool postDepthCoverage = false;   // VK_EXT_post_depth_coverage
   bool stencil = false;             // images of D32_SFLOAT_S8_UINT
   VkSampleCountFlags sampleCounts = VK_SAMPLE_COUNT_1_BIT; // of a picture's images

@@ -102,7 +102,7 @@ VkPipelineRenderingCreateInfo renderingState(const GraphicsPipelineInfo& info, c
 // Specialization constants in Vulkan's words.
 class Constants {
  public:
-  explicit Constants(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& constants) {
+  explicit Constants(const PipelineConstants& constants) {
     for (const auto& [id, value] : constants) {
       entries_.push_back({id, static_cast<std::uint32_t>(values_.size() * sizeof(value)), sizeof(value)});
       values_.push_back(value);
@@ -148,10 +148,12 @@ Unique<VkPipelineLayout> makePipelineLayout(Gpu& gpu, const std::vector<VkDescri
 }
 
 Unique<VkPipeline> makeComputePipeline(Gpu& gpu, VkPipelineLayout layout, std::span<const std::uint32_t> spirv,
-                                       const std::string& name) {
+                                       const std::string& name, const PipelineConstants& constants) {
   const Unique<VkShaderModule> module = makeModule(gpu, spirv, name);
+  const Constants specialization(constants);
   auto info = vkStruct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
   info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module.get());
+  info.stage.pSpecializationInfo = specialization.get();
   info.layout = layout;
   VkPipeline pipeline = VK_NULL_HANDLE;
   check(vkCreateComputePipelines(gpu.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),

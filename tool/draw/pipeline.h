@@ -22,9 +22,12 @@ struct PushConstants {
 Unique<VkPipelineLayout> makePipelineLayout(Gpu& gpu, const std::vector<VkDescriptorSetLayout>& sets,
                                             const PushConstants& constants, const std::string& name);
 
+// Specialization constants, id and value.
+using PipelineConstants = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
 // `spirv` is a compute shader with the entry point main.
 Unique<VkPipeline> makeComputePipeline(Gpu& gpu, VkPipelineLayout layout, std::span<const std::uint32_t> spirv,
-                                       const std::string& name);
+                                       const std::string& name, const PipelineConstants& constants = {});
 
 // One colour attachment of a pipeline.
 struct ColorOutput {
@@ -45,9 +48,8 @@ struct GraphicsPipelineInfo {
   VkPipelineLayout layout = VK_NULL_HANDLE;
   std::span<const std::uint32_t> vertexShader;
   std::span<const std::uint32_t> fragmentShader;
-  // Specialization constants of both shaders, id and value.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> constants;
-  bool surface = false; // reads Vertex data; front face and cull mode are dynamic
+  PipelineConstants constants; // of both shaders
+  bool surface = false;        // reads Vertex data; front face and cull mode are dynamic
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   std::vector<ColorOutput> colors;
   VkFormat depthFormat = VK_FORMAT_UNDEFINED;  // a format with stencil: both are attached

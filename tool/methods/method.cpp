@@ -9,10 +9,13 @@
 #include "insertion.h"
 #include "layer_count.h"
 #include "linked_list.h"
+#include "moment.h"
 #include "reverse_depth_peeling.h"
 #include "sorted.h"
 #include "sorted_triangles.h"
+#include "stochastic.h"
 #include "unsorted.h"
+#include "weighted.h"
 
 namespace vitrail::tool {
 
@@ -27,6 +30,9 @@ std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& 
   if (options.name == "a-buffer") return std::make_unique<ABuffer>(host);
   if (options.name == "insertion") return std::make_unique<Insertion>(host);
   if (options.name == kLayerCount) return std::make_unique<LayerCount>(host);
+  if (options.name == "weighted") return std::make_unique<Weighted>(host, options);
+  if (options.name == "moment") return std::make_unique<Moment>(host);
+  if (options.name == "stochastic") return std::make_unique<Stochastic>(host, options);
   throw std::logic_error("a method that cannot be made: " + options.name);
 }
 

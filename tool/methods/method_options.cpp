@@ -31,6 +31,9 @@ constexpr std::array kMethods{
     MethodTraits{.name = "dual-depth-peeling", .severalSamples = false},
     MethodTraits{.name = "a-buffer", .severalSamples = false},
     MethodTraits{.name = "insertion", .severalSamples = false, .nodeCapacity = true},
+    MethodTraits{.name = "weighted"},
+    MethodTraits{.name = "moment", .severalSamples = false},
+    MethodTraits{.name = "stochastic", .passes = true},
 };
 
 constexpr std::array kNames = [] {

@@ -1,0 +1,24 @@
+// What the shaders of the method stochastic and C++ share. This file is both GLSL and C++.
+#ifndef VITRAIL_TOOL_STOCHASTIC_SHARED_H
+#define VITRAIL_TOOL_STOCHASTIC_SHARED_H
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace vitrail::tool::shaders {
+using uint = std::uint32_t;
+#endif
+
+const uint STOCHASTIC_ALL_CHANNELS = 3u;
+
+// Push constants.
+struct StochasticPass {
+  uint number;
+  uint channel; // 0, 1, 2 where each has passes of its own, else STOCHASTIC_ALL_CHANNELS
+  float share;  // of the pass in the mean
+};
+
+#ifdef __cplusplus
+} // namespace vitrail::tool::shaders
+#endif
+
+#endif
