@@ -18,7 +18,7 @@ Interlock::Interlock(const MethodHost& host, const MethodOptions& options)
 
 void Interlock::drawSurfaces(Frame& frame) {
   drawOnce(frame, surfaces_);
-  frame.endPass("insert");
+  frame.endPass("collect");
 }
 
 } // namespace vitrail::tool

@@ -29,7 +29,7 @@ Loop::Loop(const MethodHost& host, const MethodOptions& options)
 
 void Loop::drawSurfaces(Frame& frame) {
   drawOnce(frame, first_);
-  frame.endPass(colors_ ? "depths" : "insert");
+  frame.endPass(colors_ ? "depths" : "collect");
   if (!colors_) return;
   // The first draw wrote depths -> the second one reads them, and goes on writing entries.
   cmdMemoryBarrier(frame.commands(), kFragmentWrite, kFragmentReadWrite);

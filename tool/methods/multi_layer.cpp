@@ -66,7 +66,7 @@ void MultiLayer::draw(Frame& frame) {
   vkCmdPushConstants(commands, surfaces_.layout(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(extent_), &extent_);
   frame.drawSurfaces(surfaces_, set_.set());
   vkCmdEndRendering(commands);
-  frame.endPass("insert");
+  frame.endPass("collect");
   // The draw wrote the layers -> the resolve reads them.
   cmdMemoryBarrier(commands, kFragmentWrite, kComputeRead);
   frame.images().cmdToComputeResolve(commands);
