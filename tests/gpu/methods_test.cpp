@@ -41,6 +41,9 @@ struct MethodRow {
   bool orderFree = false;           // the order of submission does not change a bit
   bool orderRounds = false;         // it changes how sums are rounded, by 2/255 at most
   int twoPanes = 255;               // how far a picture of two panes, one behind the other, may be off
+  std::uint32_t layers = 0;         // the --layers that the tests choose
+  std::uint32_t passes = 0;         // the --passes
+  bool interlock = false;           // only devices with fragment shader interlock run it
   bool severalSamples = true;       // else one sample a pixel
   std::vector<std::string> options; // that it has
   // The nodes of the linked-list that an exact picture is within 1/255 of: hdr, unless fragments end at white as those
@@ -50,6 +53,18 @@ struct MethodRow {
 };
 
 void PrintTo(const MethodRow& row, std::ostream* out) { *out << row.name; }
+
+// Methods that keep the nearest layers exactly: as many as all scenes below have.
+MethodRow nearestLayers(const std::string& name) {
+  return {.name = name,
+          .exact = Exact::Everywhere,
+          .orderFree = true,
+          .layers = 48,
+          .interlock = name == "interlock",
+          .severalSamples = false,
+          .options = {"--layers"},
+          .nodes = VITRAIL_NODE_STANDARD};
+}
 
 const std::vector<MethodRow>& rows() {
   static const std::vector<MethodRow> kRows = {
@@ -90,7 +105,16 @@ const std::vector<MethodRow>& rows() {
        .nodes = VITRAIL_NODE_STANDARD},
       {.name = "weighted", .orderRounds = true, .options = {}},
       {.name = "moment", .orderRounds = true, .twoPanes = 5, .severalSamples = false, .options = {}},
-      {.name = "stochastic", .orderRounds = true, .options = {"--passes"}},
+      {.name = "stochastic", .orderRounds = true, .passes = 4, .options = {"--passes"}},
+      nearestLayers("loop"),
+      nearestLayers("loop-64"),
+      nearestLayers("interlock"),
+      {.name = "multi-layer",
+       .exact = Exact::ParallelParts,
+       .layers = 32,
+       .interlock = true,
+       .severalSamples = false,
+       .options = {"--layers"}},
   };
   return kRows;
 }
@@ -243,6 +267,11 @@ double shareBeyond(const Picture& a, const Picture& b, int bound) {
 
 class MethodsTest : public GpuTest, public ::testing::WithParamInterface<MethodRow> {
  protected:
+  void SetUp() override {
+    if (GetParam().interlock && !gpu().features().fragmentInterlock) GTEST_SKIP() << "no fragment shader interlock";
+    if (GetParam().name == "loop-64" && !gpu().features().int64Atomics) GTEST_SKIP() << "no 64-bit atomics";
+  }
+
   static RenderResult draw(const TestScene& scene, const MethodOptions& method, DrawOrder order = DrawOrder::Forward) {
     return renderOnce(gpu(), scene.scene, scene.picture, {}, order, method);
   }
@@ -251,6 +280,8 @@ class MethodsTest : public GpuTest, public ::testing::WithParamInterface<MethodR
     MethodOptions result;
     result.name = GetParam().name;
     result.samples = samples;
+    result.maxLayers = GetParam().layers;
+    result.passes = GetParam().passes;
     return result;
   }
 

@@ -30,7 +30,7 @@ What to draw:
 
 What to compare with method unsorted, which is always measured:
   --methods NAME,...    linked-list, insertion, sorted, sorted-triangles, unsorted,
-                        weighted, moment, stochastic
+                        weighted, moment, stochastic, loop, loop-64, interlock, multi-layer
                         (default linked-list,insertion)
   --nodes F,...         node formats of linked-list: standard, compact, hdr (default standard)
   --samples N,...       1, 2, 4, 8 (default 1)

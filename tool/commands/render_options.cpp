@@ -28,7 +28,10 @@ How to blend it:
                         insertion, lists as most published samples sort them;
                         weighted, a mean of all surfaces weighted by depth: one pass, wrong colours;
                         moment, surfaces dimmed by an estimate of what is before them: two passes;
-                        stochastic, surfaces cover random samples: noise instead of wrong colours
+                        stochastic, surfaces cover random samples: noise instead of wrong colours;
+                        loop (two passes), loop-64 and interlock (one, where the device can), the
+                        nearest N surfaces exact, the rest a mean; multi-layer, N layers into which
+                        surfaces are merged as they come, where the device can
   --samples N           1 (default), 2, 4 or 8 samples a pixel, as the device offers
   --msaa-resolve R      per-pixel (default): the samples are blended and averaged at once.
                         per-sample: each is blended into a multisampled picture. The same picture
@@ -36,9 +39,10 @@ How to blend it:
                         coarser colours and depths), hdr (16 bytes, brighter than white)
   --resolve R           where the lists are sorted: compute or fragment shaders (default: the faster
                         one of the device). The same picture
-  --passes N            of stochastic: passes over the surfaces (default 16); four times as many halve
-                        the noise
-  --layers N            blends only the nearest N surfaces of a pixel exactly (default: all)
+  --passes N            of stochastic: passes over the surfaces (default 16); four times as many
+                        halve the noise
+  --layers N            blends only the nearest N surfaces of a pixel exactly (default: all; loop,
+                        loop-64 and interlock: 8); the layers of multi-layer (default 4)
   --memory-budget MIB   for fragments, at least 1; a picture that needs more is drawn in tiles, the
                         same picture (default: what the device can give)
 

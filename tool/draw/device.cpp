@@ -360,20 +360,28 @@ void Gpu::Impl::createDevice() {
   auto features12 = vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
   features12.pNext = &features13;
   features12.bufferDeviceAddress = features.bufferDeviceAddress ? VK_TRUE : VK_FALSE;
+  features12.shaderBufferInt64Atomics = features.int64Atomics ? VK_TRUE : VK_FALSE;
+  auto interlock = vkStruct<VkPhysicalDeviceFragmentShaderInterlockFeaturesEXT>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FRAGMENT_SHADER_INTERLOCK_FEATURES_EXT);
+  interlock.fragmentShaderPixelInterlock = VK_TRUE;
+  if (features.fragmentInterlock) features13.pNext = &interlock;
   auto enabled = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   enabled.pNext = &features12;
   enabled.features.fragmentStoresAndAtomics = VK_TRUE;
   enabled.features.dualSrcBlend = features.dualSourceBlending ? VK_TRUE : VK_FALSE;
   enabled.features.sampleRateShading = features.sampleRateShading ? VK_TRUE : VK_FALSE;
   enabled.features.geometryShader = features.primitiveNumbers ? VK_TRUE : VK_FALSE;
+  enabled.features.shaderInt64 = features.int64Atomics ? VK_TRUE : VK_FALSE;
   enabled.features.independentBlend = features.independentBlending ? VK_TRUE : VK_FALSE;
   enabled.features.fullDrawIndexUint32 = supported.fullDrawIndexUint32; // for meshes beyond 16.7 M vertices
 
-  const char* const postDepthCoverage = VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME;
+  std::vector<const char*> extensions;
+  if (features.postDepthCoverage) extensions.push_back(VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
+  if (features.fragmentInterlock) extensions.push_back(VK_EXT_FRAGMENT_SHADER_INTERLOCK_EXTENSION_NAME);
   auto info = vkStruct<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
   info.pNext = &enabled;
-  info.enabledExtensionCount = features.postDepthCoverage ? 1 : 0;
-  info.ppEnabledExtensionNames = &postDepthCoverage;
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queueInfo;
   check(vkCreateDevice(physicalDevice, &info, nullptr, &device), "vkCreateDevice");

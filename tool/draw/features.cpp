@@ -58,6 +58,9 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   vkGetPhysicalDeviceProperties(device, &properties);
   const VkPhysicalDeviceLimits& limits = properties.limits;
   auto features12 = vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+  auto interlock = vkStruct<VkPhysicalDeviceFragmentShaderInterlockFeaturesEXT>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FRAGMENT_SHADER_INTERLOCK_FEATURES_EXT);
+  if (hasExtension(device, VK_EXT_FRAGMENT_SHADER_INTERLOCK_EXTENSION_NAME)) features12.pNext = &interlock;
   auto features = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.pNext = &features12;
   vkGetPhysicalDeviceFeatures2(device, &features);
@@ -69,6 +72,8 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   result.primitiveNumbers = features.features.geometryShader == VK_TRUE;
   result.independentBlending = features.features.independentBlend == VK_TRUE;
   result.floatBlending = blends(device, VK_FORMAT_R32_SFLOAT) && blends(device, VK_FORMAT_R32G32B32A32_SFLOAT);
+  result.int64Atomics = features.features.shaderInt64 == VK_TRUE && features12.shaderBufferInt64Atomics == VK_TRUE;
+  result.fragmentInterlock = interlock.fragmentShaderPixelInterlock == VK_TRUE;
   result.postDepthCoverage = hasExtension(device, VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
   result.sampleCounts = pictureSampleCounts(device, limits);
   const VkSampleCountFlags stencil =

@@ -7,9 +7,12 @@
 #include "depth_peeling.h"
 #include "dual_depth_peeling.h"
 #include "insertion.h"
+#include "interlock.h"
 #include "layer_count.h"
 #include "linked_list.h"
+#include "loop.h"
 #include "moment.h"
+#include "multi_layer.h"
 #include "reverse_depth_peeling.h"
 #include "sorted.h"
 #include "sorted_triangles.h"
@@ -33,6 +36,9 @@ std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& 
   if (options.name == "weighted") return std::make_unique<Weighted>(host, options);
   if (options.name == "moment") return std::make_unique<Moment>(host);
   if (options.name == "stochastic") return std::make_unique<Stochastic>(host, options);
+  if (options.name == "loop" || options.name == "loop-64") return std::make_unique<Loop>(host, options);
+  if (options.name == "interlock") return std::make_unique<Interlock>(host, options);
+  if (options.name == "multi-layer") return std::make_unique<MultiLayer>(host, options);
   throw std::logic_error("a method that cannot be made: " + options.name);
 }
 

@@ -34,6 +34,10 @@ constexpr std::array kMethods{
     MethodTraits{.name = "weighted"},
     MethodTraits{.name = "moment", .severalSamples = false},
     MethodTraits{.name = "stochastic", .passes = true},
+    MethodTraits{.name = "loop", .severalSamples = false, .layers = true},
+    MethodTraits{.name = "loop-64", .severalSamples = false, .layers = true},
+    MethodTraits{.name = "interlock", .severalSamples = false, .layers = true},
+    MethodTraits{.name = "multi-layer", .severalSamples = false, .layers = true},
 };
 
 constexpr std::array kNames = [] {
