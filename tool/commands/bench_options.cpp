@@ -31,7 +31,8 @@ What to draw:
   --opacity A           makes every material translucent, 0.004 to 1
 
 What to compare with method unsorted, which is always measured:
-  --methods NAME,...    linked-list, insertion, sorted, sorted-triangles, unsorted
+  --methods NAME,...    linked-list, insertion, sorted, sorted-triangles, depth-peeling,
+                        reverse-depth-peeling, dual-depth-peeling, stencil-routed, a-buffer, unsorted
                         (default linked-list,insertion)
   --nodes F,...         node formats of linked-list: standard, compact, hdr (default standard)
   --samples N,...       1, 2, 4, 8 (default 1)

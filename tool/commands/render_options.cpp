@@ -42,6 +42,9 @@ How to blend it:
                         the order of the file, wrong wherever a nearer surface comes first;
                         sorted, objects back to front, and sorted-triangles, the same for every
                         triangle, both wrong where surfaces cross or overlap in a cycle;
+                        depth-peeling, front to back, and reverse-depth-peeling, back to front, a layer
+                        a pass; dual-depth-peeling, two; stencil-routed, as many as there are samples;
+                        a-buffer, linear arrays that are counted first;
                         insertion, lists as most published samples sort them
   --samples N           1 (default), 2, 4 or 8 samples a pixel, as the device offers
   --msaa-resolve R      per-pixel (default): the samples are blended and averaged at once.
@@ -50,7 +53,8 @@ How to blend it:
                         coarser colours and depths), hdr (16 bytes, brighter than white)
   --resolve R           where the lists are sorted: compute or fragment shaders (default: the faster
                         one of the device). The same picture
-  --layers N            blends only the nearest N surfaces of a pixel exactly (default: all)
+  --layers N            blends only the nearest N surfaces of a pixel exactly (default: all);
+                        depth-peeling leaves the others out
   --memory-budget MIB   for fragments, at least 1; a picture that needs more is drawn in tiles, the
                         same picture (default: what the device can give)
 

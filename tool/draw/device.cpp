@@ -369,11 +369,13 @@ void Gpu::Impl::createDevice() {
   enabled.features.independentBlend = features.independentBlending ? VK_TRUE : VK_FALSE;
   enabled.features.fullDrawIndexUint32 = supported.fullDrawIndexUint32; // for meshes beyond 16.7 M vertices
 
-  const char* const postDepthCoverage = VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME;
+  std::vector<const char*> extensions;
+  if (features.postDepthCoverage) extensions.push_back(VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
+  if (features.middleSamples != 0) extensions.push_back(VK_EXT_SAMPLE_LOCATIONS_EXTENSION_NAME);
   auto info = vkStruct<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
   info.pNext = &enabled;
-  info.enabledExtensionCount = features.postDepthCoverage ? 1 : 0;
-  info.ppEnabledExtensionNames = &postDepthCoverage;
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queueInfo;
   check(vkCreateDevice(physicalDevice, &info, nullptr, &device), "vkCreateDevice");

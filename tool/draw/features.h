@@ -12,10 +12,11 @@ struct GpuFeatures {
   bool bufferDeviceAddress = false;
   bool dualSourceBlending = false;
   bool sampleRateShading = false;
-  bool primitiveNumbers = false;    // gl_PrimitiveID in fragment shaders, which comes with geometry shaders
-  bool independentBlending = false; // colour attachments of one pipeline blend each in its own way
-  bool postDepthCoverage = false;   // VK_EXT_post_depth_coverage
-  bool stencil = false;             // images of D32_SFLOAT_S8_UINT
+  bool primitiveNumbers = false;        // gl_PrimitiveID in fragment shaders, which comes with geometry shaders
+  bool independentBlending = false;     // colour attachments of one pipeline blend each in its own way
+  bool postDepthCoverage = false;       // VK_EXT_post_depth_coverage
+  VkSampleCountFlags middleSamples = 0; // counts of samples that can all be in the middle (VK_EXT_sample_locations)
+  bool stencil = false;                 // images of D32_SFLOAT_S8_UINT
   VkSampleCountFlags sampleCounts = VK_SAMPLE_COUNT_1_BIT; // of a picture's images
 };
 

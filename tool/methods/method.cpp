@@ -11,6 +11,7 @@
 #include "reverse_depth_peeling.h"
 #include "sorted.h"
 #include "sorted_triangles.h"
+#include "stencil_routed.h"
 #include "unsorted.h"
 
 namespace vitrail::tool {
@@ -24,6 +25,7 @@ std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& 
   if (options.name == "reverse-depth-peeling") return std::make_unique<ReverseDepthPeeling>(host, options);
   if (options.name == "dual-depth-peeling") return std::make_unique<DualDepthPeeling>(host);
   if (options.name == "a-buffer") return std::make_unique<ABuffer>(host);
+  if (options.name == "stencil-routed") return std::make_unique<StencilRouted>(host);
   if (options.name == "insertion") return std::make_unique<Insertion>(host);
   throw std::logic_error("a method that cannot be made: " + options.name);
 }
