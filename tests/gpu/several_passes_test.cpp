@@ -102,9 +102,16 @@ TEST_P(SeveralPasses, ThereMayBeMoreSurfacesThanAStencilCounts) {
   expectLikeLists(manyPanes(), straightOn(12, 9), 2); // 16-bit floats round 260 times
 }
 
-// More pixels than two steps of a reduction or of a prefix sum, 512 items each, take to one.
+// More pixels than two steps of a reduction or of a prefix sum, 512 items each, take to one. Strips of all colours, so
+// that no pixel's fragments can be taken for another's.
 TEST_P(SeveralPasses, PicturesMayBeLarge) {
-  const Scene scene = stackOf({{{0.8F, 0.2F, 0.1F, 0.5F}, 1.0F}, {{0.1F, 0.3F, 0.9F, 0.7F}, 0.0F}});
+  Scene scene;
+  for (int i = 0; i < 12; ++i) {
+    const float t = static_cast<float>(i) / 11.0F;
+    const float left = -1.3F + 2.0F * t;
+    addRectangle(scene, {glm::vec2(left, -0.9F + 0.5F * t), glm::vec2(left + 0.5F, 1.0F - 0.6F * t), 5.0F - t},
+                 unlitMaterial({t, 0.5F, 1.0F - t, 0.2F + 0.6F * t}));
+  }
   expectLikeLists(scene, straightOn(601, 443));
 }
 
