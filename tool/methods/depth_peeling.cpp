@@ -112,11 +112,11 @@ void DepthPeeling::draw(Frame& frame) {
     peel(frame);
     frame.endPass("peel");
     blend(frame, pass == 0 ? shaders::PEELING_FIRST : shaders::PEELING_NEXT);
-    frame.endPass("blend");
+    frame.endPass("compose");
     if ((pass + 1) % kPassesPerSubmission == 0) frame.submitAndWait();
   }
   blend(frame, shaders::PEELING_LAST);
-  frame.endPass("blend");
+  frame.endPass("compose");
 }
 
 void DepthPeeling::clear(Frame& frame) {

@@ -137,11 +137,11 @@ void DualDepthPeeling::draw(Frame& frame) {
     peel(frame, pass);
     frame.endPass("peel");
     blend(frame, pass == 1 ? shaders::PEELING_FIRST : shaders::PEELING_NEXT);
-    frame.endPass("blend");
+    frame.endPass("compose");
     if (pass % kPassesPerSubmission == 0) frame.submitAndWait();
   }
   blend(frame, shaders::PEELING_LAST);
-  frame.endPass("blend");
+  frame.endPass("compose");
 }
 
 void DualDepthPeeling::clear(Frame& frame) {

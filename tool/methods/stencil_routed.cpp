@@ -207,7 +207,7 @@ void StencilRouted::draw(Frame& frame) {
     if ((pass + 1) % kPassesPerSubmission == 0) frame.submitAndWait();
   }
   blend(frame);
-  frame.endPass("blend");
+  frame.endPass("compose");
 }
 
 // In one scope, so that depths of samples in the middle keep to one layout.
