@@ -97,6 +97,10 @@ const std::vector<MethodRow>& rows() {
        .severalSamples = false,
        .options = {},
        .nodes = VITRAIL_NODE_STANDARD},
+      {.name = "stencil-routed",
+       .exact = Exact::ParallelParts, // several_passes_test.cpp has the rest
+       .severalSamples = false,
+       .options = {}},
       {.name = "insertion",
        .exact = Exact::Everywhere,
        .orderFree = true,

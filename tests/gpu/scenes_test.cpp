@@ -40,8 +40,13 @@ Reference referenceOf(const Scene& scene, const RenderOptions& options, std::opt
   return renderReference(scene, same);
 }
 
-void expectAgreement(const Comparison& comparison, int bound, double edgeShare) {
-  EXPECT_LE(comparison.away, bound) << comparison;
+// With several samples surfaces are shaded at pixel centres that may lie far outside of a thin triangle, where the grid
+// that a driver snaps corners to moves a colour by much: one pixel in 10,000 may differ by that.
+constexpr double kExtrapolatedShare = 1e-4;
+
+void expectAgreement(const Comparison& comparison, int bound, double edgeShare, std::size_t beyond = 0) {
+  if (beyond == 0) EXPECT_LE(comparison.away, bound) << comparison;
+  EXPECT_LE(comparison.beyond, beyond) << comparison;
   EXPECT_LE(comparison.edgeShare, edgeShare) << comparison;
   EXPECT_LE(comparison.edgeOver, 0.1 * edgeShare) << comparison;
 }
@@ -76,8 +81,10 @@ class ScenesTest : public GpuTest {
     SCOPED_TRACE(describe(method));
     const RenderResult result = renderOnce(gpu(), scene, options, {}, DrawOrder::Forward, method);
     const Reference reference = referenceOf(scene, options, {}, method);
-    expectAgreement(compare(result.picture, reference.rounded, reference, kBound), kBound, edgeShare);
-    expectAgreement(compare(result.picture, reference.exact, reference, exactBound), exactBound, edgeShare);
+    const double pixels = static_cast<double>(reference.edge.size());
+    const auto beyond = method.samples > 1 ? static_cast<std::size_t>(kExtrapolatedShare * pixels) : 0;
+    expectAgreement(compare(result.picture, reference.rounded, reference, kBound), kBound, edgeShare, beyond);
+    expectAgreement(compare(result.picture, reference.exact, reference, exactBound), exactBound, edgeShare, beyond);
     expectCounts(result.report, reference);
   }
 

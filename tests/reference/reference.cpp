@@ -58,9 +58,9 @@ class Eye {
  public:
   Eye(const Scene& scene, const ReferenceOptions& options);
 
-  // Looks at the pixel around a point of the picture, with all rays moved by `nudge`, and corners of triangles as far
-  // where they are followed to the centre: drivers snap them to their grid. Without a nudge with everything in Sight;
-  // else `exact` and `layers` only.
+  // Looks at the pixel around a point of the picture, with all rays moved by `nudge`, and corners of triangles half as
+  // far where they are followed to the centre: drivers snap them to their grid. Without a nudge with everything in
+  // Sight; else `exact` and `layers` only.
   Sight look(const glm::dvec2& centre, const glm::dvec2& nudge, std::vector<RayHit>& hits) const;
 
  private:
@@ -265,7 +265,7 @@ Sight Eye::look(const glm::dvec2& centre, const glm::dvec2& nudge, std::vector<R
   const bool still = nudge == glm::dvec2(0.0);
   const glm::dvec2 pixel = centre + nudge;
   const PictureRay ray = pictureRay(options_.view, pixel, {options_.width, options_.height});
-  const PixelSurfaces surfaces = finder_.find(pixel, nudge, hits);
+  const PixelSurfaces surfaces = finder_.find(pixel, 0.5 * nudge, hits);
   const std::array<Color, kMostSamples> behind = opaqueColors(ray, surfaces);
 
   Sight sight;

@@ -49,7 +49,7 @@ struct Reference {
   // 1 where a renderer that is right may differ: the `exact` picture changes by more than 0.5/255 in a channel on the
   // sRGB curve where the rays move diagonally by 1/256 pixel (Vulkan snaps corners to a grid that fine), or where
   // surfaces at almost the same depth (1e-6 of it; with `compact` nodes what their codes cannot tell apart) change
-  // places. With several samples the corners of triangles move as far, too. Elsewhere 0.
+  // places. With several samples the corners of triangles move, too, half as far. Elsewhere 0.
   std::vector<std::uint8_t> edge;
 };
 

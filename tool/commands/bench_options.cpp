@@ -30,6 +30,7 @@ What to draw:
 
 What to compare with method unsorted, which is always measured:
   --methods NAME,...    linked-list, insertion, sorted, sorted-triangles, unsorted,
+                        depth-peeling, reverse-depth-peeling, dual-depth-peeling, stencil-routed, a-buffer,
                         weighted, moment, stochastic, loop, loop-64, interlock, multi-layer
                         (default linked-list,insertion)
   --nodes F,...         node formats of linked-list: standard, compact, hdr (default standard)

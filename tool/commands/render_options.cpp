@@ -25,6 +25,9 @@ How to blend it:
                         the order of the file, wrong wherever a nearer surface comes first;
                         sorted, objects back to front, and sorted-triangles, the same for every
                         triangle, both wrong where surfaces cross or overlap in a cycle;
+                        depth-peeling, front to back, and reverse-depth-peeling, back to front, a layer
+                        a pass; dual-depth-peeling, two; stencil-routed, as many as there are samples;
+                        a-buffer, linear arrays that are counted first;
                         insertion, lists as most published samples sort them;
                         weighted, a mean of all surfaces weighted by depth: one pass, wrong colours;
                         moment, surfaces dimmed by an estimate of what is before them: two passes;
@@ -42,7 +45,8 @@ How to blend it:
   --passes N            of stochastic: passes over the surfaces (default 16); four times as many
                         halve the noise
   --layers N            blends only the nearest N surfaces of a pixel exactly (default: all; loop,
-                        loop-64 and interlock: 8); the layers of multi-layer (default 4)
+                        loop-64 and interlock: 8); depth-peeling leaves the others out; the layers
+                        of multi-layer (default 4)
   --memory-budget MIB   for fragments, at least 1; a picture that needs more is drawn in tiles, the
                         same picture (default: what the device can give)
 

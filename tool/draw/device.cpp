@@ -378,6 +378,7 @@ void Gpu::Impl::createDevice() {
   std::vector<const char*> extensions;
   if (features.postDepthCoverage) extensions.push_back(VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
   if (features.fragmentInterlock) extensions.push_back(VK_EXT_FRAGMENT_SHADER_INTERLOCK_EXTENSION_NAME);
+  if (features.middleSamples != 0) extensions.push_back(VK_EXT_SAMPLE_LOCATIONS_EXTENSION_NAME);
   auto info = vkStruct<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
   info.pNext = &enabled;
   info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());

@@ -39,6 +39,18 @@ VkSampleCountFlags imageSampleCounts(VkPhysicalDevice device, VkFormat format, V
   return result == VK_SUCCESS ? properties.sampleCounts : 0;
 }
 
+// The counts of samples that can be placed in the middle of the pixel.
+VkSampleCountFlags middleSampleCounts(VkPhysicalDevice device) {
+  if (!hasExtension(device, VK_EXT_SAMPLE_LOCATIONS_EXTENSION_NAME)) return 0;
+  auto locations = vkStruct<VkPhysicalDeviceSampleLocationsPropertiesEXT>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SAMPLE_LOCATIONS_PROPERTIES_EXT);
+  auto properties = vkStruct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
+  properties.pNext = &locations;
+  vkGetPhysicalDeviceProperties2(device, &properties);
+  const float* range = locations.sampleLocationCoordinateRange;
+  return range[0] <= 0.5F && range[1] >= 0.5F ? locations.sampleLocationSampleCounts : 0;
+}
+
 // What a picture's images, and the scopes that draw into them, can have.
 VkSampleCountFlags pictureSampleCounts(VkPhysicalDevice device, const VkPhysicalDeviceLimits& limits) {
   constexpr VkSampleCountFlags kUsed =
@@ -76,6 +88,7 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   result.fragmentInterlock = interlock.fragmentShaderPixelInterlock == VK_TRUE;
   result.postDepthCoverage = hasExtension(device, VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
   result.sampleCounts = pictureSampleCounts(device, limits);
+  result.middleSamples = result.sampleCounts & middleSampleCounts(device);
   const VkSampleCountFlags stencil =
       limits.framebufferStencilSampleCounts &
       imageSampleCounts(device, VK_FORMAT_D32_SFLOAT_S8_UINT,

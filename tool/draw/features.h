@@ -15,13 +15,14 @@ struct GpuFeatures {
   bool poolByAddress = false;
   bool dualSourceBlending = false;
   bool sampleRateShading = false;
-  bool primitiveNumbers = false;    // gl_PrimitiveID in fragment shaders, which comes with geometry shaders
-  bool independentBlending = false; // colour attachments differ in how they blend
-  bool floatBlending = false;       // 32-bit float colour attachments blend
-  bool int64Atomics = false;        // minima of 64-bit integers in buffers
-  bool fragmentInterlock = false;   // VK_EXT_fragment_shader_interlock, of pixels
-  bool postDepthCoverage = false;   // VK_EXT_post_depth_coverage
-  bool stencil = false;             // images of D32_SFLOAT_S8_UINT
+  bool primitiveNumbers = false;        // gl_PrimitiveID in fragment shaders, which comes with geometry shaders
+  bool independentBlending = false;     // colour attachments differ in how they blend
+  bool floatBlending = false;           // 32-bit float colour attachments blend
+  bool int64Atomics = false;            // minima of 64-bit integers in buffers
+  bool fragmentInterlock = false;       // VK_EXT_fragment_shader_interlock, of pixels
+  bool postDepthCoverage = false;       // VK_EXT_post_depth_coverage
+  VkSampleCountFlags middleSamples = 0; // counts of samples that can all be in the middle (VK_EXT_sample_locations)
+  bool stencil = false;                 // images of D32_SFLOAT_S8_UINT
   VkSampleCountFlags sampleCounts = VK_SAMPLE_COUNT_1_BIT; // of a picture's images
 };
 

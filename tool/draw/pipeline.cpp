@@ -130,6 +130,19 @@ VkPipelineRasterizationStateCreateInfo rasterization() {
   return info;
 }
 
+// The same places in every pixel, one a sample. They outlive the result.
+VkPipelineSampleLocationsStateCreateInfoEXT samplesAt(const std::vector<VkSampleLocationEXT>& places) {
+  auto state = vkStruct<VkPipelineSampleLocationsStateCreateInfoEXT>(
+      VK_STRUCTURE_TYPE_PIPELINE_SAMPLE_LOCATIONS_STATE_CREATE_INFO_EXT);
+  state.sampleLocationsEnable = VK_TRUE;
+  state.sampleLocationsInfo = vkStruct<VkSampleLocationsInfoEXT>(VK_STRUCTURE_TYPE_SAMPLE_LOCATIONS_INFO_EXT);
+  state.sampleLocationsInfo.sampleLocationsPerPixel = static_cast<VkSampleCountFlagBits>(places.size());
+  state.sampleLocationsInfo.sampleLocationGridSize = {1, 1};
+  state.sampleLocationsInfo.sampleLocationsCount = static_cast<std::uint32_t>(places.size());
+  state.sampleLocationsInfo.pSampleLocations = places.data();
+  return state;
+}
+
 } // namespace
 
 Unique<VkPipelineLayout> makePipelineLayout(Gpu& gpu, const std::vector<VkDescriptorSetLayout>& sets,
@@ -194,6 +207,12 @@ Unique<VkPipeline> makeGraphicsPipeline(Gpu& gpu, const GraphicsPipelineInfo& in
   auto multisample =
       vkStruct<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
   multisample.rasterizationSamples = info.samples;
+  multisample.pSampleMask = &info.sampleMask;
+  multisample.sampleShadingEnable = info.shadeEverySample ? VK_TRUE : VK_FALSE;
+  multisample.minSampleShading = 1.0F;
+  const std::vector<VkSampleLocationEXT> middle(static_cast<std::size_t>(info.samples), {0.5F, 0.5F});
+  const auto locations = samplesAt(middle);
+  if (info.samplesInMiddle) multisample.pNext = &locations;
   const auto depth = depthState(info);
   const std::vector<VkPipelineColorBlendAttachmentState> blending = blendStates(info);
   const std::vector<VkFormat> formats = colorFormats(info);

@@ -51,6 +51,9 @@ struct GraphicsPipelineInfo {
   PipelineConstants constants; // of both shaders
   bool surface = false;        // reads Vertex data; front face and cull mode are dynamic
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+  std::uint32_t sampleMask = UINT32_MAX; // samples that are drawn, one bit each
+  bool shadeEverySample = false;         // at the place of each, where the device has GpuFeatures::sampleRateShading
+  bool samplesInMiddle = false;          // all are in the middle of the pixel, which takes GpuFeatures::middleSamples
   std::vector<ColorOutput> colors;
   VkFormat depthFormat = VK_FORMAT_UNDEFINED;  // a format with stencil: both are attached
   VkCompareOp depthTest = VK_COMPARE_OP_NEVER; // NEVER: neither tested nor written

@@ -107,7 +107,8 @@ GpuImage::GpuImage(Gpu& gpu, const GpuImageInfo& info, const std::string& name) 
   create.format = info.format;
   create.extent = {info.extent.width, info.extent.height, 1};
   create.mipLevels = info.mipLevels;
-  create.arrayLayers = 1;
+  create.flags = info.flags;
+  create.arrayLayers = info.arrayLayers;
   create.samples = info.samples;
   create.tiling = VK_IMAGE_TILING_OPTIMAL;
   create.usage = info.usage;
@@ -125,7 +126,7 @@ GpuImage::GpuImage(Gpu& gpu, const GpuImageInfo& info, const std::string& name) 
 
   auto viewInfo = vkStruct<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
   viewInfo.image = image;
-  viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  viewInfo.viewType = info.arrayLayers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   viewInfo.format = info.format;
   viewInfo.subresourceRange = range();
   VkImageView view = VK_NULL_HANDLE;
@@ -134,6 +135,6 @@ GpuImage::GpuImage(Gpu& gpu, const GpuImageInfo& info, const std::string& name) 
   setDebugName(gpu.device(), VK_OBJECT_TYPE_IMAGE_VIEW, view, name);
 }
 
-VkImageSubresourceRange GpuImage::range() const { return {info_.aspect, 0, info_.mipLevels, 0, 1}; }
+VkImageSubresourceRange GpuImage::range() const { return {info_.aspect, 0, info_.mipLevels, 0, info_.arrayLayers}; }
 
 } // namespace vitrail::tool

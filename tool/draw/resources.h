@@ -55,11 +55,13 @@ struct GpuImageInfo {
   VkFormat format = VK_FORMAT_UNDEFINED;
   VkImageUsageFlags usage = 0;
   std::uint32_t mipLevels = 1;
+  std::uint32_t arrayLayers = 1; // several: the view is that of an array
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
+  VkImageCreateFlags flags = 0;
 };
 
-// A 2D image in the GPU's memory and the view of all of it.
+// A 2D image, or an array of them, in the GPU's memory and the view of all of it.
 class GpuImage {
  public:
   GpuImage() = default;

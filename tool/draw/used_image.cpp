@@ -10,7 +10,8 @@ constexpr VkAccessFlags2 kReads = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT |
 
 bool same(const GpuImageInfo& a, const GpuImageInfo& b) {
   return a.extent.width == b.extent.width && a.extent.height == b.extent.height && a.format == b.format &&
-         a.usage == b.usage && a.mipLevels == b.mipLevels && a.samples == b.samples && a.aspect == b.aspect;
+         a.usage == b.usage && a.mipLevels == b.mipLevels && a.arrayLayers == b.arrayLayers && a.flags == b.flags &&
+         a.samples == b.samples && a.aspect == b.aspect;
 }
 
 } // namespace

@@ -14,8 +14,9 @@ namespace vitrail::tool {
 namespace {
 
 constexpr VkFormat kTakenFormat = VK_FORMAT_R32G32_UINT;
+constexpr VkFormat kFrontFormat = VK_FORMAT_R32G32B32A32_SFLOAT; // many layers would add up the rounding of 16 bits
 constexpr VkFormat kLayerDepthFormat = VK_FORMAT_D32_SFLOAT;
-constexpr std::uint64_t kPixelBytes = 4 * 8 + 2 * 8 + 4;
+constexpr std::uint64_t kPixelBytes = 4 * 8 + 2 * 16 + 4;
 constexpr std::uint32_t kPassesPerSubmission = 24;
 
 std::uint32_t groups(std::uint32_t pixels) {
@@ -81,14 +82,14 @@ void DepthPeeling::setTarget(const MethodTarget& target) {
     image.ensure(gpu_, info, name);
   };
   make(color_, PictureImages::kColorFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, "layer colour");
-  make(through_, PictureImages::kColorFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, "layer transmittance");
+  make(opacity_, PictureImages::kColorFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, "layer opacity");
   make(layerTaken_, kTakenFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, "layer depth and triangle");
-  make(frontColor_, PictureImages::kColorFormat, VK_IMAGE_USAGE_TRANSFER_DST_BIT, "colour of nearer layers");
-  make(frontThrough_, PictureImages::kColorFormat, VK_IMAGE_USAGE_TRANSFER_DST_BIT, "transmittance of nearer layers");
+  make(frontColor_, kFrontFormat, VK_IMAGE_USAGE_TRANSFER_DST_BIT, "colour of nearer layers");
+  make(frontThrough_, kFrontFormat, VK_IMAGE_USAGE_TRANSFER_DST_BIT, "transmittance of nearer layers");
   make(taken_, kTakenFormat, VK_IMAGE_USAGE_TRANSFER_DST_BIT, "last depth and triangle");
   peelSet_.writeImage(0, target.depth, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
   peelSet_.writeImage(1, taken_.get().view(), VK_IMAGE_LAYOUT_GENERAL);
-  const UsedImage* images[] = {&color_, &through_, &layerTaken_, &frontColor_, &frontThrough_, &taken_};
+  const UsedImage* images[] = {&color_, &opacity_, &layerTaken_, &frontColor_, &frontThrough_, &taken_};
   std::uint32_t binding = 0;
   for (const UsedImage* image : images) blendSet_.writeImage(binding++, image->get().view(), VK_IMAGE_LAYOUT_GENERAL);
   blendSet_.writeImage(binding, target.color, VK_IMAGE_LAYOUT_GENERAL);
@@ -96,7 +97,7 @@ void DepthPeeling::setTarget(const MethodTarget& target) {
 
 void DepthPeeling::releaseTarget() {
   complexity_.releaseTarget();
-  for (UsedImage* image : {&depth_, &color_, &through_, &layerTaken_, &frontColor_, &frontThrough_, &taken_}) {
+  for (UsedImage* image : {&depth_, &color_, &opacity_, &layerTaken_, &frontColor_, &frontThrough_, &taken_}) {
     *image = UsedImage();
   }
 }
@@ -110,12 +111,12 @@ void DepthPeeling::draw(Frame& frame) {
   for (std::uint32_t pass = 0; pass < passes; ++pass) {
     peel(frame);
     frame.endPass("peel");
-    blend(frame, false);
-    frame.endPass("blend");
+    blend(frame, pass == 0 ? shaders::PEELING_FIRST : shaders::PEELING_NEXT);
+    frame.endPass("compose");
     if ((pass + 1) % kPassesPerSubmission == 0) frame.submitAndWait();
   }
-  blend(frame, true);
-  frame.endPass("blend");
+  blend(frame, shaders::PEELING_LAST);
+  frame.endPass("compose");
 }
 
 void DepthPeeling::clear(Frame& frame) {
@@ -135,7 +136,7 @@ void DepthPeeling::peel(Frame& frame) {
   taken_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kFragmentRead);
   Scope scope = frame.images().wholeScope();
   const VkClearColorValue nothing{};
-  for (UsedImage* image : {&color_, &through_, &layerTaken_}) {
+  for (UsedImage* image : {&color_, &opacity_, &layerTaken_}) {
     image->discard();
     scope.colors.push_back({.image = image, .clear = nothing});
   }
@@ -152,10 +153,10 @@ void DepthPeeling::peel(Frame& frame) {
   vkCmdEndRendering(commands);
 }
 
-void DepthPeeling::blend(Frame& frame, bool last) {
+void DepthPeeling::blend(Frame& frame, std::uint32_t step) {
   VkCommandBuffer commands = frame.commands();
   // The pass wrote a layer -> it is read.
-  for (UsedImage* image : {&color_, &through_, &layerTaken_}) {
+  for (UsedImage* image : {&color_, &opacity_, &layerTaken_}) {
     image->cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeRead);
   }
   // The layer before it was blended, and the pass read what was taken -> they are read and written again.
@@ -164,7 +165,6 @@ void DepthPeeling::blend(Frame& frame, bool last) {
   taken_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeWrite);
   frame.images().color().cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
   const VkDescriptorSet set = blendSet_.set();
-  const std::uint32_t step = last ? 1 : 0;
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, blend_.get());
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
   vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(step), &step);

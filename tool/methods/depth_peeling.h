@@ -11,7 +11,7 @@
 // a pixel, however many layers there are. One sample a pixel.
 //
 // What it gets wrong: of surfaces at equal depths the one that is drawn first counts as nearer, so there, and only
-// there, the order of submission shows. Colours are kept in 16-bit floats between passes.
+// there, the order of submission shows. Each layer is kept in 16-bit floats.
 #pragma once
 
 #include "depth_complexity.h"
@@ -34,7 +34,7 @@ class DepthPeeling final : public Method {
  private:
   void clear(Frame& frame);
   void peel(Frame& frame);
-  void blend(Frame& frame, bool last);
+  void blend(Frame& frame, std::uint32_t step);
 
   Gpu& gpu_;
   std::uint32_t layers_; // 0: all
@@ -47,7 +47,7 @@ class DepthPeeling final : public Method {
   VkExtent2D extent_{};
   UsedImage depth_; // of the layer that a pass takes
   UsedImage color_;
-  UsedImage through_;
+  UsedImage opacity_;
   UsedImage layerTaken_;
   UsedImage frontColor_; // of the layers before it
   UsedImage frontThrough_;

@@ -14,8 +14,9 @@ namespace vitrail::tool {
 namespace {
 
 constexpr VkFormat kFoundFormat = VK_FORMAT_R32G32_SFLOAT;
+constexpr VkFormat kSumFormat = VK_FORMAT_R32G32B32A32_SFLOAT; // many layers would add up the rounding of 16 bits
 constexpr std::uint32_t kAttachments = 5;
-constexpr std::uint64_t kPixelBytes = 8 * 8;
+constexpr std::uint64_t kPixelBytes = 6 * 8 + 3 * 16;
 constexpr std::uint32_t kPassesPerSubmission = 24;
 
 std::uint32_t groups(std::uint32_t pixels) {
@@ -42,14 +43,14 @@ SurfacePipelines makePeel(const MethodHost& host, VkDescriptorSetLayout set) {
     auto most = blendWith(add, add);
     most.colorBlendOp = most.alphaBlendOp = VK_BLEND_OP_MAX;
     const auto sum = blendWith(add, add);
-    const auto product =
-        blendWith({VK_BLEND_FACTOR_ZERO, VK_BLEND_FACTOR_SRC_COLOR}, {VK_BLEND_FACTOR_ZERO, VK_BLEND_FACTOR_SRC_ALPHA});
+    const BlendFactors both{VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR};
+    const auto united = blendWith(both, {VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA});
     info.fragmentShader = shaders::dual_depth_peeling_frag;
     info.colors = {{kFoundFormat, most},
                    {PictureImages::kColorFormat, sum},
-                   {PictureImages::kColorFormat, product},
+                   {PictureImages::kColorFormat, united},
                    {PictureImages::kColorFormat, sum},
-                   {PictureImages::kColorFormat, product}};
+                   {PictureImages::kColorFormat, united}};
     info.depthFormat = PictureImages::depthFormat(true);
   };
   return {
@@ -80,7 +81,7 @@ DualDepthPeeling::DualDepthPeeling(const MethodHost& host)
     : gpu_(withBlending(host.gpu)),
       complexity_(host, "dual-depth-peeling"),
       peelSets_{makePeelSet(gpu_), makePeelSet(gpu_)},
-      blendSet_(gpu_, {7, {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}}, "dual-depth-peeling blend"),
+      blendSet_(gpu_, {8, {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}}, "dual-depth-peeling blend"),
       surfaces_(makePeel(host, peelSets_[0].layout())),
       layout_(makePipelineLayout(gpu_, {blendSet_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(std::uint32_t)},
                                  "dual-depth-peeling blend")),
@@ -105,11 +106,14 @@ void DualDepthPeeling::setTarget(const MethodTarget& target) {
     layer.ensure(gpu_, info, "layer");
     blendSet_.writeImage(binding++, layer.get().view(), VK_IMAGE_LAYOUT_GENERAL);
   }
+  info.format = kSumFormat;
   info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   for (UsedImage& front : front_) {
     front.ensure(gpu_, info, "nearer layers");
     blendSet_.writeImage(binding++, front.get().view(), VK_IMAGE_LAYOUT_GENERAL);
   }
+  back_.ensure(gpu_, info, "farther layers");
+  blendSet_.writeImage(binding++, back_.get().view(), VK_IMAGE_LAYOUT_GENERAL);
   blendSet_.writeImage(binding, target.color, VK_IMAGE_LAYOUT_GENERAL);
 }
 
@@ -118,6 +122,7 @@ void DualDepthPeeling::releaseTarget() {
   for (UsedImage& image : found_) image = UsedImage();
   for (UsedImage& image : layers_) image = UsedImage();
   for (UsedImage& image : front_) image = UsedImage();
+  back_ = UsedImage();
 }
 
 // The first pass finds depths, and each after it takes two layers.
@@ -131,12 +136,12 @@ void DualDepthPeeling::draw(Frame& frame) {
   for (std::uint32_t pass = 1; pass <= pairs; ++pass) {
     peel(frame, pass);
     frame.endPass("peel");
-    blend(frame, false);
-    frame.endPass("blend");
+    blend(frame, pass == 1 ? shaders::PEELING_FIRST : shaders::PEELING_NEXT);
+    frame.endPass("compose");
     if (pass % kPassesPerSubmission == 0) frame.submitAndWait();
   }
-  blend(frame, true);
-  frame.endPass("blend");
+  blend(frame, shaders::PEELING_LAST);
+  frame.endPass("compose");
 }
 
 void DualDepthPeeling::clear(Frame& frame) {
@@ -153,9 +158,9 @@ void DualDepthPeeling::peel(Frame& frame, std::uint32_t pass) {
   Scope scope = frame.images().wholeScope();
   found.discard();
   scope.colors.push_back({.image = &found, .clear = all(-2.0F)}); // beyond all depths
-  for (std::size_t i = 0; i < layers_.size(); ++i) {
-    layers_[i].discard();
-    scope.colors.push_back({.image = &layers_[i], .clear = all(i % 2 == 0 ? 0.0F : 1.0F)});
+  for (UsedImage& layer : layers_) {
+    layer.discard();
+    scope.colors.push_back({.image = &layer, .clear = all(0.0F)});
   }
   scope.depth = {.image = &frame.images().depth(), .depth = AspectUse::Test};
   cmdBeginScope(frame.commands(), scope);
@@ -163,15 +168,15 @@ void DualDepthPeeling::peel(Frame& frame, std::uint32_t pass) {
   vkCmdEndRendering(frame.commands());
 }
 
-void DualDepthPeeling::blend(Frame& frame, bool last) {
+void DualDepthPeeling::blend(Frame& frame, std::uint32_t step) {
   VkCommandBuffer commands = frame.commands();
   // The pass wrote two layers -> they are read.
   for (UsedImage& layer : layers_) layer.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeRead);
   // The layers before them were blended -> so are these.
   for (UsedImage& front : front_) front.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
+  back_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
   frame.images().color().cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
   const VkDescriptorSet set = blendSet_.set();
-  const std::uint32_t step = last ? 1 : 0;
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, blend_.get());
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
   vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(step), &step);

@@ -16,6 +16,7 @@
 #include "reverse_depth_peeling.h"
 #include "sorted.h"
 #include "sorted_triangles.h"
+#include "stencil_routed.h"
 #include "stochastic.h"
 #include "unsorted.h"
 #include "weighted.h"
@@ -31,6 +32,7 @@ std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& 
   if (options.name == "reverse-depth-peeling") return std::make_unique<ReverseDepthPeeling>(host, options);
   if (options.name == "dual-depth-peeling") return std::make_unique<DualDepthPeeling>(host);
   if (options.name == "a-buffer") return std::make_unique<ABuffer>(host);
+  if (options.name == "stencil-routed") return std::make_unique<StencilRouted>(host);
   if (options.name == "insertion") return std::make_unique<Insertion>(host);
   if (options.name == kLayerCount) return std::make_unique<LayerCount>(host);
   if (options.name == "weighted") return std::make_unique<Weighted>(host, options);

@@ -30,6 +30,7 @@ constexpr std::array kMethods{
     MethodTraits{.name = "reverse-depth-peeling", .severalSamples = false},
     MethodTraits{.name = "dual-depth-peeling", .severalSamples = false},
     MethodTraits{.name = "a-buffer", .severalSamples = false},
+    MethodTraits{.name = "stencil-routed", .severalSamples = false},
     MethodTraits{.name = "insertion", .severalSamples = false, .nodeCapacity = true},
     MethodTraits{.name = "weighted"},
     MethodTraits{.name = "moment", .severalSamples = false},

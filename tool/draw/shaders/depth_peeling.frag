@@ -11,7 +11,7 @@ layout(set = 2, binding = 1, rg32ui) uniform readonly uimage2D takenImage; // by
 layout(push_constant) uniform DrawBlock { uint firstTriangle; }; // of the draw, in the order of submission
 
 layout(location = 0) out vec4 outColor;
-layout(location = 1) out vec4 outThrough;
+layout(location = 1) out vec4 outOpacity;
 layout(location = 2) out uvec2 outTaken;
 
 // Whether the fragment comes after the last one that was taken: it is farther away, or as far and drawn later.
@@ -28,6 +28,6 @@ void main() {
   Layer layer = layerOf(shadeSurface());
   if (shadesFirst() && !remains(mine, pixel)) discard;
   outColor = vec4(layer.color, 0.0);
-  outThrough = layer.through;
+  outOpacity = opacityOf(layer);
   outTaken = mine;
 }

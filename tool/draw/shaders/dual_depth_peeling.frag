@@ -11,9 +11,9 @@ layout(set = 2, binding = 0) uniform texture2D foundImage;
 
 layout(location = 0) out vec2 outFound; // the largest of the depth and of its negative
 layout(location = 1) out vec4 outFrontColor; // sums; a: how many
-layout(location = 2) out vec4 outFrontThrough; // products
+layout(location = 2) out vec4 outFrontOpacity; // of all together
 layout(location = 3) out vec4 outBackColor;
-layout(location = 4) out vec4 outBackThrough;
+layout(location = 4) out vec4 outBackOpacity;
 
 const vec2 NOTHING = vec2(-2.0);
 
@@ -24,15 +24,14 @@ void main() {
   bool isBack = !isFront && depth == -found.y;
   bool isBetween = depth < found.x && depth > -found.y;
   outFound = isBetween ? vec2(depth, -depth) : NOTHING;
-  outFrontColor = outBackColor = vec4(0.0);
-  outFrontThrough = outBackThrough = vec4(1.0);
+  outFrontColor = outFrontOpacity = outBackColor = outBackOpacity = vec4(0.0);
   if (!shadesFirst() && !has(FEATURE_MASK) && !isFront && !isBack) return;
   Layer layer = layerOf(shadeSurface());
   if (isFront) {
     outFrontColor = vec4(layer.color, 1.0);
-    outFrontThrough = layer.through;
+    outFrontOpacity = opacityOf(layer);
   } else if (isBack) {
     outBackColor = vec4(layer.color, 1.0);
-    outBackThrough = layer.through;
+    outBackOpacity = opacityOf(layer);
   }
 }

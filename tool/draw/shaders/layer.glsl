@@ -10,6 +10,9 @@ struct Layer {
   vec4 through; // a: for the picture's alpha, whose part of color is 1 - through.a
 };
 
+// What images of 16-bit floats keep of a layer: there the opacity of a thin one is finer than what it lets through.
+vec4 opacityOf(Layer layer) { return 1.0 - layer.through; }
+
 const float LARGEST_HALF = 65504.0;
 
 Layer layerOf(Surface surface) {

@@ -10,6 +10,11 @@ using uint = std::uint32_t;
 
 const uint PEELING_GROUP_SIDE = 8u;
 
+// Which layers a dispatch blends: the first, the others, or, when all are, what is behind them.
+const uint PEELING_FIRST = 0u;
+const uint PEELING_NEXT = 1u;
+const uint PEELING_LAST = 2u;
+
 #ifdef __cplusplus
 } // namespace vitrail::tool::shaders
 #endif

@@ -15,11 +15,15 @@ layout(set = 1, binding = 3) uniform sampler2D occlusionTexture;
 layout(set = 1, binding = 4) uniform sampler2D emissiveTexture;
 layout(set = 1, binding = 5) uniform sampler2D transmissionTexture;
 
-layout(location = 0) in vec3 inPosition;
-layout(location = 1) in vec3 inNormal;
-layout(location = 2) in vec4 inTangent;
-layout(location = 3) in vec4 inColor;
-layout(location = 4) in vec2 inTexCoords[SLOT_COUNT];
+// Where the surface is shaded: at the middle of the pixel, unless the including shader says otherwise.
+#ifndef SURFACE_IN
+#define SURFACE_IN in
+#endif
+layout(location = 0) SURFACE_IN vec3 inPosition;
+layout(location = 1) SURFACE_IN vec3 inNormal;
+layout(location = 2) SURFACE_IN vec4 inTangent;
+layout(location = 3) SURFACE_IN vec4 inColor;
+layout(location = 4) SURFACE_IN vec2 inTexCoords[SLOT_COUNT];
 
 const float PI = 3.14159265358979;
 
