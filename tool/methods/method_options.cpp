@@ -22,11 +22,19 @@ constexpr std::array kMethods{
                  .msaaResolves = true,
                  .layers = true,
                  .memoryBudget = true,
-                 .nodeCapacity = true},
-    MethodTraits{.name = "unsorted"},
-    MethodTraits{.name = "sorted"},
-    MethodTraits{.name = "sorted-triangles"},
-    MethodTraits{.name = "insertion", .severalSamples = false, .nodeCapacity = true},
+                 .nodeCapacity = true,
+                 .orderIndependent = true},
+    MethodTraits{.name = "unsorted", .wrong = "surfaces are blended in the order in which they are drawn"},
+    MethodTraits{.name = "sorted",
+                 .wrong =
+                     "objects that cross, nest or overlap in a cycle, and surfaces of one object, are blended in a "
+                     "wrong order"},
+    MethodTraits{.name = "sorted-triangles",
+                 .wrong = "triangles that cross or overlap in a cycle are blended in a wrong order"},
+    MethodTraits{.name = "insertion",
+                 .severalSamples = false,
+                 .nodeCapacity = true,
+                 .wrong = "fragments of a pixel beyond 128 are dropped"},
 };
 
 constexpr std::array kNames = [] {
