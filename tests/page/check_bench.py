@@ -99,14 +99,16 @@ def main():
     tool, picture = sys.argv[1], sys.argv[2:3]
     with tempfile.TemporaryDirectory(dir=os.getcwd()) as folder:  # not /tmp: a snap does not see it
         small = ["--size", "32x24", "--methods", "linked-list,insertion,sorted"]
-        for name, arguments in {
-            "sweeps": ["--sweep", "layers,triangles,samples", "--count", "1", *small],
-            "scenes": ["--scene", "planes,interlocked", *small],
-        }.items():
-            page = os.path.join(folder, name)
-            report = make_page(tool, page, arguments)
-            browser = Browser()
-            try:
+        browser = Browser()
+        try:
+            for name, arguments in {
+                "sweeps": ["--sweep", "layers,triangles,samples", "--count", "1", *small],
+                "scenes": ["--scene", "planes,interlocked", *small],
+            }.items():
+                page = os.path.join(folder, name)
+                report = make_page(tool, page, arguments)
+                browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
+                browser.events.clear()
                 browser.open(os.path.join(page, "index.html"))
                 check_content(browser, report)
                 check_hiding(browser)
@@ -115,9 +117,9 @@ def main():
                 check_dark(browser)
                 if picture:
                     leave(browser, f"{picture[0]}-{name}-dark.png")
-            finally:
-                browser.close()
-            failures.extend(f"{name}: {error}" for error in browser.errors)
+        finally:
+            browser.close()
+    failures.extend(browser.errors)
     for failure in failures:
         print(failure)
     sys.exit(1 if failures else 0)

@@ -266,14 +266,14 @@ TEST(Bench, SweepsGoToTheTableAndToAllFiles) {
 
 TEST(Bench, ProgressOfASweepIsShownOnATerminalAlone) {
   const TemporaryFolder folder;
-  const std::string command = kTool + " bench --sweep triangles --count 1 --size 16x16 --repeat 1 --methods unsorted ";
+  const std::string command = kTool + " bench --sweep samples --count 1 --size 16x16 --repeat 1 --methods unsorted ";
   const auto onTerminal = [&](const std::string& more) {
     return run({"/usr/bin/script", "-qec", command + more, "/dev/null"},
                {.folder = folder.path(), .environment = {}, .running = {}})
         .out;
   };
   const std::string shown = onTerminal("");
-  EXPECT_NE(shown.find("triangles, step 2 of "), std::string::npos) << shown;
+  EXPECT_NE(shown.find("samples, step 2 of 4"), std::string::npos) << shown;
   EXPECT_NE(shown.find("round 1 of 1"), std::string::npos) << shown;
   EXPECT_EQ(onTerminal("--quiet"), "");
 }

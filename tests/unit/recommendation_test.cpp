@@ -81,13 +81,23 @@ TEST(Recommendation, NoiseDoesNotChangeTheAdviceFromStepToStep) {
       << adviceFor(report, "Exact");
 }
 
+// One round has no spread.
+TEST(Recommendation, CostsThatAreNearlyEqualAreNotToldApart) {
+  BenchReport report =
+      reportOf({layersOf(1, {measuredAs("linked-list", 4.15, 10, true), measuredAs("sorted", 4, 10, true)})});
+  for (Measurement& each : report.scenes[0].measurements) each.costMs = spreadOf({each.costMs.median});
+  EXPECT_NE(adviceFor(report, "Exact").find("within the measured spread of it: linked-list, standard"),
+            std::string::npos);
+  report.scenes[0].measurements[0].costMs = spreadOf({4.25});
+  EXPECT_EQ(adviceFor(report, "Exact").find("linked-list"), std::string::npos);
+}
+
 TEST(Recommendation, AnApproximateMethodHasToBeCheaper) {
   BenchReport report = reportOf({
       layersOf(1, {measuredAs("unsorted", 2, 0, false), measuredAs("linked-list", 3, 10, true)}),
   });
-  EXPECT_EQ(
-      adviceFor(report, "Approximate will do"),
-      "At 1 layer no order-independent method that was measured is cheaper than the exact one.");
+  EXPECT_EQ(adviceFor(report, "Approximate will do"),
+            "At 1 layer no order-independent method that was measured is cheaper than the exact one.");
   // One whose cost can be told from the exact one's. A list that was cut is the one approximation that says it does not
   // depend on the order of surfaces.
   Measurement cut = measuredAs("linked-list", 2.5, 5, false);

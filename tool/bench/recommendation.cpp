@@ -17,6 +17,9 @@ namespace vitrail::tool {
 
 namespace {
 
+// Few rounds can agree by chance: costs that lie closer than this are never told apart.
+constexpr double kLeastSpread = 0.05;
+
 using Scenes = std::vector<const SceneMeasurement*>;
 using Candidates = std::vector<const Measurement*>; // the best first
 using Wanted = std::function<bool(const Measurement&)>;
@@ -56,7 +59,8 @@ Candidates cheapestOf(const SceneMeasurement& scene, const Wanted& wanted) {
   Candidates found = wantedOf(scene, wanted);
   std::ranges::stable_sort(found, {}, [](const Measurement* each) { return each->costMs.median; });
   if (found.empty()) return found;
-  const double most = found.front()->costMs.upperQuartile;
+  const double most =
+      std::max(found.front()->costMs.upperQuartile, (1.0 + kLeastSpread) * found.front()->costMs.median);
   std::erase_if(found, [&](const Measurement* each) { return each->costMs.lowerQuartile > most; });
   return found;
 }

@@ -22,9 +22,9 @@ struct Advice {
 //                 approximate is worth its errors
 //   memory        the exact one that keeps the fewest bytes on the device, where the cheapest one keeps over a tenth
 //   more
-// A setting counts as cheap as the cheapest one where the interquartile ranges of their costs meet. Of those the one is
-// named that stays among the cheapest for the most steps, so that noise does not change the advice from step to step.
-// Times are told of GPUs alone.
+// A setting counts as cheap as the cheapest one where the interquartile ranges of their costs meet or its cost is
+// within a twentieth. Of those the one is named that stays among the cheapest for the most steps, so that noise does
+// not change the advice from step to step. Times are told of GPUs alone.
 std::vector<Advice> recommend(const BenchReport& report);
 
 // The scenes of one sweep, or those in none, in order.

@@ -16,7 +16,7 @@ const whole = (value) => value.toLocaleString("en");
 const ratio = (value) => (value === null ? "–" : value.toFixed(2) + "×");
 
 function machineText(report) {
-  return `${report.device} (${report.driver}), ${report.api}; medians of ${report.repeats} rounds.` +
+  return `${report.device} (${report.driver}), ${report.api}; medians of ${report.repeats} ${report.repeats === 1 ? "round" : "rounds"}.` +
     (report.cpu ? " This device is a CPU, whose times are the machine's: ratios alone are shown." : "");
 }
 
