@@ -138,7 +138,7 @@ TEST(Recommendation, CountsWhatHasTheFewestSamples) {
   Measurement multisampled = measuredAs("linked-list", 1, 1, true);
   multisampled.options.samples = 4;
   const BenchReport report =
-      reportOf({layersOf(1, {measuredAs("linked-list", 3, 10, true), multisampled}), layersOf(2, {})});
+      reportOf({layersOf(1, {multisampled, measuredAs("linked-list", 3, 10, true)}), layersOf(2, {})});
   EXPECT_EQ(adviceFor(report, "Exact"),
             "At 1 layer linked-list, standard is the cheapest exact method: 1.50 times the cost of unsorted (3.000 ms) "
             "and 10.0 MiB.");
