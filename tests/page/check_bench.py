@@ -98,7 +98,7 @@ def leave(browser, path):
 def main():
     tool, picture = sys.argv[1], sys.argv[2:3]
     with tempfile.TemporaryDirectory(dir=os.getcwd()) as folder:  # not /tmp: a snap does not see it
-        small = ["--size", "32x24", "--methods", "linked-list,insertion,sorted"]
+        small = ["--size", "32x24", "--methods", "linked-list,insertion"]
         browser = Browser()
         try:
             for name, arguments in {
