@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include "png_reader.h"
@@ -76,8 +77,9 @@ void expectMeasurement(const Json& measured) {
 
 TEST(Bench, MeasuresAndReports) {
   const TemporaryFolder folder;
-  const ProcessResult result = vitrail(folder, {"bench", "--scene", "interlocked,planes", "--count", "5,3", "--size",
-                                                "96x64", "--repeat", "2", "--warmup", "1", "--json", "a.json"});
+  const ProcessResult result =
+      vitrail(folder, {"bench", "--scene", "interlocked,planes", "--count", "5,3", "--size", "96x64", "--repeat", "2",
+                       "--warmup", "1", "--methods", "linked-list,insertion", "--json", "a.json"});
   ASSERT_EQ(result.exitCode, 0) << result.error;
   EXPECT_EQ(result.error, ""); // no progress in a pipe
   EXPECT_EQ(folder.names(), Words{"a.json"});
@@ -119,8 +121,8 @@ TEST(Bench, EverySettingIsMeasuredOrSkippedWithAReason) {
                        "--json", "a.json"});
   ASSERT_EQ(result.exitCode, 0) << result.error;
   const Json scene = readJson(folder.file("a.json")).at("scenes")[0];
-  // unsorted, compact and standard at 1 sample, unsorted and standard at 8.
-  EXPECT_EQ(scene.at("measurements").size() + scene.at("skipped").size(), 5U) << scene.dump(1);
+  // unsorted, compact and standard at 1 sample and at 8.
+  EXPECT_EQ(scene.at("measurements").size() + scene.at("skipped").size(), 6U) << scene.dump(1);
   ASSERT_GE(scene.at("measurements").size(), 3U) << scene.dump(1);
   EXPECT_EQ(scene.at("measurements")[1].at("nodes"), "compact");
   EXPECT_EQ(scene.at("measurements")[1].at("resolve"), "fragment");
@@ -130,6 +132,150 @@ TEST(Bench, EverySettingIsMeasuredOrSkippedWithAReason) {
     EXPECT_NE(skipped.at("reason").get<std::string>().find("samples"), std::string::npos) << skipped.dump();
     EXPECT_NE(result.out.find(skipped.at("reason")), std::string::npos) << result.out;
   }
+}
+
+// All methods, as the program names them where it is given another name.
+Words allMethods(const TemporaryFolder& folder) {
+  const std::string error = vitrail(folder, {"bench", "--methods", "magic"}).error;
+  const std::string before = "there are ";
+  const std::size_t begin = error.find(before) + before.size();
+  const std::string list = error.substr(begin, error.find_first_of("(\n", begin) - begin);
+  Words names;
+  for (std::size_t at = 0; at < list.size();) {
+    const std::size_t end = list.find_first_of(", ", at);
+    names.push_back(list.substr(at, end - at));
+    at = std::max(end, list.find_first_not_of(", ", end));
+  }
+  return names;
+}
+
+// Where no methods are named all are measured, or skipped with the reason.
+TEST(Bench, MeasuresEveryMethod) {
+  const TemporaryFolder folder;
+  const Words methods = allMethods(folder);
+  ASSERT_GE(methods.size(), 5U);
+  ASSERT_EQ(methods.front(), "linked-list");
+  const ProcessResult result = vitrail(folder, {"bench", "--scene", "planes", "--count", "2", "--size", "16x16",
+                                                "--repeat", "1", "--samples", "1,4", "--json", "a.json"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json scene = readJson(folder.file("a.json")).at("scenes")[0];
+  for (const std::string& method : methods) {
+    for (const int samples : {1, 4}) {
+      int measured = 0;
+      int skipped = 0;
+      for (const Json& each : scene.at("measurements"))
+        measured += each.at("method") == method && each.at("samples") == samples;
+      for (const Json& each : scene.at("skipped")) {
+        const bool isIt = each.at("method") == method && each.at("samples") == samples;
+        skipped += isIt;
+        if (isIt) {
+          EXPECT_NE(result.out.find(each.at("reason")), std::string::npos) << result.out;
+        }
+      }
+      EXPECT_EQ(measured + skipped, 1) << method << " at " << samples;
+      if (samples == 1 && method == "linked-list") {
+        EXPECT_EQ(measured, 1);
+      }
+    }
+  }
+}
+
+std::vector<Words> readCsv(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<Words> rows;
+  for (std::string line; std::getline(file, line);) {
+    Words cells(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"') {
+        quoted = !quoted;
+      } else if (c == ',' && !quoted) {
+        cells.emplace_back();
+      } else {
+        cells.back() += c;
+      }
+    }
+    rows.push_back(cells);
+  }
+  return rows;
+}
+
+TEST(Bench, SweepsGoToTheTableAndToAllFiles) {
+  const TemporaryFolder folder;
+  const ProcessResult result =
+      vitrail(folder, {"bench", "--sweep", "layers,triangles,samples", "--methods", "linked-list", "--size", "32x24",
+                       "--repeat", "1", "--count", "1", "--json", "a.json", "--csv", "a.csv", "-o", "out"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_EQ(result.error, "");
+  EXPECT_EQ(folder.names(), (Words{"a.csv", "a.json", "out"}));
+  const Json json = readJson(folder.file("a.json"));
+  EXPECT_EQ(json, readJson(folder.file("out/report.json")));
+  EXPECT_EQ(json.at("width"), 32);
+
+  double before = 0.0;
+  std::string sweep;
+  std::size_t measurements = 0;
+  for (const Json& scene : json.at("scenes")) {
+    SCOPED_TRACE(scene.dump());
+    if (scene.at("sweep") != sweep) before = 0.0;
+    sweep = scene.at("sweep");
+    EXPECT_GT(scene.at("step"), before); // every step is larger than the one before it
+    before = scene.at("step");
+    EXPECT_EQ(scene.at("height"), 24);
+    EXPECT_EQ(scene.at("measurements").size() + scene.at("skipped").size(), 2U);
+    measurements += scene.at("measurements").size();
+    for (const Json& measured : scene.at("measurements")) {
+      EXPECT_GT(measured.at("cost_ratio"), 0.0);
+      if (measured.at("method") != "linked-list") continue;
+      EXPECT_GT(measured.at("memory_bytes"), 0);
+      if (sweep == "layers") {
+        EXPECT_EQ(measured.at("layers").at("max"), scene.at("step"));
+      }
+      if (sweep == "samples") {
+        EXPECT_EQ(measured.at("samples"), scene.at("step"));
+      }
+    }
+    if (sweep == "triangles") {
+      EXPECT_EQ(scene.at("triangles"), scene.at("step"));
+    }
+    EXPECT_NE(result.out.find(scene.at("label").get<std::string>()), std::string::npos) << result.out;
+  }
+  EXPECT_EQ(sweep, "samples");
+
+  // Splitting triangles leaves fragments where they are.
+  std::vector<double> fragments;
+  for (const Json& scene : json.at("scenes")) {
+    if (scene.at("sweep") == "triangles") {
+      fragments.push_back(scene.at("measurements")[1].at("fragments").at("requested"));
+    }
+  }
+  ASSERT_GE(fragments.size(), 3U);
+  EXPECT_NEAR(fragments.back(), fragments.front(), 0.01 * fragments.front());
+
+  const std::vector<Words> rows = readCsv(folder.file("a.csv"));
+  EXPECT_EQ(rows, readCsv(folder.file("out/report.csv")));
+  EXPECT_EQ(rows.size(), 1 + measurements);
+  for (const Words& row : rows) EXPECT_EQ(row.size(), rows[0].size());
+
+  ASSERT_GE(json.at("recommendation").size(), 6U); // exact, and approximate, of each sweep
+  EXPECT_NE(json.at("recommendation")[0].at("text").get<std::string>().find("linked-list, standard"),
+            std::string::npos);
+  EXPECT_NE(result.out.find("out/index.html"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("out/index.html")));
+}
+
+TEST(Bench, ProgressOfASweepIsShownOnATerminalAlone) {
+  const TemporaryFolder folder;
+  const std::string command = kTool + " bench --sweep samples --count 1 --size 16x16 --repeat 1 --methods unsorted ";
+  const auto onTerminal = [&](const std::string& more) {
+    return run({"/usr/bin/script", "-qec", command + more, "/dev/null"},
+               {.folder = folder.path(), .environment = {}, .running = {}})
+        .out;
+  };
+  const std::string shown = onTerminal("");
+  EXPECT_NE(shown.find("samples, step 2 of 4"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("round 1 of 1"), std::string::npos) << shown;
+  EXPECT_EQ(onTerminal("--quiet"), "");
 }
 
 TEST(Bench, TheReportCanGoToStandardOutput) {
@@ -150,8 +296,9 @@ TEST(Bench, QuietPrintsNothing) {
 
 TEST(Bench, TheHelpPageNamesEveryOption) {
   const std::string help = vitrail(TemporaryFolder(), {"bench", "--help"}).out;
-  for (const char* option : {"MODEL", "--scene", "--count", "--size", "--opacity", "--methods", "--nodes", "--samples",
-                             "--resolve", "--repeat", "--warmup", "--json", "--quiet", "--device"}) {
+  for (const char* option :
+       {"MODEL", "--scene", "--count", "--size", "--opacity", "--methods", "--nodes", "--samples", "--resolve",
+        "--repeat", "--warmup", "--json", "--csv", "--sweep", "--output", "-o", "--quiet", "--device"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
 }
@@ -194,7 +341,18 @@ TEST(Bench, WrongUsageIsOneLineAndExitCode2) {
       {{"--size", "0x10"}, "--size"},
       {{"--opacity", "0"}, "--opacity"},
       {{"--opacity", "nan"}, "--opacity"},
-      {{"--output", "a.png"}, "--output"},
+      {{"--heatmap", "a.png"}, "--heatmap"},
+      {{"--sweep", "layer"}, "'layer' is not a sweep: layers, triangles, resolution or samples"},
+      {{"--sweep", ""}, "--sweep"},
+      {{"--sweep", "layers,layers"}, "layers twice"},
+      {{"--sweep", "layers", "--scene", "spheres"}, "leave MODEL, --scene and --count out"},
+      {{"--sweep", "layers", "--count", "3"}, "leave MODEL, --scene and --count out"},
+      {{"--sweep", "triangles", "--scene", "spheres,planes"}, "one scene"},
+      {{"--sweep", "triangles", "--count", "1,2"}, "one scene"},
+      {{"--sweep", "resolution", "--size", "32x32"}, "leave --size out"},
+      {{"--sweep", "samples", "--samples", "4"}, "leave --samples out"},
+      {{"--sweep", "layers", "--samples", "1,4"}, "one number of --samples"},
+      {{"--csv", "a.json"}, "--json and --csv name one file"},
   };
   for (const auto& [arguments, reason] : cases) {
     Words words = arguments;
@@ -208,6 +366,8 @@ TEST(Bench, WhatCannotBeDoneIsOneLineAndExitCode1) {
   for (const std::string& tool : {kTool, kSanitizedTool}) {
     expectRefusal(tool, {"no-such-file.glb", "--json", "a.json"}, 1, "no-such-file.glb");
     expectRefusal(tool, {"--json", "nowhere/a.json"}, 1, "nowhere");
+    expectRefusal(tool, {"--csv", "nowhere/a.csv"}, 1, "nowhere");
+    expectRefusal(tool, {"-o", "nowhere/out"}, 1, "nowhere");
   }
   expectRefusal(kTool, {"--device", "abacus", "--json", "a.json"}, 1, "abacus");
   const std::string opaque = VITRAIL_TEST_CORPUS "/good/triangle.gltf";

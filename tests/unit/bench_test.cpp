@@ -2,10 +2,13 @@
 // each against values worked out by hand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
+#include "bench/csv.h"
 #include "bench/matrix.h"
 #include "bench/measurement.h"
 #include "bench/statistics.h"
@@ -69,7 +72,7 @@ TEST(Traffic, BytesByHand) {
 // Words, for comparison.
 std::vector<std::string> describeAll(const BenchMatrix& matrix) {
   std::vector<std::string> texts;
-  for (const MethodOptions& options : configurationsOf(matrix)) texts.push_back(describe(options));
+  for (const MethodOptions& options : configurationsOf(matrix).measured) texts.push_back(describe(options));
   return texts;
 }
 
@@ -83,7 +86,7 @@ TEST(BenchMatrix, EveryChoiceWithEveryOther) {
                                       "linked-list, hdr, compute", "linked-list, hdr, fragment"}));
 }
 
-TEST(BenchMatrix, WhatAMethodDoesNotHaveIsLeftOut) {
+TEST(BenchMatrix, WhatAMethodDoesNotHaveIsSkippedWithAReason) {
   BenchMatrix matrix;
   matrix.methods = {"insertion", "unsorted", "linked-list"};
   matrix.nodes = {VITRAIL_NODE_COMPACT, VITRAIL_NODE_STANDARD};
@@ -92,6 +95,22 @@ TEST(BenchMatrix, WhatAMethodDoesNotHaveIsLeftOut) {
   EXPECT_EQ(describeAll(matrix),
             (std::vector<std::string>{"unsorted", "insertion", "linked-list, compact", "linked-list, standard",
                                       "unsorted, 8 samples", "linked-list, standard, 8 samples"}));
+  std::vector<std::string> skipped;
+  for (const SkippedSetting& each : configurationsOf(matrix).skipped) {
+    skipped.push_back(describe(each.options));
+    EXPECT_NE(each.reason.find("sample"), std::string::npos) << each.reason;
+  }
+  EXPECT_EQ(skipped, (std::vector<std::string>{"insertion, 8 samples", "linked-list, compact, 8 samples"}));
+}
+
+TEST(BenchMatrix, WithoutAChoiceThereIsEveryMethodOnce) {
+  const BenchSettings settings = configurationsOf(BenchMatrix{});
+  EXPECT_TRUE(settings.skipped.empty());
+  std::vector<std::string_view> names;
+  for (const MethodOptions& options : settings.measured) names.push_back(options.name);
+  EXPECT_EQ(names.front(), kBaselineMethod);
+  EXPECT_EQ(names.size(), methodNames().size());
+  for (const std::string_view name : methodNames()) EXPECT_EQ(std::ranges::count(names, name), 1) << name;
 }
 
 // A frame of a method with lists: 0.5 + 2 + 1 ms after 1 ms of opaque surfaces, each times `factor`.
@@ -144,6 +163,15 @@ TEST(Measurement, RatiosRatesAndFloorsByHand) {
   EXPECT_NEAR(both[1].bandwidthShare.value(), 27200.0 / 28e3 / 7.0, 1e-12);
 }
 
+// A method that counts fragments and keeps them elsewhere than in lists: the bytes of lists say nothing of it.
+TEST(Measurement, OnlyMethodsWithListsHaveAFloor) {
+  std::vector<Measurement> both = twoMeasurements();
+  both[1].options.name = "sorted";
+  compare(both, 28e6);
+  EXPECT_DOUBLE_EQ(both[1].fragmentsPerSecond.value(), 100'000.0);
+  EXPECT_FALSE(both[1].floorBytes || both[1].floorMs || both[1].bandwidthShare);
+}
+
 TEST(Measurement, EachSampleCountHasItsOwnBaseline) {
   std::vector<Measurement> all = twoMeasurements();
   std::vector<Measurement> slower = twoMeasurements();
@@ -168,14 +196,14 @@ BenchReport smallReport() {
   report.device = "Abacus";
   report.driver = "beads 1.0";
   report.api = "Vulkan 1.3";
-  report.width = 100;
-  report.height = 10;
   report.repeats = 3;
   report.warmups = 1;
   report.bytesPerSecond = 28e6;
   SceneMeasurement scene;
   scene.name = "spheres";
   scene.count = 400;
+  scene.width = 100;
+  scene.height = 10;
   scene.triangles = 1'600'000;
   scene.measurements = twoMeasurements();
   compare(scene.measurements, report.bytesPerSecond);
@@ -193,9 +221,85 @@ TEST(BenchTable, HoldsWhatWasMeasuredIn120Columns) {
   slow.costMs.median = slow.frameMs.median = 99999.94;
   slow.costRatio = slow.frameRatio = 999.994;
   slow.fragmentsPerSecond = 99'999'999e6;
+  slow.floorMs = 99999.94;
+  slow.report.totalBytes = std::uint64_t{99'999} << 20U;
+  slow.report.resolve = "fragment";
+  Measurement other = slow; // the longest name, and many passes
+  other.options = MethodOptions{};
+  other.options.name = "sorted-triangles";
+  other.report.nodes.clear();
+  for (const char* pass : {"count", "absorbance", "composite", "stochastic"}) other.passes.emplace_back(pass, Spread{});
+  report.scenes[0].measurements.push_back(other);
   const std::string table = toTable(report);
   std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120U) << line;
+  EXPECT_NE(table.find(" linked-list, standard, fragment   1 "), std::string::npos) << table;
+}
+
+BenchReport sweepReport() {
+  BenchReport report = smallReport();
+  report.scenes[0].skipped.clear();
+  const SceneMeasurement first = report.scenes[0];
+  report.scenes.clear();
+  for (const SweepStep& step : planSweep(SweepKind::Resolution, {})) {
+    report.scenes.push_back(first);
+    report.scenes.back().sweep = placeOf(SweepKind::Resolution, step, 0);
+  }
+  report.scenes[1].measurements.pop_back();
+  report.scenes[1].skipped = {{MethodOptions{}, "no room"}};
+  return report;
+}
+
+TEST(BenchTable, ASweepIsAGridOfMethodsAndSteps) {
+  const std::string table = toTable(sweepReport());
+  std::istringstream lines(table);
+  std::string ratios;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 120U) << line;
+    if (ratios.empty() && line.starts_with(" linked-list")) ratios = line;
+  }
+  std::istringstream words(ratios);
+  const std::vector<std::string> cells{std::istream_iterator<std::string>(words), {}};
+  EXPECT_EQ(cells, (std::vector<std::string>{"linked-list,", "standard", "3.50", "-", "3.50", "3.50", "3.50"}));
+  for (const char* text : {"320x180", "3840x2160", "cost, ms", "skipped at 640x360 linked-list, standard: no room"}) {
+    EXPECT_NE(table.find(text), std::string::npos) << text << " in\n" << table;
+  }
+  BenchReport onCpu = sweepReport();
+  onCpu.isCpu = true;
+  EXPECT_EQ(toTable(onCpu).find("cost, ms"), std::string::npos);
+}
+
+std::vector<std::string> linesOf(const std::string& text) {
+  std::vector<std::string> all;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) all.push_back(line);
+  return all;
+}
+
+TEST(BenchCsv, OneRowForEachMeasurement) {
+  BenchReport report = smallReport();
+  report.device = "Abacus, \"large\"";
+  const std::vector<std::string> lines = linesOf(toCsv(report));
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0],
+            "device,driver,cpu,sweep,step,scene,count,width,height,triangles,method,nodes,resolve,samples,exact,"
+            "fragments,missing,layers_max,tiles,cost_ms,cost_lower_quartile_ms,cost_upper_quartile_ms,frame_ms,"
+            "cost_ratio,frame_ratio,memory_bytes");
+  EXPECT_EQ(lines[1],
+            "\"Abacus, \"\"large\"\"\",beads 1.0,false,,,spheres,400,100,10,1600000,unsorted,,,1,false,,,,1,2,"
+            "2,2,4,1,1,0");
+  EXPECT_EQ(lines[2],
+            "\"Abacus, \"\"large\"\"\",beads 1.0,false,,,spheres,400,100,10,1600000,linked-list,standard,"
+            "compute,1,true,700,0,9,1,7,5.25,8.75,9,3.5,2.25,0");
+}
+
+TEST(BenchCsv, ASweepNamesItsStep) {
+  BenchReport report = sweepReport();
+  report.scenes[0].measurements[0].costRatio = std::nan("");
+  const std::vector<std::string> lines = linesOf(toCsv(report));
+  ASSERT_EQ(lines.size(), 10U); // 5 steps of 2, less one
+  EXPECT_NE(lines[1].find(",resolution,57600,spheres,"), std::string::npos) << lines[1];
+  EXPECT_TRUE(lines[1].ends_with(",4,,1,0")) << lines[1]; // no ratio
 }
 
 TEST(BenchTable, SaysWhatItIs) {

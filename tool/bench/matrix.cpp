@@ -1,12 +1,11 @@
 #include "matrix.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace vitrail::tool {
 
 namespace {
-
-constexpr std::uint32_t kMostCompactSamples = 4;
 
 // Whether the node format and the resolve of a method can be chosen.
 bool hasChoices(std::string_view method) { return traitsOf(method).nodes && traitsOf(method).resolves; }
@@ -15,37 +14,48 @@ bool same(const MethodOptions& a, const MethodOptions& b) {
   return a.name == b.name && a.samples == b.samples && a.nodes == b.nodes && a.resolve == b.resolve;
 }
 
+bool holds(const BenchSettings& settings, const MethodOptions& options) {
+  const auto isIt = [&](const MethodOptions& each) { return same(each, options); };
+  return std::ranges::any_of(settings.measured, isIt) ||
+         std::ranges::any_of(settings.skipped, isIt, &SkippedSetting::options);
+}
+
+void addSetting(BenchSettings& settings, const MethodOptions& options) {
+  if (holds(settings, options)) return;
+  try {
+    checkMethodOptions(options);
+    settings.measured.push_back(options);
+  } catch (const std::invalid_argument& error) {
+    settings.skipped.push_back({options, error.what()});
+  }
+}
+
 // Adds what a method has at a sample count.
-void addMethod(std::vector<MethodOptions>& list, const std::string& method, std::uint32_t samples,
-               const BenchMatrix& matrix) {
-  const auto add = [&](const MethodOptions& options) {
-    const bool known = std::ranges::any_of(list, [&](const MethodOptions& each) { return same(each, options); });
-    if (!known) list.push_back(options);
-  };
+void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t samples, const BenchMatrix& matrix) {
   MethodOptions options;
   options.name = method;
   options.samples = samples;
-  if (!traitsOf(method).severalSamples && samples > 1) return;
-  if (!hasChoices(method)) return add(options);
+  if (!hasChoices(method)) return addSetting(settings, options);
   for (const VitrailNodeFormat nodes : matrix.nodes) {
-    if (nodes == VITRAIL_NODE_COMPACT && samples > kMostCompactSamples) continue;
     for (const VitrailResolve resolve : matrix.resolves) {
       options.nodes = nodes;
       options.resolve = resolve;
-      add(options);
+      addSetting(settings, options);
     }
   }
 }
 
 } // namespace
 
-std::vector<MethodOptions> configurationsOf(const BenchMatrix& matrix) {
-  std::vector<MethodOptions> list;
+BenchSettings configurationsOf(const BenchMatrix& matrix) {
+  std::vector<std::string_view> methods(matrix.methods.begin(), matrix.methods.end());
+  if (methods.empty()) methods.assign(methodNames().begin(), methodNames().end());
+  BenchSettings settings;
   for (const std::uint32_t samples : matrix.samples) {
-    addMethod(list, std::string(kBaselineMethod), samples, matrix);
-    for (const std::string& method : matrix.methods) addMethod(list, method, samples, matrix);
+    addMethod(settings, kBaselineMethod, samples, matrix);
+    for (const std::string_view method : methods) addMethod(settings, method, samples, matrix);
   }
-  return list;
+  return settings;
 }
 
 std::string describe(const MethodOptions& options) {

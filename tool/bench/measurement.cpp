@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "matrix.h"
 #include "traffic.h"
 
 namespace vitrail::tool {
@@ -44,8 +43,11 @@ std::optional<double> fragmentsOf(const Measurement& measured, const std::vector
   return static_cast<double>(counting->report.fragmentsRequested);
 }
 
+// Methods whose fragments lie in nodes of lists: traffic.h tells of no others.
+bool hasLists(const Measurement& measured) { return traitsOf(measured.options.name).nodeCapacity; }
+
 void addFloor(Measurement& measured, double bytesPerSecond) {
-  if (!measured.report.counted || bytesPerSecond <= 0.0) return;
+  if (!hasLists(measured) || !measured.report.counted || bytesPerSecond <= 0.0) return;
   const std::uint64_t bytes = leastBytes(shapeOf(measured.report, measured.options.nodes));
   measured.floorBytes = bytes;
   measured.floorMs = static_cast<double>(bytes) / bytesPerSecond * 1e3;

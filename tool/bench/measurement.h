@@ -9,7 +9,9 @@
 
 #include "../draw/renderer.h"
 #include "machine.h"
+#include "matrix.h"
 #include "statistics.h"
+#include "sweep.h"
 
 namespace vitrail::tool {
 
@@ -33,23 +35,18 @@ struct Measurement {
   std::optional<double> bandwidthShare;
 };
 
-// A setting that the device cannot do, and why.
-struct SkippedSetting {
-  MethodOptions options;
-  std::string reason;
-};
-
 struct SceneMeasurement {
   std::string name;
   std::optional<std::uint32_t> count; // of a built-in scene, where it was chosen
+  std::optional<SweepPlace> sweep;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
   std::uint64_t triangles = 0;
   std::vector<Measurement> measurements; // a sample count's baseline stands before what is compared with it
   std::vector<SkippedSetting> skipped;
 };
 
 struct BenchReport : Machine {
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
   std::uint32_t repeats = 0;
   std::uint32_t warmups = 0;
   double bytesPerSecond = 0.0; // bandwidth.h

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
-
-#include "matrix.h"
 
 namespace vitrail::tool {
 
@@ -18,6 +17,14 @@ struct Contender {
   std::unique_ptr<Renderer> renderer;
   FrameReport report; // of the first frame
   std::vector<PassTimes> frames;
+};
+
+// A scene whose settings are set up and warm.
+struct Stage {
+  BenchRun run;
+  std::uint64_t triangles = 0;
+  std::vector<Contender> contenders;
+  std::vector<SkippedSetting> skipped;
 };
 
 Contender prepare(Gpu& gpu, const Scene& scene, const BenchRun& run, const MethodOptions& options) {
@@ -58,31 +65,86 @@ std::vector<Contender> prepareAll(Gpu& gpu, const Scene& scene, const BenchRun& 
       skipped.push_back({options, error.what()});
     }
   }
-  if (contenders.empty()) throw GpuError(skipped.front().reason);
   return contenders;
+}
+
+Stage prepareStage(Gpu& gpu, const Scene& scene, const BenchRun& run) {
+  Stage stage{run, triangleCount(scene), {}, {}};
+  stage.contenders = prepareAll(gpu, scene, run, stage.skipped);
+  checkFragments(stage.contenders);
+  return stage;
+}
+
+// Draws all rounds of scenes that are measured with as many. Every frame of a round is of another setting or scene.
+void drawRounds(std::vector<Stage>& stages) {
+  std::vector<std::pair<Contender*, const BenchRun*>> all;
+  for (Stage& stage : stages) {
+    for (Contender& contender : stage.contenders) all.emplace_back(&contender, &stage.run);
+  }
+  const BenchRun& first = stages.front().run;
+  for (std::uint32_t round = 0; round < first.repeats; ++round) {
+    if (first.progress) first.progress(fmt::format("round {} of {}", round + 1, first.repeats));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto& [contender, run] = all[(round + i) % all.size()];
+      contender->frames.push_back(contender->renderer->measure(run->picture).passesMs);
+    }
+  }
+}
+
+SceneMeasurement finish(Stage& stage) {
+  SceneMeasurement result;
+  result.triangles = stage.triangles;
+  result.width = stage.run.picture.width;
+  result.height = stage.run.picture.height;
+  result.skipped = std::move(stage.skipped);
+  for (const Contender& contender : stage.contenders) {
+    if (stage.run.takePicture) stage.run.takePicture(contender.options, contender.renderer->render(stage.run.picture));
+    result.measurements.push_back(summarize(contender.options, contender.report, contender.frames));
+  }
+  compare(result.measurements, stage.run.bytesPerSecond);
+  return result;
+}
+
+void requireOne(const std::vector<SceneMeasurement>& measured) {
+  const auto isEmpty = [](const SceneMeasurement& each) { return each.measurements.empty(); };
+  if (std::ranges::all_of(measured, isEmpty)) throw GpuError(measured.front().skipped.front().reason);
+}
+
+// What scenes that wait for their rounds may hold on the device, so that methods are measured as if they had it alone.
+std::uint64_t memoryToHold(const Gpu& gpu) {
+  const VkPhysicalDeviceMemoryProperties& memory = gpu.memoryProperties();
+  VkDeviceSize largest = 0;
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+    const VkMemoryHeap& heap = memory.memoryHeaps[i];
+    if ((heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0) largest = std::max(largest, heap.size);
+  }
+  return largest / 4;
 }
 
 } // namespace
 
 SceneMeasurement measureScene(Gpu& gpu, const Scene& scene, const BenchRun& run) {
-  SceneMeasurement result;
-  result.triangles = triangleCount(scene);
-  std::vector<Contender> contenders = prepareAll(gpu, scene, run, result.skipped);
-  checkFragments(contenders);
-  const std::size_t count = contenders.size();
-  for (std::uint32_t round = 0; round < run.repeats; ++round) {
-    if (run.progress) run.progress(fmt::format("round {} of {}", round + 1, run.repeats));
-    for (std::size_t i = 0; i < count; ++i) {
-      Contender& contender = contenders[(round + i) % count];
-      contender.frames.push_back(contender.renderer->measure(run.picture).passesMs);
-    }
+  std::vector<Stage> stages;
+  stages.push_back(prepareStage(gpu, scene, run));
+  if (stages[0].contenders.empty()) throw GpuError(stages[0].skipped.front().reason);
+  drawRounds(stages);
+  return finish(stages[0]);
+}
+
+std::vector<SceneMeasurement> measureSteps(Gpu& gpu, std::size_t count,
+                                           const std::function<BenchStep(std::size_t index)>& step) {
+  std::vector<SceneMeasurement> results;
+  std::vector<Stage> waiting;
+  for (std::size_t i = 0; i < count; ++i) {
+    const BenchStep made = step(i);
+    waiting.push_back(prepareStage(gpu, made.scene, made.run));
+    if (i + 1 < count && gpu.memoryHeld() < memoryToHold(gpu)) continue;
+    drawRounds(waiting);
+    for (Stage& stage : waiting) results.push_back(finish(stage));
+    waiting.clear();
   }
-  for (const Contender& contender : contenders) {
-    if (run.takePicture) run.takePicture(contender.options, contender.renderer->render(run.picture));
-    result.measurements.push_back(summarize(contender.options, contender.report, contender.frames));
-  }
-  compare(result.measurements, run.bytesPerSecond);
-  return result;
+  requireOne(results);
+  return results;
 }
 
 } // namespace vitrail::tool

@@ -1,6 +1,7 @@
 // Measures the settings of a matrix in one scene.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -12,7 +13,7 @@
 namespace vitrail::tool {
 
 struct BenchRun {
-  std::vector<MethodOptions> settings; // configurationsOf()
+  std::vector<MethodOptions> settings; // BenchSettings::measured
   RenderOptions picture;
   std::optional<float> opacity; // of every material
   std::uint32_t repeats = 1;    // rounds, at least 1
@@ -24,10 +25,23 @@ struct BenchRun {
   std::function<void(const MethodOptions& options, RenderResult result)> takePicture;
 };
 
+// A scene of several that are measured in turns.
+struct BenchStep {
+  Scene scene;
+  BenchRun run;
+};
+
 // Every round draws one frame of each setting, starting one setting later than the round before it, so that a device
 // that grows warm or busy slows all of them alike. A setting that the device refuses is skipped, and all of a sample
 // count whose baseline it refuses. Throws GpuError where nothing is left or where a frame fails that could be drawn
 // before, std::runtime_error where nothing transparent is in the picture.
 SceneMeasurement measureScene(Gpu& gpu, const Scene& scene, const BenchRun& run);
+
+// The same for several scenes, `count` of them, each made by `step` when its turn to be set up comes: a round draws one
+// frame of each setting of each scene. All have as many rounds. Where what is set up holds a quarter of the device's
+// memory, its rounds are drawn before more is set up. A scene in which every setting is skipped has no measurements;
+// throws GpuError where that is so for all.
+std::vector<SceneMeasurement> measureSteps(Gpu& gpu, std::size_t count,
+                                           const std::function<BenchStep(std::size_t index)>& step);
 
 } // namespace vitrail::tool

@@ -1,11 +1,17 @@
 #include "table.h"
 
+#include <algorithm>
 #include <cmath>
-#include <string_view>
+#include <functional>
+#include <map>
+#include <sstream>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "matrix.h"
+#include "recommendation.h"
 
 namespace vitrail::tool {
 
@@ -13,13 +19,15 @@ namespace {
 
 constexpr const char* kNone = "-";
 
-// One row: method, nodes, samples, resolve, then numbers.
-constexpr char kRow[] = " {:<16} {:<9}{:>2} {:<9}{:>7}{:>8}{:>8}{:>8}{:>6}{:>7}{:>8}{:>7}{:>8}{:>8}{:>6}\n";
+constexpr std::size_t kColumns = 120;
+
+// One row: the setting, samples, then numbers.
+constexpr char kRow[] = " {:<32}{:>3}{:>10}{:>7}{:>8}{:>10}{:>8}{:>9}{:>9}{:>7}{:>12}\n";
 
 constexpr const char* kLegend =
-    R"(Milliseconds of GPU time, medians. draw: collecting or blending the surfaces; cost: all passes but the opaque one,
-in each frame; IQR: its interquartile range over its median; x: times unsorted's; M/s: million fragments a second of
-cost; floor: the least time that the frame's bytes take at the measured bandwidth; bw: floor over cost.
+    R"(Milliseconds of GPU time, medians. cost: all passes but the opaque one, summed in each frame; IQR: its interquartile
+range over its median; x: times unsorted's; frame: all passes; M/s: million fragments a second of cost; floor: the least
+time that a frame with lists takes to move its bytes at the measured bandwidth; bw: floor over cost.
 )";
 
 std::string milliseconds(double value) {
@@ -33,33 +41,45 @@ std::string percent(double fraction) {
 
 std::string ratio(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : kNone; }
 
-// The median of the pass that has one of these names.
-std::string passTime(const Measurement& measured, std::string_view name, std::string_view otherName = "") {
-  for (const auto& [pass, spread] : measured.passes) {
-    if (pass == name || pass == otherName) return milliseconds(spread.median);
-  }
-  return kNone;
-}
-
 std::string rate(double perSecond) { return fmt::format("{:.{}f}", perSecond * 1e-6, perSecond < 1e8 ? 1 : 0); }
 
-std::string text(const std::string& value) { return value.empty() ? kNone : value; }
+std::string mebibytes(std::uint64_t bytes) {
+  return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1024.0 * 1024.0));
+}
 
-std::string countText(std::uint64_t count) {
-  const auto value = static_cast<double>(count);
-  return count >= 1'000'000 ? fmt::format("{:.1f} M", value / 1e6) : fmt::format("{}", count);
+// What was measured: the method, its nodes and its resolve, where it has such.
+std::string settingOf(const Measurement& measured) {
+  std::string text = measured.options.name;
+  for (const std::string& part : {measured.report.nodes, measured.report.resolve}) {
+    if (!part.empty()) text.append(", ").append(part);
+  }
+  return text;
 }
 
 std::string rowOf(const Measurement& measured) {
   const FrameReport& frame = measured.report;
-  return fmt::format(kRow, measured.options.name, text(frame.nodes), frame.samples, text(frame.resolve),
-                     passTime(measured, "clear"), passTime(measured, "collect", "blend"),
-                     passTime(measured, "resolve", "box_filter"), milliseconds(measured.costMs.median),
+  return fmt::format(kRow, settingOf(measured), frame.samples, milliseconds(measured.costMs.median),
                      percent(relativeRange(measured.costMs)), ratio(measured.costRatio),
                      milliseconds(measured.frameMs.median), ratio(measured.frameRatio),
                      measured.fragmentsPerSecond ? rate(*measured.fragmentsPerSecond) : kNone,
                      measured.floorMs ? milliseconds(*measured.floorMs) : kNone,
-                     measured.bandwidthShare ? percent(*measured.bandwidthShare) : kNone);
+                     measured.bandwidthShare ? percent(*measured.bandwidthShare) : kNone, mebibytes(frame.totalBytes));
+}
+
+// The passes of a setting, on as many lines as they take.
+std::string passesOf(const Measurement& measured) {
+  std::string text;
+  std::string line = fmt::format(" {:<32}{:>3}  ", settingOf(measured), measured.report.samples);
+  const std::size_t indent = line.size();
+  for (const auto& [name, spread] : measured.passes) {
+    const std::string pass = fmt::format("{} {}", name, milliseconds(spread.median));
+    if (line.size() > indent && line.size() + 3 + pass.size() > kColumns) {
+      text.append(line).append(",\n");
+      line = std::string(indent, ' ');
+    }
+    line.append(line.size() > indent ? ", " : "").append(pass);
+  }
+  return text.append(line).append("\n");
 }
 
 // What has to be known of a measurement beside its numbers.
@@ -76,35 +96,159 @@ std::string noteOn(const Measurement& measured) {
 std::string sceneTitle(const SceneMeasurement& scene) {
   std::string title = fmt::format("\n{}", scene.name);
   if (scene.count) title += fmt::format(" --count {}", *scene.count);
-  title += fmt::format(": {} triangles", countText(scene.triangles));
+  title += fmt::format(", {}x{}: {} triangles", scene.width, scene.height, shortCount(scene.triangles));
   for (const Measurement& measured : scene.measurements) {
     const FrameReport& frame = measured.report;
     if (!frame.counted) continue;
-    title += fmt::format(", {} transparent fragments, {} deep, {:.1f} on average", countText(frame.fragmentsRequested),
+    title += fmt::format(", {} transparent fragments, {} deep, {:.1f} on average", shortCount(frame.fragmentsRequested),
                          frame.layersMax, frame.layersMean);
     break;
   }
   return title + "\n";
 }
 
+std::string skippedOf(const SceneMeasurement& scene) {
+  std::string text;
+  for (const SkippedSetting& skipped : scene.skipped) {
+    text += fmt::format(" skipped {}: {}\n", describe(skipped.options), skipped.reason);
+  }
+  return text;
+}
+
+// The same for all steps of a sweep: what is skipped at all of them is told once.
+std::string skippedOf(const std::vector<const SceneMeasurement*>& steps) {
+  std::map<std::string, std::vector<std::string>> labels; // of the steps, by text
+  for (const SceneMeasurement* step : steps) {
+    const auto baseline = std::ranges::find(step->skipped, kBaselineMethod,
+                                            [](const SkippedSetting& skipped) { return skipped.options.name; });
+    if (step->measurements.empty() && baseline != step->skipped.end()) {
+      labels["every method: " + baseline->reason].push_back(step->sweep->label);
+      continue;
+    }
+    for (const SkippedSetting& skipped : step->skipped) {
+      labels[fmt::format("{}: {}", describe(skipped.options), skipped.reason)].push_back(step->sweep->label);
+    }
+  }
+  std::string text;
+  for (const auto& [what, where] : labels) {
+    text += where.size() == steps.size() ? fmt::format(" skipped {}\n", what)
+                                         : fmt::format(" skipped at {} {}\n", fmt::join(where, ", "), what);
+  }
+  return text;
+}
+
+std::string sceneTable(const SceneMeasurement& scene) {
+  std::string table = sceneTitle(scene);
+  table += fmt::format(kRow, "method", "AA", "cost", "IQR", "x", "frame", "x", "M/s", "floor", "bw", "memory");
+  for (const Measurement& measured : scene.measurements) table += rowOf(measured);
+  table += " passes\n";
+  for (const Measurement& measured : scene.measurements) table += passesOf(measured);
+  for (const Measurement& measured : scene.measurements) table += noteOn(measured);
+  return table + skippedOf(scene);
+}
+
+// A setting's name beside the steps of a sweep. A sweep over samples has one name for all of them.
+std::string describeInSweep(const SceneMeasurement& step, const Measurement& measured) {
+  MethodOptions options = measured.options;
+  if (step.sweep->kind == SweepKind::Samples) options.samples = 1;
+  return describe(options);
+}
+
+// A number of each setting at each step of a sweep: settings down, steps across.
+std::string gridOf(const std::vector<const SceneMeasurement*>& steps, const std::vector<std::string>& settings,
+                   const char* title, const std::function<std::string(const Measurement&)>& number) {
+  std::string table = fmt::format(" {:<35}", title);
+  for (const SceneMeasurement* step : steps) table += fmt::format("{:>11}", step->sweep->label);
+  table += '\n';
+  for (const std::string& setting : settings) {
+    table += fmt::format(" {:<35}", setting);
+    for (const SceneMeasurement* step : steps) {
+      const auto found = std::ranges::find(
+          step->measurements, setting, [&](const Measurement& measured) { return describeInSweep(*step, measured); });
+      table += fmt::format("{:>11}", found != step->measurements.end() ? number(*found) : kNone);
+    }
+    table += '\n';
+  }
+  return table;
+}
+
+// Text in lines of at most kColumns, each of which begins with a space.
+std::string wrapped(const std::string& text) {
+  std::string lines;
+  std::string line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > kColumns) {
+      lines.append(line).append("\n");
+      line.clear();
+    }
+    line.append(" ").append(word);
+  }
+  return lines.append(line).append("\n");
+}
+
+std::string adviceOf(const BenchReport& report) {
+  std::string text = "\nWhich method to use here, from these measurements alone\n";
+  for (const Advice& advice : recommend(report)) text += wrapped(advice.need + ": " + advice.text);
+  return text;
+}
+
+std::string sweepTitle(const SceneMeasurement& first, SweepKind kind) {
+  std::string title = fmt::format("\n{}: {}", nameOf(kind), first.name);
+  if (first.count && kind != SweepKind::Layers) title += fmt::format(" --count {}", *first.count);
+  if (kind != SweepKind::Resolution) title += fmt::format(", {}x{}", first.width, first.height);
+  if (kind != SweepKind::Triangles && kind != SweepKind::Layers) {
+    title += fmt::format(", {} triangles", shortCount(first.triangles));
+  }
+  return title + "\n";
+}
+
+std::string sweepTable(const BenchReport& report, SweepKind kind) {
+  const std::vector<const SceneMeasurement*> steps = scenesOf(report, kind);
+  std::vector<std::string> settings;
+  for (const SceneMeasurement* step : steps) {
+    for (const Measurement& measured : step->measurements) {
+      const std::string setting = describeInSweep(*step, measured);
+      if (std::ranges::count(settings, setting) == 0) settings.push_back(setting);
+    }
+  }
+  std::string table = sweepTitle(*steps.front(), kind);
+  table += gridOf(steps, settings, "cost, times unsorted",
+                  [](const Measurement& measured) { return ratio(measured.costRatio); });
+  if (!report.isCpu) {
+    table += gridOf(steps, settings, "cost, ms",
+                    [](const Measurement& measured) { return milliseconds(measured.costMs.median); });
+  }
+  table += gridOf(steps, settings, "memory, MiB", [](const Measurement& measured) {
+    return fmt::format("{:.1f}", static_cast<double>(measured.report.totalBytes) / (1024.0 * 1024.0));
+  });
+  for (const SceneMeasurement* step : steps) {
+    for (const Measurement& measured : step->measurements) {
+      const std::string note = noteOn(measured);
+      if (!note.empty()) table += fmt::format("{} ({})\n", note.substr(0, note.size() - 1), step->sweep->label);
+    }
+  }
+  return table + skippedOf(steps);
+}
+
 } // namespace
 
 std::string toTable(const BenchReport& report) {
-  std::string table = fmt::format("{} ({}), {}\n{}x{}; rounds: {}, warm-up frames: {}; a copy moves {:.1f} GB/s\n",
-                                  report.device, report.driver, report.api, report.width, report.height, report.repeats,
-                                  report.warmups, report.bytesPerSecond * 1e-9);
+  std::string table =
+      fmt::format("{} ({}), {}\nrounds: {}, warm-up frames: {}; a copy moves {:.1f} GB/s\n", report.device,
+                  report.driver, report.api, report.repeats, report.warmups, report.bytesPerSecond * 1e-9);
   if (report.isCpu) table += "This device is a CPU: only the ratios say something, its times are the machine's.\n";
-  for (const SceneMeasurement& scene : report.scenes) {
-    table += sceneTitle(scene);
-    table += fmt::format(kRow, "method", "nodes", "AA", "resolve", "clear", "draw", "resolve", "cost", "IQR", "x",
-                         "frame", "x", "M/s", "floor", "bw");
-    for (const Measurement& measured : scene.measurements) table += rowOf(measured);
-    for (const Measurement& measured : scene.measurements) table += noteOn(measured);
-    for (const SkippedSetting& skipped : scene.skipped) {
-      table += fmt::format(" skipped {}: {}\n", describe(skipped.options), skipped.reason);
+  bool hasScenes = false;
+  for (const std::optional<SweepKind> sweep : sweepsOf(report)) {
+    if (sweep) {
+      table += sweepTable(report, *sweep);
+      continue;
     }
+    hasScenes = true;
+    for (const SceneMeasurement* scene : scenesOf(report, {})) table += sceneTable(*scene);
   }
-  return table + '\n' + kLegend;
+  if (hasScenes) table.append("\n").append(kLegend);
+  return table + adviceOf(report);
 }
 
 } // namespace vitrail::tool

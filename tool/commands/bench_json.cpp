@@ -1,6 +1,11 @@
 #include "bench_json.h"
 
+#include <algorithm>
 #include <optional>
+#include <utility>
+
+#include "../bench/matrix.h"
+#include "../bench/recommendation.h"
 
 namespace vitrail::tool {
 
@@ -19,7 +24,10 @@ Json toJson(const Measurement& measured) {
   const FrameReport& frame = measured.report;
   Json passes = Json::object();
   for (const auto& [name, spread] : measured.passes) passes[name] = toJson(spread);
+  MethodOptions withoutSamples = measured.options;
+  withoutSamples.samples = 1;
   Json json = {{"method", measured.options.name},
+               {"setting", describe(withoutSamples)},
                {"nodes", orNull(frame.nodes)},
                {"samples", frame.samples},
                {"resolve", orNull(frame.resolve)},
@@ -27,6 +35,7 @@ Json toJson(const Measurement& measured) {
                {"fragments", nullptr},
                {"layers", nullptr},
                {"nodes_bytes", nullptr},
+               {"memory_bytes", frame.totalBytes},
                {"tiles", frame.tiles},
                {"passes_ms", std::move(passes)},
                {"cost_ms", toJson(measured.costMs)},
@@ -62,11 +71,26 @@ Json toJson(const SceneMeasurement& scene) {
   for (const Measurement& measured : scene.measurements) measurements.push_back(toJson(measured));
   Json skipped = Json::array();
   for (const SkippedSetting& setting : scene.skipped) skipped.push_back(toJson(setting));
+  const bool swept = scene.sweep.has_value();
   return {{"scene", scene.name},
           {"count", orNull(scene.count)},
+          {"sweep", swept ? Json(nameOf(scene.sweep->kind)) : Json(nullptr)},
+          {"step", swept ? Json(scene.sweep->value) : Json(nullptr)},
+          {"label", swept ? Json(scene.sweep->label) : Json(nullptr)},
+          {"width", scene.width},
+          {"height", scene.height},
           {"triangles", scene.triangles},
           {"measurements", std::move(measurements)},
           {"skipped", std::move(skipped)}};
+}
+
+// The size of all pictures; nothing where they differ.
+std::optional<VkExtent2D> commonSize(const BenchReport& report) {
+  const SceneMeasurement& first = report.scenes.front();
+  const bool same = std::ranges::all_of(report.scenes, [&](const SceneMeasurement& scene) {
+    return scene.width == first.width && scene.height == first.height;
+  });
+  return same ? std::optional(VkExtent2D{first.width, first.height}) : std::nullopt;
 }
 
 } // namespace
@@ -82,11 +106,24 @@ nlohmann::ordered_json toJson(const Spread& spread) {
 std::string toJson(const BenchReport& report) {
   Json scenes = Json::array();
   for (const SceneMeasurement& scene : report.scenes) scenes.push_back(toJson(scene));
-  const Json json = {
-      {"device", report.device},    {"driver", report.driver},   {"api", report.api},
-      {"cpu", report.isCpu},        {"width", report.width},     {"height", report.height},
-      {"repeats", report.repeats},  {"warmups", report.warmups}, {"bandwidth_gb_s", report.bytesPerSecond * 1e-9},
-      {"scenes", std::move(scenes)}};
+  Json recommendation = Json::array();
+  for (const Advice& advice : recommend(report)) {
+    recommendation.push_back({{"sweep", advice.sweep ? Json(nameOf(*advice.sweep)) : Json(nullptr)},
+                              {"need", advice.need},
+                              {"text", advice.text}});
+  }
+  const std::optional<VkExtent2D> size = commonSize(report);
+  const Json json = {{"device", report.device},
+                     {"driver", report.driver},
+                     {"api", report.api},
+                     {"cpu", report.isCpu},
+                     {"width", size ? Json(size->width) : Json(nullptr)},
+                     {"height", size ? Json(size->height) : Json(nullptr)},
+                     {"repeats", report.repeats},
+                     {"warmups", report.warmups},
+                     {"bandwidth_gb_s", report.bytesPerSecond * 1e-9},
+                     {"recommendation", std::move(recommendation)},
+                     {"scenes", std::move(scenes)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "../bench/matrix.h"
+#include "../bench/sweep.h"
 
 namespace vitrail::tool {
 
@@ -16,14 +17,17 @@ struct BenchArguments {
   std::string model; // empty: built-in scenes
   std::vector<std::string> scenes;
   std::vector<std::uint32_t> counts; // none, one for all scenes, or one each
-  BenchMatrix matrix{{"linked-list", "insertion"}};
-  std::uint32_t width = 1280;
-  std::uint32_t height = 720;
+  BenchMatrix matrix;
+  std::vector<SweepKind> sweeps;
+  std::uint32_t width = 0; // 0: by the kind of device, and of a sweep over resolutions its own
+  std::uint32_t height = 0;
   std::optional<float> opacity;
   std::optional<std::uint32_t> repeats; // default: by the kind of device
   std::optional<std::uint32_t> warmups;
   std::string device;
-  std::string json; // empty: no report
+  std::string json;   // empty: no report
+  std::string csv;    // empty: none
+  std::string folder; // empty: no page
   bool quiet = false;
 };
 
@@ -31,7 +35,7 @@ struct BenchArguments {
 void addBenchOptions(CLI::App& command, BenchArguments& arguments);
 
 // Checks what one option alone does not show, and fills in the default scenes. Throws UsageError.
-void checkBenchArguments(BenchArguments& arguments);
+void checkBenchArguments(const CLI::App& command, BenchArguments& arguments);
 
 extern const char* const kBenchHelp;
 

@@ -3,24 +3,18 @@
 #include <algorithm>
 #include <cstdint>
 #include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include "../image/color_map.h"
 #include "../image/png_encode.h"
-#include "files/chart.min.js.h"
-#include "files/page.css.h"
-#include "files/page.html.h"
-#include "files/page.js.h"
+#include "../page/page.h"
+#include "files/compare.html.h"
+#include "files/compare.js.h"
 
 namespace vitrail::tool {
 
 namespace {
-
-std::string_view textOf(std::span<const unsigned char> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 // RFC 4648.
 std::string base64(std::span<const std::byte> bytes) {
@@ -50,15 +44,6 @@ std::string colorsOf(const ColorMap& map) {
   return text + "]";
 }
 
-// JSON inside a page must not end the element that it lies in.
-std::string withoutTags(std::string json) {
-  constexpr std::string_view kEscaped = "\\u003c";
-  for (std::size_t at = json.find('<'); at != std::string::npos; at = json.find('<', at + kEscaped.size())) {
-    json.replace(at, 1, kEscaped);
-  }
-  return json;
-}
-
 std::string dataOf(const Comparison& comparison, const ComparisonPictures& pictures, const std::string& report) {
   std::string methods;
   for (std::size_t i = 0; i < pictures.methods.size(); ++i) {
@@ -84,20 +69,10 @@ ComparisonPictures encodePictures(const Comparison& comparison) {
 }
 
 std::string toPage(const Comparison& comparison, const ComparisonPictures& pictures, const std::string& report) {
-  const std::string data = dataOf(comparison, pictures, report);
-  const std::pair<std::string_view, std::string_view> parts[] = {{"@style@", textOf(files::page_css)},
-                                                                 {"@version@", VITRAIL_VERSION},
-                                                                 {"@data@", data},
-                                                                 {"@charts@", textOf(files::chart_min_js)},
-                                                                 {"@script@", textOf(files::page_js)}};
-  std::string page;
-  std::string_view rest = textOf(files::page_html);
-  for (const auto& [mark, content] : parts) { // in the order in which the page has them
-    const std::size_t at = rest.find(mark);
-    page.append(rest.substr(0, at)).append(content);
-    rest.remove_prefix(at + mark.size());
-  }
-  return page.append(rest);
+  return makePage({.title = "Transparency methods compared",
+                   .body = files::compare_html,
+                   .data = dataOf(comparison, pictures, report),
+                   .script = files::compare_js});
 }
 
 } // namespace vitrail::tool

@@ -434,6 +434,8 @@ void Gpu::memoryAllocated(std::uint64_t bytes) {
 
 void Gpu::memoryFreed(std::uint64_t bytes) { impl_->memory -= bytes; }
 
+std::uint64_t Gpu::memoryHeld() const { return impl_->memory; }
+
 std::uint64_t Gpu::peakMemory() const { return impl_->peak; }
 
 std::vector<DeviceSummary> listDevices() {

@@ -73,6 +73,7 @@ class Gpu {
   // Accounting of device memory, for FrameReport::peakBytes. Every allocation of the tool is added and subtracted.
   void memoryAllocated(std::uint64_t bytes);
   void memoryFreed(std::uint64_t bytes);
+  std::uint64_t memoryHeld() const;
   std::uint64_t peakMemory() const;
 
  private:

@@ -35,6 +35,9 @@ struct MethodTraits {
   bool passes = false;       // --passes
   bool memoryBudget = false; // --memory-budget
   bool nodeCapacity = false; // a fixed number of nodes, of RenderOptions
+  // Whether pictures are the same whatever order surfaces are drawn in, where they are not exact too.
+  bool orderIndependent = false;
+  std::string_view wrong{}; // what its pictures get wrong, in words; nothing: they are exact
 };
 
 // All methods, the default first.

@@ -1,21 +1,9 @@
-// Fills the page with what the comparison says. Everything lies in the page itself.
+// Fills the page with what the comparison says.
 "use strict";
 {
-  const comparison = JSON.parse(document.getElementById("comparison").textContent);
+  const comparison = pageData;
   const report = comparison.report;
-  const byId = (id) => document.getElementById(id);
 
-  function add(parent, tag, text, attributes = {}) {
-    const element = document.createElement(tag);
-    if (text !== undefined) element.textContent = text;
-    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-    parent.append(element);
-    return element;
-  }
-
-  const MIB = 1024 * 1024;
-  const whole = (value) => value.toLocaleString("en");
-  const ratio = (value) => (value === null ? "–" : value.toFixed(2) + "×");
   const psnr = (value) => (value === null ? "∞" : value.toFixed(2));
   const flip = (value) => (value > 0 && value < 0.00005 ? "<0.0001" : value.toFixed(4));
   const ssim = (value) => (value < 1 - 1e-12 && value >= 0.99995 ? ">0.9999" : value.toFixed(4));
@@ -30,9 +18,7 @@
     byId("subject").textContent =
       `${report.width} × ${report.height} pixels${samples}; ${whole(report.triangles)} triangles, ` +
       `${whole(report.exact_picture.fragments)} transparent fragments, up to ${report.layers_max} in one pixel.`;
-    byId("machine").textContent =
-      `${report.device} (${report.driver}), ${report.api}; medians of ${report.repeats} rounds.` +
-      (report.cpu ? " This device is a CPU, whose times are the machine's: ratios alone are shown." : "");
+    byId("machine").textContent = machineText(report);
   }
 
   function fillTable() {
@@ -143,13 +129,8 @@
     }
   }
 
-  const PALETTE = ["#5b8def", "#e2884a", "#3fa77a", "#c069c4", "#c9a227", "#d0605e", "#6aa9b8", "#8a8f99"];
-  let charts = [];
-
   function drawChart(id, datasets, stacked, unit) {
-    const style = getComputedStyle(document.documentElement);
-    const ink = style.getPropertyValue("--ink").trim();
-    const line = style.getPropertyValue("--line").trim();
+    const { ink, line } = chartColors();
     const names = report.methods.map((method) => method.method);
     byId(id).parentElement.style.height = `${5 + 1.9 * names.length}rem`;
     charts.push(new Chart(byId(id), {
@@ -170,8 +151,6 @@
   }
 
   function drawCharts() {
-    for (const chart of charts) chart.destroy();
-    charts = [];
     const methods = report.methods;
     const unit = methods[0].cost_ms.median; // the baseline stands first
     const passes = [...new Set(methods.flatMap((method) => Object.keys(method.passes_ms)))].filter((p) => p !== "opaque");
@@ -185,8 +164,6 @@
     drawChart("memory", plain("memory", methods.map((method) => method.memory_bytes / MIB), PALETTE[0]), false, " MiB");
   }
 
-  Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
-  byId("chart-version").textContent = `Chart.js ${Chart.version}`;
   document.body.classList.toggle("coarse", report.width < 640);
   fillHeader();
   fillTable();
@@ -194,6 +171,5 @@
   wireSlider();
   fillPictures();
   fillLegends();
-  drawCharts();
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawCharts);
+  keepDrawing(drawCharts);
 }

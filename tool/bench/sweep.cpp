@@ -1,0 +1,102 @@
+#include "sweep.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace vitrail::tool {
+
+namespace {
+
+constexpr std::array<std::string_view, kSweepKinds.size()> kNames{"layers", "triangles", "resolution", "samples"};
+
+constexpr std::uint32_t kMostPanesOnGpu = 64;
+constexpr std::uint32_t kMostPanesOnCpu = 32;
+constexpr std::uint64_t kMostTrianglesOnGpu = 10'000'000;
+constexpr std::uint64_t kMostTrianglesOnCpu = 600'000;
+constexpr std::uint32_t kMostSamples = 8;
+
+using Size = std::pair<std::uint32_t, std::uint32_t>;
+constexpr std::array<Size, 5> kSizesOnGpu{{{320, 180}, {640, 360}, {1280, 720}, {1920, 1080}, {3840, 2160}}};
+constexpr std::array<Size, 4> kSizesOnCpu{{{160, 90}, {320, 180}, {640, 360}, {960, 540}}};
+
+void addSizes(std::vector<SweepStep>& steps, const SweepStep& base, bool isCpu) {
+  const auto add = [&](const Size& size) {
+    SweepStep step = base;
+    std::tie(step.width, step.height) = size;
+    steps.push_back(step);
+  };
+  if (isCpu) {
+    std::ranges::for_each(kSizesOnCpu, add);
+  } else {
+    std::ranges::for_each(kSizesOnGpu, add);
+  }
+}
+
+} // namespace
+
+std::string_view nameOf(SweepKind kind) { return kNames.at(static_cast<std::size_t>(kind)); }
+
+std::optional<SweepKind> sweepNamed(std::string_view name) {
+  const auto found = std::ranges::find(kNames, name);
+  if (found == kNames.end()) return std::nullopt;
+  return kSweepKinds.at(static_cast<std::size_t>(found - kNames.begin()));
+}
+
+std::vector<SweepStep> planSweep(SweepKind kind, const SweepStart& start) {
+  const SweepStep base{{}, 0, start.width, start.height, start.samples};
+  std::vector<SweepStep> steps;
+  SweepStep step = base;
+  switch (kind) {
+    case SweepKind::Layers:
+      for (std::uint32_t panes = 1; panes <= (start.isCpu ? kMostPanesOnCpu : kMostPanesOnGpu); panes *= 2) {
+        step.panes = panes;
+        steps.push_back(step);
+      }
+      break;
+    case SweepKind::Triangles: {
+      const std::uint64_t most = start.isCpu ? kMostTrianglesOnCpu : kMostTrianglesOnGpu;
+      steps.push_back(step);
+      for (std::uint64_t count = start.triangles * 4; count > 0 && count <= most; count *= 4) {
+        ++step.splits;
+        steps.push_back(step);
+      }
+      break;
+    }
+    case SweepKind::Resolution:
+      addSizes(steps, base, start.isCpu);
+      break;
+    case SweepKind::Samples:
+      for (std::uint32_t samples = 1; samples <= kMostSamples; samples *= 2) {
+        step.samples = samples;
+        steps.push_back(step);
+      }
+      break;
+  }
+  return steps;
+}
+
+SweepPlace placeOf(SweepKind kind, const SweepStep& step, std::uint64_t triangles) {
+  switch (kind) {
+    case SweepKind::Layers:
+      return {kind, static_cast<double>(step.panes.value_or(0)), fmt::format("{}", step.panes.value_or(0))};
+    case SweepKind::Triangles:
+      return {kind, static_cast<double>(triangles), shortCount(triangles)};
+    case SweepKind::Resolution:
+      return {kind, static_cast<double>(step.width) * step.height, fmt::format("{}x{}", step.width, step.height)};
+    case SweepKind::Samples:
+      break;
+  }
+  return {kind, static_cast<double>(step.samples), fmt::format("{}", step.samples)};
+}
+
+std::string shortCount(std::uint64_t count) {
+  const auto value = static_cast<double>(count);
+  if (count >= 999'500) return fmt::format("{:.1f} M", value / 1e6);
+  if (count >= 1'000) return fmt::format("{:.{}f} k", value / 1e3, count < 9'950 ? 1 : 0);
+  return fmt::format("{}", count);
+}
+
+} // namespace vitrail::tool
