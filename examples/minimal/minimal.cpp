@@ -1,6 +1,7 @@
 // The smallest complete host: a cube of glass panes over a floor, drawn without a window. Every pane cuts through
-// others: there is no order in which to draw them. What concerns Vitrail is in draw() and record().   minimal
-// PICTURE.png
+// others: there is no order in which to draw them. What concerns Vitrail is in draw() and record().
+//
+//   minimal PICTURE.png
 #include <array>
 #include <cmath>
 #include <cstdio>

@@ -54,12 +54,12 @@ typedef struct VitrailTilePlan_T* VitrailTilePlan;
 /* ---- Context ---------------------------------------------------------------------------------------------------- */
 
 typedef enum VitrailLogSeverity {
-  VITRAIL_LOG_ERROR = 1, /* the call that logs this returns an error */
+  VITRAIL_LOG_ERROR = 1, /* the call that logs this returns an error; a recording call has gone on as the text says */
   VITRAIL_LOG_SEVERITY_MAX_ENUM = 0x7fffffff
 } VitrailLogSeverity;
 
 /* Receives one line, without a newline, that says what is wrong and what to do. Called on the thread of the call that
- * fails, before that call returns. The text is valid during the call only. */
+ * fails or is misused, before that call returns. The text is valid during the call only. */
 typedef void (*VitrailLog)(VitrailLogSeverity severity, const char* message, void* user);
 
 /* The device is created for Vulkan 1.2 or later with VkPhysicalDeviceFeatures::fragmentStoresAndAtomics. That is all
@@ -137,11 +137,11 @@ typedef enum VitrailNodeFormat {
 } VitrailNodeFormat;
 
 /* What a fragment does to the light d behind it (linear, premultiplied), as vitrailCollect(color, blend) takes it.
- * Modes mix freely in one list. With colour rgb and alpha a: OVER           a * rgb + (1 - a) * d     Porter and Duff's
- * over with straight alpha; the default PREMULTIPLIED  rgb + (1 - a) * d         colour already holds its alpha; rgb
- * may exceed a (a glint on clear glass) ADDITIVE       a * rgb + d               light without a body: flames, glows.
- * The picture's alpha is unchanged MULTIPLY       mix(1, rgb, a) * d        a colour filter. The picture's alpha is
- * unchanged */
+ * Modes mix freely in one list. With colour rgb and alpha a:
+ *   OVER           a * rgb + (1 - a) * d   Porter and Duff's over with straight alpha; the default
+ *   PREMULTIPLIED  rgb + (1 - a) * d       colour already holds its alpha; rgb may exceed a (a glint on clear glass)
+ *   ADDITIVE       a * rgb + d             light without a body: flames, glows. The picture's alpha is unchanged
+ *   MULTIPLY       mix(1, rgb, a) * d      a colour filter. The picture's alpha is unchanged */
 typedef enum VitrailBlend {
   VITRAIL_BLEND_OVER = 0,
   VITRAIL_BLEND_PREMULTIPLIED = 1,
@@ -186,11 +186,13 @@ typedef enum VitrailMsaaResolve {
 /* What becomes of a frame that has more fragments than the pool has nodes. */
 typedef enum VitrailOverflow {
   /* The frame is blended approximately, from sums over all its fragments that do not depend on their order: identical
-   * frames give identical pictures. Exact for pixels with one layer of VITRAIL_BLEND_OVER, up to 2^-13. Takes 20 bytes
-   * a pixel. The sums are those of the weighted average of Bavoil and Myers (2008). */
+   * frames give identical pictures. Exact for pixels with one layer of VITRAIL_BLEND_OVER that covers all of the pixel,
+   * with colour times alpha up to 16; up to 2^-13 of the colour. In sums brighter colours count as 16, and a pixel's
+   * sums hold 4,095 fragments as bright as that, 43,690 that are not brighter than 1. Takes 20 bytes a pixel. The sums
+   * are those of the weighted average of Bavoil and Myers (2008). */
   VITRAIL_OVERFLOW_APPROXIMATE = 0,
-  /* The frame is not resolved: the images keep the opaque scene, so that it can be drawn again with a larger pool or
-   * in tiles. Takes no memory. */
+  /* The frame is not resolved: the images keep the opaque scene (resolved per pixel from several samples: what was in
+   * them), so that it can be drawn again with a larger pool or in tiles. Takes no memory. */
   VITRAIL_OVERFLOW_SKIP = 1,
   VITRAIL_OVERFLOW_MAX_ENUM = 0x7fffffff
 } VitrailOverflow;
@@ -247,7 +249,9 @@ typedef struct VitrailTargetDesc {
   VitrailOverflow overflow;
 
   /* Memory: either a fixed nodeCapacity, or a budget that the pool grows towards. */
-  uint32_t nodeCapacity; /* nodes of the pool, at most vitrailMaxNodeCapacity(); with a budget: at the start */
+  /* Nodes of the pool, at most vitrailMaxNodeCapacity(), less where the rest of the target needs the room. With a
+   * budget: at the start. */
+  uint32_t nodeCapacity;
   /* Bytes of device memory for all that the target keeps; a pool that was replaced and that frames in flight still use
    * comes on top for those frames. Default 0: nodeCapacity is fixed. */
   VkDeviceSize memoryBudget;
@@ -303,7 +307,9 @@ VITRAIL_API void vitrailDestroyTarget(VitrailTarget target);
 VITRAIL_API VkDeviceSize vitrailNodePoolSize(VitrailNodeFormat format, uint32_t nodeCapacity);
 
 /* The most nodes that one pool can have on this device at that sample count (the node's next index, the largest
- * allocation and heap and, without VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS, maxStorageBufferRange). */
+ * allocation and heap and, without VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS, maxStorageBufferRange). An upper bound: head
+ * pointers, sums and lists lie in the same allocation, so a target of many pixels holds fewer. A memoryBudget of the
+ * device's size finds how many. */
 VITRAIL_API uint32_t vitrailMaxNodeCapacity(VitrailContext context, VitrailNodeFormat format,
                                             VkSampleCountFlagBits samples);
 
@@ -379,7 +385,11 @@ typedef struct VitrailBeginInfo {
 
 /* Starts a frame: empties the lists and the counters. Outside a rendering scope, on a queue with graphics and compute.
  * Waits (on the GPU) for the collect and resolve of the target's previous frame; makes the empty lists visible to
- * fragment shaders of later commands. `info` may be null (frame 0, everything). */
+ * fragment shaders of later commands. `info` may be null (frame 0, everything).
+ *
+ * Frames are submitted in the order of recording. One that is not submitted after all (a swapchain out of date) is
+ * dropped whole, from here to vitrailCmdEnd(): it leaves nothing behind, has no statistics, and the next one may have
+ * its number or go on. */
 VITRAIL_API void vitrailCmdBegin(VkCommandBuffer commandBuffer, VitrailTarget target, const VitrailBeginInfo* info);
 
 /* Ends the collect pass. Outside a rendering scope, after the draws. Makes the lists that fragment shaders wrote
@@ -392,7 +402,7 @@ typedef struct VitrailResolveInfo {
 } VitrailResolveInfo;
 
 /* Sorts every list and blends it over the opaque scene, in linear light with premultiplied alpha: a pixel or sample d
- * becomes C + T * d, where (C, T) composes its fragments front to back. `info` may be null (view 0).
+ * becomes C + T * d, where (C, T) composes its fragments front to back. Once a frame. `info` may be null (view 0).
  *
  * VITRAIL_RESOLVE_COMPUTE: outside a rendering scope, after vitrailCmdCollected(). Binds compute pipelines and
  * descriptor sets; the host's compute bindings are lost, the graphics ones are not. Earlier writes to the views are
@@ -400,17 +410,18 @@ typedef struct VitrailResolveInfo {
  * SHADER_WRITE): the host's next barrier names that as its source.
  *
  * VITRAIL_RESOLVE_FRAGMENT: inside the host's rendering scope, which has the target's formats and sample count. Binds a
- * graphics pipeline and descriptor sets,  sets viewport and scissor; the host binds its own again.
- * Earlier writes to views.opaque and views.depth are visible to (FRAGMENT_SHADER, SHADER_READ). */
+ * graphics pipeline and descriptor sets, and sets viewport and scissor; the host binds and sets its own again. Earlier
+ * writes to views.opaque and views.depth are visible to (FRAGMENT_SHADER, SHADER_READ). */
 VITRAIL_API void vitrailCmdResolve(VkCommandBuffer commandBuffer, VitrailTarget target, const VitrailResolveInfo* info);
 
 /* Ends the frame: copies its counters to where vitrailReadStats() finds them. Outside a rendering scope, after
- * vitrailCmdResolve(), once a frame. */
+ * vitrailCmdResolve(), once a frame. With VITRAIL_RESOLVE_FRAGMENT and VITRAIL_OVERFLOW_APPROXIMATE it also binds a
+ * compute pipeline and a set, to clean up the sums. */
 VITRAIL_API void vitrailCmdEnd(VkCommandBuffer commandBuffer, VitrailTarget target);
 
 /* ---- Barriers as data ------------------------------------------------------------------------------------------- */
 
-/* Where the recording calls place their barriers. A host with a render graph may place them itself: see
+/* Where the recording calls place their barriers. A host with a render graph can ask what they are:
  * vitrailBarriers(). */
 typedef enum VitrailBarrierPoint {
   VITRAIL_BARRIER_BEFORE_CLEAR = 0,   /* first in vitrailCmdBegin: the previous frame -> the clears */
@@ -440,13 +451,15 @@ typedef struct VitrailStats {
   uint64_t fragmentsStored;    /* of those, the ones that had a node */
   uint64_t fragmentsMissing;   /* requested - stored: the pool was full */
   uint32_t nodeCapacity;       /* of the pool that the frame used */
-  uint32_t layersMax;          /* stored fragments of the deepest pixel: the depth complexity if the frame is exact */
-  uint32_t coveredPixels;      /* pixels with at least one stored fragment; stored / covered is the mean depth */
+  /* Of an overflowed frame the next three are counted only where a compute resolve blends it; else they are 0. */
+  uint32_t layersMax;     /* stored fragments of the deepest pixel: the depth complexity if the frame is exact */
+  uint32_t coveredPixels; /* pixels with at least one stored fragment; stored / covered is the mean depth */
   /* Pixels that were blended approximately: more than maxLayers fragments, or VITRAIL_BLEND_MULTIPLY in a fragment
-   * resolve without dual-source blending. */
+   * resolve without dual-source blending (a resolve per sample counts samples). */
   uint32_t approximatePixels;
-  /* Pixels that the driver did not let the resolve finish. Always 0 on a GPU. Mesa's CPU driver ends a
-   * shader's loops after 65,535 turns in total, which is enough for lists of 15,000 fragments. */
+  /* Pixels (a resolve per sample counts samples) that the driver did not let the resolve finish. Always 0 on a GPU.
+   * Mesa's CPU driver ends a shader's loops after 65,535 turns in total, which is enough for lists of 15,000
+   * fragments. */
   uint32_t cutPixels;
 } VitrailStats;
 
@@ -485,8 +498,8 @@ typedef struct VitrailTilePlanDesc {
   uint64_t expectedFragments;
 } VitrailTilePlanDesc;
 
-/* Errors: VK_ERROR_INITIALIZATION_FAILED for an empty extent, VK_ERROR_OUT_OF_DEVICE_MEMORY for a budget below 64 KiB.
- */
+/* Errors: VK_ERROR_INITIALIZATION_FAILED for an empty extent, VK_ERROR_OUT_OF_DEVICE_MEMORY for a budget below 64 KiB,
+ * VK_ERROR_FORMAT_NOT_SUPPORTED for a node format without nodes at that sample count. */
 VITRAIL_API VkResult vitrailCreateTilePlan(VitrailContext context, const VitrailTilePlanDesc* desc,
                                            VitrailTilePlan* plan);
 VITRAIL_API void vitrailDestroyTilePlan(VitrailTilePlan plan);

@@ -113,7 +113,7 @@ void vitrailCollect(vec4 color, uint blend) {
     if (index == VITRAIL_WRAP_AT) atomicAdd(vitrailControl.requested, 0u - VITRAIL_WRAP_STEP);
     if (index == VITRAIL_WRAP_AT) atomicAdd(vitrailControl.wraps, 1u);
     if (index == VITRAIL_END) atomicAdd(vitrailControl.misfits, 1u);
-    if (vitrailKeepsSums()) {
+    if (vitrailKeepsSums() && vitrailParameters.keepSums != 0u) { // a shader for another target looks at both
       if (index == vitrailParameters.capacity || index == VITRAIL_END) vitrailCallForSums();
       vitrailAddMissing(pixelIndex, node, coverage, nodes);
     }

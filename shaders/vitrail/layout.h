@@ -31,9 +31,8 @@ struct VitrailNodeStandard {
 //   x  1 sample: r5 g6 b5 from bit 0 on the sRGB curve, depth code from bit 16.
 //      Else: r5 g5 b5 from bit 0, the low 3 bits of alpha from bit 15, the depth code without its low 2 bits from
 //      bit 18.
-//   y  next; from bit 24: 1 sample: alpha in 6 bits. Else: coverage in 4 bits, the high 2 bits of alpha. The blend mode
-//   from
-//      bit 30.
+//   y  next; from bit 24: 1 sample: alpha in 6 bits. Else: coverage in 4 bits, the high 2 bits of alpha. From bit 30:
+//      the blend mode.
 struct VitrailNodeCompact {
   uvec2 words;
 };

@@ -26,8 +26,8 @@ vec3 vitrailSrgbToLinear(vec3 srgb) {
 // Clamps to [0, 1]; a NaN becomes 0. (What clamp() does with a NaN is undefined.)
 vec4 vitrailSaturate(vec4 v) { return mix(vec4(0.0), min(v, vec4(1.0)), greaterThan(v, vec4(0.0))); }
 
-// Values in [0, 1] to the nearest whole number of steps, at most 65535 of them. Adding 2^23 leaves a float no fraction; the
-// conversion instruction is slow on GPUs.
+// Values in [0, 1] to the nearest whole number of steps, at most 65535 of them. Adding 2^23 leaves a float no fraction;
+// the conversion instruction is slow on GPUs.
 uvec4 vitrailQuantize(vec4 v, vec4 steps) { return floatBitsToUint(v * steps + 8388608.0) & 0xffffu; }
 
 // Bits of the coverage, and of an index of the next node.
@@ -50,7 +50,9 @@ uint vitrailDepthBits(float depth, bool nearestIsOne) {
 }
 
 // Depth bits to a key that grows away from the viewer. Its own inverse.
-uint vitrailDepthKey(uint bits, bool nearestIsOne) { return nearestIsOne ? VITRAIL_ONE - min(bits, VITRAIL_ONE) : bits; }
+uint vitrailDepthKey(uint bits, bool nearestIsOne) {
+  return nearestIsOne ? VITRAIL_ONE - min(bits, VITRAIL_ONE) : bits;
+}
 
 // The depth code of the compact format: a float of the distance to the far plane without sign, 5 bits of exponent, and
 // what is left for the fraction.
@@ -122,7 +124,6 @@ bool vitrailPack(vec4 color, uint blend, float depth, uint coverage, VitrailLayo
 // ---- Sorting keys. A key is the whole fragment in an order that grows away from the viewer, so two fragments with one
 // key are the same and their order is of no consequence. Unused words are 0.
 
-
 // Of the compact format: blend mode, alpha, coverage, colour, from high to low.
 uint vitrailCompactRest(uvec4 node, uint samples) {
   if (samples == 1u) return node.w >> 24 << 16 | (node.x & 0xffffu);
@@ -171,7 +172,8 @@ vec4 vitrailKeyCurve(uvec4 key, VitrailLayout nodes) {
   }
   if (nodes.format == VITRAIL_FORMAT_STANDARD) return unpackUnorm4x8(key.y);
   if (nodes.samples == 1u) {
-    return vec4(uvec4(key.y, key.y >> 5, key.y >> 11, key.y >> 16) & uvec4(31u, 63u, 31u, 63u)) / vec4(31.0, 63.0, 31.0, 63.0);
+    const uvec4 steps = uvec4(31u, 63u, 31u, 63u);
+    return vec4(uvec4(key.y, key.y >> 5, key.y >> 11, key.y >> 16) & steps) / vec4(steps);
   }
   return vec4(uvec4(key.y, key.y >> 5, key.y >> 10, key.y >> 19) & 31u) / 31.0;
 }

@@ -12,9 +12,13 @@
 #include "node.glsl"
 
 #ifdef VITRAIL_BUFFER_REFERENCE
-layout(buffer_reference, std430, buffer_reference_align = 16) buffer VitrailStandardNodes { VitrailNodeStandard nodes[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer VitrailStandardNodes {
+  VitrailNodeStandard nodes[];
+};
 layout(buffer_reference, std430, buffer_reference_align = 8) buffer VitrailLinks { uint links[]; };
-layout(buffer_reference, std430, buffer_reference_align = 16) buffer VitrailCompactNodes { VitrailNodeCompact nodes[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer VitrailCompactNodes {
+  VitrailNodeCompact nodes[];
+};
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer VitrailHdrNodes { VitrailNodeHdr nodes[]; };
 
 // Behind 8 bytes a node.
@@ -29,10 +33,16 @@ uvec2 vitrailLinksAddress() {
 #define VITRAIL_COMPACT(index) VitrailCompactNodes(vitrailPoolAddress()).nodes[index].words
 #define VITRAIL_HDR(index) VitrailHdrNodes(vitrailPoolAddress()).nodes[index].words
 #else
-layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailStandardBlock { VitrailNodeStandard vitrailStandardNodes[]; };
+layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailStandardBlock {
+  VitrailNodeStandard vitrailStandardNodes[];
+};
 layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailLinkBlock { uint vitrailLinks[]; };
-layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailCompactBlock { VitrailNodeCompact vitrailCompactNodes[]; };
-layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailHdrBlock { VitrailNodeHdr vitrailHdrNodes[]; };
+layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailCompactBlock {
+  VitrailNodeCompact vitrailCompactNodes[];
+};
+layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailHdrBlock {
+  VitrailNodeHdr vitrailHdrNodes[];
+};
 #define VITRAIL_STANDARD(index) vitrailStandardNodes[index].words
 #define VITRAIL_LINK(index) vitrailLinks[2u * vitrailPoolCapacity() + index]
 #define VITRAIL_COMPACT(index) vitrailCompactNodes[index].words

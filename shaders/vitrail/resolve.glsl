@@ -1,5 +1,5 @@
-// Walks one fragment list, sorts it in registers and blends it front to back. No bindings: the including shader defines,
-// before the include,
+// Walks one fragment list, sorts it in registers and blends it front to back. No bindings: the including shader
+// defines, before the include,
 //
 //   VITRAIL_ACCUMULATORS              1, or 8 where one invocation blends all samples of a pixel
 //   VitrailLayout vitrailNodes()      how the nodes are stored; constants, so that what is not needed falls away

@@ -6,8 +6,8 @@
 //
 // Blocks of 16 are sorted in registers and relinked, and merged (Knuth, The Art of Computer Programming, volume 3,
 // 5.4: balanced two-way merge; its two input and two output tapes are linked lists here, so that nothing is copied). A
-// list of n takes n log2(n / 16) steps, where taking the nearest fragments in repeated walks takes n^2 / 16: more than some
-// drivers let a shader loop.
+// list of n takes n log2(n / 16) steps, where taking the nearest fragments in repeated walks takes n^2 / 16: more than
+// some drivers let a shader loop.
 #ifndef VITRAIL_RESOLVE_LONG_GLSL
 #define VITRAIL_RESOLVE_LONG_GLSL
 
@@ -95,8 +95,8 @@ struct VitrailMerge {
   VitrailOutput other;   // where the next one goes
 };
 
-// Moves the nearer of the two nodes under the heads to the output. Runs of `width` become runs of twice that. Does nothing
-// once both tapes are read.
+// Moves the nearer of the two nodes under the heads to the output. Runs of `width` become runs of twice that. Does
+// nothing once both tapes are read.
 void vitrailMergeStep(inout VitrailMerge merge, uint width, uint nodeCount) {
   if (merge.a.run + merge.b.run == 0u) {
     vitrailNextRun(merge.a, width);
@@ -117,8 +117,8 @@ void vitrailMergeStep(inout VitrailMerge merge, uint width, uint nodeCount) {
   }
 }
 
-// A list of any length, sorted: follow it for `count` nodes. `complete` is false where the driver ended a loop before the
-// list was done (Mesa's CPU driver ends a shader's loops after 65,535 turns in total).
+// A list of any length, sorted: follow it for `count` nodes. `complete` is false where the driver ended a loop before
+// the list was done (Mesa's CPU driver ends a shader's loops after 65,535 turns in total).
 struct VitrailSorted {
   uint head;
   uint count;

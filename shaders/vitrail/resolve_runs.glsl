@@ -1,6 +1,6 @@
-// Resolves a list of up to 128 fragments: blocks of 16 are sorted in registers and relinked, and the up to 8 sorted runs
-// are merged and blended at once, so that blending ends as soon as nothing more can be seen. No bindings: the including
-// shader defines what resolve_long.glsl asks for.
+// Resolves a list of up to 128 fragments: blocks of 16 are sorted in registers and relinked, and the up to 8 sorted
+// runs are merged and blended at once, so that blending ends as soon as nothing more can be seen. No bindings: the
+// including shader defines what resolve_long.glsl asks for.
 #ifndef VITRAIL_RESOLVE_RUNS_GLSL
 #define VITRAIL_RESOLVE_RUNS_GLSL
 

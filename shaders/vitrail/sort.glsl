@@ -1,8 +1,9 @@
-// Sorting fragments in registers. Every array index is a constant, so that the array never becomes memory: a loop over a
-// dynamically indexed local array is slow on GPUs, and one driver was seen to sort it wrongly.
+// Sorting fragments in registers. Every array index is a constant, so that the array never becomes memory: a loop over
+// a dynamically indexed local array is slow on GPUs, and one driver was seen to sort it wrongly.
 //
-// Two ways: insertion, whose code is short, for drivers that execute both sides of every branch, and, with VITRAIL_NETWORKS,
-// Batcher's odd-even merging networks (Knuth, The Art of Computer Programming, volume 3, 5.3.4) of 4, 8, 16 and 32, for GPUs.
+// Two ways: insertion, whose code is short, for drivers that execute both sides of every branch, and, with
+// VITRAIL_NETWORKS, Batcher's odd-even merging networks (Knuth, The Art of Computer Programming, volume 3, 5.3.4) of 4,
+// 8, 16 and 32, for GPUs.
 #ifndef VITRAIL_SORT_GLSL
 #define VITRAIL_SORT_GLSL
 
@@ -12,8 +13,8 @@ struct VitrailEntry {
   uint index;
 };
 
-// Behind every fragment. The last two words are those that formats leave empty: where all entries have 0 there, compilers
-// see that they need no registers and no comparisons.
+// Behind every fragment. The last two words are those that formats leave empty: where all entries have 0 there,
+// compilers see that they need no registers and no comparisons.
 const VitrailEntry VITRAIL_LAST = VitrailEntry(uvec4(0xffffffffu, 0xffffffffu, 0u, 0u), 0xffffffffu);
 #define VITRAIL_LAST_4 VITRAIL_LAST, VITRAIL_LAST, VITRAIL_LAST, VITRAIL_LAST
 #define VITRAIL_LAST_16 VITRAIL_LAST_4, VITRAIL_LAST_4, VITRAIL_LAST_4, VITRAIL_LAST_4
@@ -40,10 +41,11 @@ void vitrailExchange(inout VitrailEntry a, inout VitrailEntry b) {
 
 // Inserts an entry into 16 ascending ones; the last falls out and is returned.
 VitrailEntry vitrailInsert(inout VitrailEntry e[16], VitrailEntry entry) {
-  vitrailExchange(e[0], entry); vitrailExchange(e[1], entry); vitrailExchange(e[2], entry); vitrailExchange(e[3], entry);
-  vitrailExchange(e[4], entry); vitrailExchange(e[5], entry); vitrailExchange(e[6], entry); vitrailExchange(e[7], entry);
-  vitrailExchange(e[8], entry); vitrailExchange(e[9], entry); vitrailExchange(e[10], entry); vitrailExchange(e[11], entry);
-  vitrailExchange(e[12], entry); vitrailExchange(e[13], entry); vitrailExchange(e[14], entry); vitrailExchange(e[15], entry);
+#define VITRAIL_PASS(i) vitrailExchange(e[i], entry);
+  VITRAIL_PASS(0) VITRAIL_PASS(1) VITRAIL_PASS(2) VITRAIL_PASS(3)
+  VITRAIL_PASS(4) VITRAIL_PASS(5) VITRAIL_PASS(6) VITRAIL_PASS(7)
+  VITRAIL_PASS(8) VITRAIL_PASS(9) VITRAIL_PASS(10) VITRAIL_PASS(11)
+  VITRAIL_PASS(12) VITRAIL_PASS(13) VITRAIL_PASS(14) VITRAIL_PASS(15)
   return entry;
 }
 

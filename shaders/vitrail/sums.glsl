@@ -1,14 +1,19 @@
 // Sums over fragments that do not depend on their order: what is left of a list where it may not or cannot be sorted.
 // The sums are integers, so adding in any order gives the same bits. They are blended as the weighted average of Bavoil
 // and Myers, "Order Independent Transparency with Dual Depth Peeling" (2008): the mean colour, weighted by opacity,
-// over the exact product of the transmittances. One fragment comes out as itself, up to the sums' 16 and 12 bits.
+// over the exact product of the transmittances. One fragment that covers its pixel comes out as itself, up to the sums'
+// 16 and 12 bits.
+//
+// Premultiplied colours above 16 count as 16. The words hold 4,095 fragments of that brightness, 65,535 of brightness
+// 1, and 43,690 that let nothing through; beyond that they wrap.
 #ifndef VITRAIL_SUMS_GLSL
 #define VITRAIL_SUMS_GLSL
 
 #include "node.glsl"
 
-// A fragment is summed where it is collected or where it is resolved, as it happens, and both must give the same integers.
-// So everything from the node's bits to the integers is `precise`: no compiler may fuse what the other one does not.
+// A fragment is summed where it is collected or where it is resolved, as it happens, and both must give the same
+// integers. So everything from the node's bits to the integers is `precise`: no compiler may fuse what the other one
+// does not.
 vec3 vitrailPreciseLinear(vec3 srgb) {
   precise vec3 base = (max(srgb, vec3(0.04045)) + 0.055) / 1.055;
   precise vec3 curve = pow(base, vec3(2.4));
@@ -40,7 +45,7 @@ struct VitrailSums {
 
 const VitrailSums VITRAIL_NO_SUMS = VitrailSums(uvec3(0u), 0u, 0u, uvec3(0u));
 
-// A surface that lets nothing through counts as 2^-24: the sums of 40,000 of those still fit.
+// A surface that lets nothing through counts as 2^-24.
 vec4 vitrailDensity(vec4 transmittance) {
   precise vec4 density = -log2(max(transmittance, 1e-9));
   return clamp(density, 0.0, 24.0);

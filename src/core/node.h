@@ -51,8 +51,7 @@ Fragment unpackNode(const NodeCoding& coding, const NodeWords& words);
 // with equal keys are equal. Compared word by word:
 //   standard  depth key << 2 | blend, colour, coverage
 //   hdr       depth key << 2 | blend, redGreen, blueAlpha, coverage
-//   compact   depth key, then from high to low in one word: blend, alpha, coverage, rgb, each in the bits it is stored
-//   in
+//   compact   depth key, then from high to low in one word: blend, alpha, coverage, rgb, each in as many bits as stored
 using SortKey = std::array<std::uint32_t, 4>;
 SortKey sortKey(const NodeCoding& coding, const NodeWords& words);
 

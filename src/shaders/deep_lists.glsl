@@ -23,33 +23,25 @@ bool opensGroup(uint slot, out uvec3 groups) {
   return slot % DEEP_GROUP_SIZE == 0u;
 }
 
-void leaveLong(uint pixelIndex) {
-  uint slot = atomicAdd(control.longLists, 1u);
-  if (slot >= uint(longPixels.length())) { // more long lists than the pool's nodes can make: they are corrupt
-    atomicAdd(control.cutPixels, 1u);
-    return;
+// Defines a function that leaves a pixel to a later dispatch. A macro, because memory that atomics change cannot be a
+// parameter. More pixels than `pixels` holds are more than the pool's nodes can make lists for: those are corrupt.
+#define LEAVE(name, pixels, lists, groupsX, groupsY, groupsZ) \
+  void name(uint pixelIndex) { \
+    uint slot = atomicAdd(control.lists, 1u); \
+    if (slot >= uint(pixels.length())) { \
+      atomicAdd(control.cutPixels, 1u); \
+      return; \
+    } \
+    pixels[slot] = pixelIndex; \
+    uvec3 groups; \
+    if (!opensGroup(slot, groups)) return; \
+    atomicMax(control.groupsX, groups.x); \
+    atomicMax(control.groupsY, groups.y); \
+    atomicMax(control.groupsZ, groups.z); \
   }
-  longPixels[slot] = pixelIndex;
-  uvec3 groups;
-  if (!opensGroup(slot, groups)) return;
-  atomicMax(control.longGroupsX, groups.x);
-  atomicMax(control.longGroupsY, groups.y);
-  atomicMax(control.longGroupsZ, groups.z);
-}
-
-void leaveMedium(uint pixelIndex) {
-  uint slot = atomicAdd(control.mediumLists, 1u);
-  if (slot >= uint(mediumPixels.length())) {
-    atomicAdd(control.cutPixels, 1u);
-    return;
-  }
-  mediumPixels[slot] = pixelIndex;
-  uvec3 groups;
-  if (!opensGroup(slot, groups)) return;
-  atomicMax(control.mediumGroupsX, groups.x);
-  atomicMax(control.mediumGroupsY, groups.y);
-  atomicMax(control.mediumGroupsZ, groups.z);
-}
+LEAVE(leaveMedium, mediumPixels, mediumLists, mediumGroupsX, mediumGroupsY, mediumGroupsZ)
+LEAVE(leaveLong, longPixels, longLists, longGroupsX, longGroupsY, longGroupsZ)
+#undef LEAVE
 
 // After the short lists: by networks the next class, else the last one.
 void leaveForLater(uint pixelIndex) {

@@ -1,9 +1,10 @@
-// How the compute resolve writes the picture: one pixel of the colour image, from its list and the opaque colour.
-// VITRAIL_COLOR_FORMAT is the image's format.
+// How the compute resolve writes the picture: one pixel of the colour image, from its list or its sums and the opaque
+// colour. VITRAIL_COLOR_FORMAT is the image's format.
 #ifndef VITRAIL_PICTURE_GLSL
 #define VITRAIL_PICTURE_GLSL
 
 #include "deep_lists.glsl"
+#include "missing.glsl"
 #include "samples.glsl"
 #include "vitrail/resolve.glsl"
 
@@ -36,6 +37,15 @@ void writeDeepPixel(uint pixelIndex, VitrailResolved r) {
   atomicMax(control.layersMax, r.layers);
   if (!r.complete) atomicAdd(control.cutPixels, 1u);
   if (kMaxLayers != 0u && r.layers > kMaxLayers) atomicAdd(control.approximatePixels, 1u);
+}
+
+// A pixel of a frame that overflowed: all fragments by their sums, which it clears. Returns how many are stored.
+uint writeSums(uvec2 local) {
+  uint pixelIndex = local.y * parameters.width + local.x;
+  VitrailResolved r = vitrailResolveSums(heads[pixelIndex], nodesInUse(), readMissing(pixelIndex));
+  clearMissing(pixelIndex);
+  writePixel(uvec2(parameters.x, parameters.y) + local, r);
+  return r.layers;
 }
 
 #endif

@@ -3,13 +3,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "group_counts.glsl"
-#include "missing.glsl"
 #include "picture.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 VitrailResolved resolveList(uint head) {
-  if (kMaxLayers != 0u && kMaxLayers <= VITRAIL_SHORT_LIST) return vitrailResolveCapped(head, nodesInUse());
+  if (kCapped) return vitrailResolveCapped(head, nodesInUse());
   return vitrailResolveShort(head, nodesInUse());
 }
 
@@ -33,31 +32,22 @@ void resolvePixel(uvec2 local) {
   countPixel(r.layers);
 }
 
+void handlePixel(uvec2 local, bool sums) {
 #if VITRAIL_NETWORKS
-// A frame that overflowed, where a dispatch of its own would cost more than the code.
-void blendSums(uvec2 local) {
-  uint pixelIndex = local.y * parameters.width + local.x;
-  uint head = heads[pixelIndex];
-  VitrailResolved r = vitrailResolveSums(head, nodesInUse(), readMissing(pixelIndex));
-  clearMissing(pixelIndex);
-  writePixel(imagePixel(pixelIndex), r);
-  if (head != VITRAIL_END) countPixel(r.layers);
-}
-#else
-void blendSums(uvec2 local) {} // resolve_overflow.comp does it
+  if (sums) { // else resolve_overflow.comp does it: a dispatch of its own costs less than the code
+    uint layers = writeSums(local);
+    if (layers > 0u) countPixel(layers);
+    return;
+  }
 #endif
+  resolvePixel(local);
+}
 
 void main() {
   bool sums = overflowed();
   if (sums && (VITRAIL_NETWORKS == 0 || parameters.keepSums == 0u)) return;
   beginCounts();
   uvec2 local = gl_GlobalInvocationID.xy;
-  if (local.x < parameters.width && local.y < parameters.height) {
-    if (sums) {
-      blendSums(local);
-    } else {
-      resolvePixel(local);
-    }
-  }
+  if (local.x < parameters.width && local.y < parameters.height) handlePixel(local, sums);
   endCounts();
 }

@@ -20,7 +20,7 @@ layout(location = 0) out vec4 outColor;
 #endif
 
 VitrailResolved resolveList(uint head) {
-  if (kMaxLayers != 0u && kMaxLayers <= VITRAIL_SHORT_LIST) return vitrailResolveCapped(head, nodesInUse());
+  if (kCapped) return vitrailResolveCapped(head, nodesInUse());
   VitrailResolved r = vitrailResolveShort(head, nodesInUse());
   if (r.complete) return r;
   r = vitrailBlendList(head, nodesInUse());

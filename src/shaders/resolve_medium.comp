@@ -1,4 +1,5 @@
-// The second dispatch of the compute resolve: one thread a list of up to 32 fragments. Longer ones are left to the third.
+// The second dispatch of the compute resolve: one thread a list of up to 32 fragments. Longer ones are left to the
+// third.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "picture.glsl"

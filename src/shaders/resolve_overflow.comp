@@ -1,22 +1,18 @@
-// The compute resolve of a frame that overflowed, in place of the others: one thread a pixel, all fragments by their sums.
-// Dispatched indirectly, by no work groups where the frame fits. For drivers that execute both sides of every branch;
-// elsewhere resolve.comp does the same.
+// The compute resolve of a frame that overflowed, in place of the others: one thread a pixel, all fragments by their
+// sums. Dispatched indirectly, by no work groups where the frame fits. For drivers that execute both sides of every
+// branch; elsewhere resolve.comp does the same.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "picture.glsl"
-#include "missing.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 void main() {
   uvec2 local = gl_GlobalInvocationID.xy;
   if (local.x >= parameters.width || local.y >= parameters.height) return;
-  uint pixelIndex = local.y * parameters.width + local.x;
-  uint head = heads[pixelIndex];
-  VitrailResolved r = vitrailResolveSums(head, nodesInUse(), readMissing(pixelIndex));
-  clearMissing(pixelIndex);
-  writePixel(imagePixel(pixelIndex), r);
-  if (head == VITRAIL_END) return;
+  uint layers = writeSums(local);
+  if (layers == 0u) return;
   atomicAdd(control.coveredPixels, 1u);
-  if (r.layers > control.layersMax) atomicMax(control.layersMax, r.layers);
+  if (layers > control.layersMax) atomicMax(control.layersMax, layers);
+  if (kMaxLayers != 0u && layers > kMaxLayers) atomicAdd(control.approximatePixels, 1u);
 }

@@ -1,6 +1,6 @@
 // The opaque scene behind the lists, sample by sample, and which samples a fragment adds to. VITRAIL_MULTISAMPLED is
-// defined where one invocation handles all samples of a pixel, VITRAIL_PER_SAMPLE where it handles one of them, and then
-// VITRAIL_TEST_DEPTH where their depth may have to be tested.
+// defined where one invocation handles all samples of a pixel, VITRAIL_PER_SAMPLE where it handles one of them, and
+// then VITRAIL_TEST_DEPTH where their depth may have to be tested.
 #ifndef VITRAIL_SAMPLES_GLSL
 #define VITRAIL_SAMPLES_GLSL
 

@@ -7,9 +7,6 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// Lists need no sorting where only their nearest fragments are kept.
-const bool kCapped = kMaxLayers != 0u && kMaxLayers <= VITRAIL_SHORT_LIST;
-
 void findList(uint pixelIndex) {
   uint index = heads[pixelIndex];
   if (index == VITRAIL_END) return;

@@ -1,6 +1,6 @@
-// What every shader of the library binds of a target, and how it is specialized. With VITRAIL_NETWORKS set to 1 it sorts as
-// suits a GPU, with 0 as suits a CPU (vitrail/sort.glsl). The set is the one that collecting
-// shaders bind (vitrail/collect.glsl), with the lists of deep pixels beside it.
+// What every shader of the library binds of a target, and how it is specialized. With VITRAIL_NETWORKS set to 1 it
+// sorts as suits a GPU, with 0 as suits a CPU (vitrail/sort.glsl). The set is the one that collecting shaders bind
+// (vitrail/collect.glsl), with the lists of deep pixels beside it.
 #ifndef VITRAIL_TARGET_GLSL
 #define VITRAIL_TARGET_GLSL
 
@@ -16,6 +16,9 @@ layout(constant_id = 1) const uint kSamples = 1u;
 layout(constant_id = 2) const bool kNearestIsOne = false;
 layout(constant_id = 3) const uint kMaxLayers = 0u;
 layout(constant_id = 4) const bool kTestDepth = false; // coverage has not passed the depth test
+
+// Lists need no sorting where only their nearest fragments are kept.
+const bool kCapped = kMaxLayers != 0u && kMaxLayers <= VITRAIL_SHORT_LIST;
 
 layout(set = 0, binding = 0, std140) uniform ParametersBlock { VitrailParameters parameters; };
 layout(set = 0, binding = 1, std430) buffer ControlBlock { VitrailControl control; };

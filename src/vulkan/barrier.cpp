@@ -6,6 +6,13 @@ namespace {
 
 constexpr VkAccessFlags kShaderReadWrite = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
 
+// On all that shaders share.
+VkBufferMemoryBarrier storageBarrier(const Storage& storage, VkAccessFlags source, VkAccessFlags destination) {
+  return bufferBarrier(storage.buffer, storage.offset, storage.layout.total, source, destination);
+}
+
+} // namespace
+
 VkBufferMemoryBarrier bufferBarrier(VkBuffer buffer, VkDeviceSize offset, VkDeviceSize size, VkAccessFlags source,
                                     VkAccessFlags destination) {
   VkBufferMemoryBarrier barrier{};
@@ -19,13 +26,6 @@ VkBufferMemoryBarrier bufferBarrier(VkBuffer buffer, VkDeviceSize offset, VkDevi
   barrier.size = size;
   return barrier;
 }
-
-// On all that shaders share.
-VkBufferMemoryBarrier storageBarrier(const Storage& storage, VkAccessFlags source, VkAccessFlags destination) {
-  return bufferBarrier(storage.buffer, storage.offset, storage.layout.total, source, destination);
-}
-
-} // namespace
 
 void recordBarriers(VkCommandBuffer commandBuffer, VitrailTarget target, VitrailBarrierPoint point) {
   VitrailBarriers barriers{};

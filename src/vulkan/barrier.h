@@ -8,6 +8,10 @@ namespace vitrail {
 // Records what vitrailBarriers() says of a point.
 void recordBarriers(VkCommandBuffer commandBuffer, VitrailTarget target, VitrailBarrierPoint point);
 
+// A barrier on a part of a buffer, which stays with its queue family.
+VkBufferMemoryBarrier bufferBarrier(VkBuffer buffer, VkDeviceSize offset, VkDeviceSize size, VkAccessFlags source,
+                                    VkAccessFlags destination);
+
 // A barrier on all memory between two steps of the library's own.
 struct Step {
   VkPipelineStageFlags stages;

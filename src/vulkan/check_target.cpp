@@ -17,8 +17,6 @@ unsigned long long print(std::uint64_t value) { return value; }
 
 double mebibytes(std::uint64_t bytes) { return static_cast<double>(bytes) / (1024.0 * 1024.0); }
 
-bool keepsSums(const VitrailTargetDesc& desc) { return desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE; }
-
 VkResult checkFormat(const VitrailContext_T& context, const VitrailTargetDesc& desc) {
   const Log& log = context.log;
   if (nodeBytes(desc.nodeFormat) == 0) {
@@ -102,6 +100,8 @@ VitrailTargetDesc withDefaults(VitrailContext context, const VitrailTargetDesc& 
   }
   return full;
 }
+
+bool keepsSums(const VitrailTargetDesc& desc) { return desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE; }
 
 VkDeviceSize statsBytes(const VitrailTargetDesc& desc) { return desc.framesInFlight * sizeof(StatsSlot); }
 
@@ -194,8 +194,7 @@ VkResult checkTarget(VitrailContext context, const VitrailTargetDesc& desc) {
   if (desc.buffer == VK_NULL_HANDLE) return VK_SUCCESS;
   if (desc.memoryBudget != 0) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED,
-                    "memoryBudget and buffer exclude each other: a pool in the host's "
-                    "memory does not grow");
+                    "memoryBudget and buffer exclude each other: a pool in the host's memory does not grow");
   }
   if (desc.bufferOffset % context->limits.alignment != 0) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED, "bufferOffset %llu is not a multiple of %llu",

@@ -19,6 +19,9 @@ VkResult checkTarget(VitrailContext context, const VitrailTargetDesc& desc);
 // Checks the images that a target of that descriptor resolves from and into.
 VkResult checkViews(VitrailContext context, const VitrailTargetDesc& desc, const VitrailViews& views);
 
+// Whether the target keeps sums of the fragments that found no node.
+bool keepsSums(const VitrailTargetDesc& desc);
+
 // The nodes that the budget has room for, at most as many as a pool can have.
 std::uint32_t budgetCapacity(VitrailContext context, const VitrailTargetDesc& desc, std::uint32_t areaPixels);
 

@@ -1,6 +1,7 @@
 // The recording calls round the host's transparent draws: empty lists before, visible and, for a fragment resolve,
 // sorted lists after.
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 
 #include "barrier.h"
@@ -50,9 +51,26 @@ layout::VitrailParameters parametersOf(const VitrailTarget_T& target) {
   return parameters;
 }
 
+// Whether a frame has run whose sums were cleared as this one's must be.
+bool sumsWereCleared(const VitrailTarget_T& target) {
+  auto* slots = static_cast<StatsSlot*>(target.stats.mapped);
+  return std::any_of(slots, slots + target.desc.framesInFlight, [&](StatsSlot& slot) {
+    return std::atomic_ref<std::uint32_t>(slot.sumsCleared).load(std::memory_order_relaxed) == target.sumsCleared;
+  });
+}
+
+void clearSums(VkCommandBuffer commandBuffer, VitrailTarget_T& target) {
+  Storage& storage = target.storage;
+  if (!storage.sumsAreClear) ++target.sumsCleared; // new memory, or a frame that was not resolved
+  storage.sumsAreClear = false;                    // until this frame has been resolved
+  if (sumsWereCleared(target)) return;
+  target.context->vk.CmdFillBuffer(commandBuffer, storage.buffer, storage.offset + storage.layout.sums.offset,
+                                   storage.layout.sums.size, 0);
+}
+
 void clear(VkCommandBuffer commandBuffer, VitrailTarget_T& target) {
   const Dispatch& vk = target.context->vk;
-  Storage& storage = target.storage;
+  const Storage& storage = target.storage;
   const auto fill = [&](const StoragePart& part, VkDeviceSize bytes, std::uint32_t value) {
     if (bytes > 0) vk.CmdFillBuffer(commandBuffer, storage.buffer, storage.offset + part.offset, bytes, value);
   };
@@ -62,25 +80,20 @@ void clear(VkCommandBuffer commandBuffer, VitrailTarget_T& target) {
   fill(storage.layout.heads, VkDeviceSize{parameters.width} * parameters.height * sizeof(layout::uint),
        layout::VITRAIL_END);
   fill(storage.layout.control, storage.layout.control.size, 0);
-  if (target.keepSums && !storage.sumsAreClear) fill(storage.layout.sums, storage.layout.sums.size, 0);
-  storage.sumsAreClear = false; // until this frame has been resolved
+  if (target.keepSums) clearSums(commandBuffer, target);
   vk.CmdFillBuffer(commandBuffer, target.stats.buffer, target.slotOffset(target.frame) + offsetof(StatsSlot, tag),
                    sizeof(StatsSlot::tag), 0); // the slot's old frame is gone
 }
 
 // For a fragment resolve: lists that are longer than it sorts itself are sorted where they lie.
 void sortLongLists(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
-  constexpr VkAccessFlags kShaderReadWrite = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
   bindTargetSet(commandBuffer, target);
   dispatchPixels(commandBuffer, target, target.pipelines.sortFind);
-  // Writer: the search (which lists, how many). Readers: the command processor and the sorting.
-  recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
-                {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                 VK_ACCESS_INDIRECT_COMMAND_READ_BIT | kShaderReadWrite});
+  betweenDispatches(commandBuffer, target);
   dispatchIndirect(commandBuffer, target, target.pipelines.sortLong, offsetof(layout::VitrailControl, longGroupsX));
   // Writers: the search and the sorting. Reader: the resolve in fragment shaders, which adds to the counters.
   recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
-                {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, kShaderReadWrite});
+                {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT});
 }
 
 } // namespace
@@ -90,7 +103,6 @@ void sortLongLists(VkCommandBuffer commandBuffer, const VitrailTarget_T& target)
 extern "C" void vitrailCmdBegin(VkCommandBuffer commandBuffer, VitrailTarget target, const VitrailBeginInfo* info) {
   target->frame = info != nullptr ? info->frame : 0;
   target->area = vitrail::areaOf(*target, info);
-  target->slotCapacity[target->slot(target->frame)] = target->storage.nodeCapacity;
   vitrail::recordBarriers(commandBuffer, target, VITRAIL_BARRIER_BEFORE_CLEAR);
   vitrail::clear(commandBuffer, *target);
   vitrail::recordBarriers(commandBuffer, target, VITRAIL_BARRIER_BEFORE_COLLECT);

@@ -1,5 +1,7 @@
 #include "dispatch_compute.h"
 
+#include "barrier.h"
+
 namespace vitrail {
 
 namespace {
@@ -35,6 +37,14 @@ void dispatchIndirect(VkCommandBuffer commandBuffer, const VitrailTarget_T& targ
   const Storage& storage = target.storage;
   vk.CmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
   vk.CmdDispatchIndirect(commandBuffer, storage.buffer, storage.offset + storage.layout.control.offset + counter);
+}
+
+void betweenDispatches(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
+  // Writer: the dispatch before (the pixels that it leaves, how many, and the picture). Readers: the command processor
+  // and the next dispatch. Their pixels and lists are not the same ones, but the image and the counters are.
+  recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
+                {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                 VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT});
 }
 
 } // namespace vitrail

@@ -16,4 +16,7 @@ void dispatchPixels(VkCommandBuffer commandBuffer, const VitrailTarget_T& target
 void dispatchIndirect(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline,
                       std::size_t counter);
 
+// The barrier before an indirect dispatch over what a dispatch left to it.
+void betweenDispatches(VkCommandBuffer commandBuffer, const VitrailTarget_T& target);
+
 } // namespace vitrail

@@ -2,20 +2,11 @@
 #include <array>
 #include <cstddef>
 
-#include "barrier.h"
 #include "dispatch_compute.h"
 
 namespace vitrail {
 
 namespace {
-
-// Writer: the dispatch before (the pixels that it leaves, how many, and the picture). Readers: the command processor
-// and the next dispatch. Their pixels and lists are not the same ones, but the image and the counters are.
-void betweenDispatches(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
-  recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
-                {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                 VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT});
-}
 
 void resolveByCompute(VkCommandBuffer commandBuffer, VitrailTarget_T& target, std::uint32_t view) {
   const ResolvePipelines& pipelines = target.pipelines;

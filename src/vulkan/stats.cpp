@@ -14,20 +14,14 @@ namespace {
 // Of the frame's slot.
 void slotBarrier(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipelineStageFlags destination,
                  VkAccessFlags accesses) {
-  VkBufferMemoryBarrier barrier{};
-  barrier.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER;
-  barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
-  barrier.dstAccessMask = accesses;
-  barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.buffer = target.stats.buffer;
-  barrier.offset = target.slotOffset(target.frame);
-  barrier.size = sizeof(StatsSlot);
+  const VkBufferMemoryBarrier barrier = bufferBarrier(target.stats.buffer, target.slotOffset(target.frame),
+                                                      sizeof(StatsSlot), VK_ACCESS_TRANSFER_WRITE_BIT, accesses);
   target.context->vk.CmdPipelineBarrier(commandBuffer, VK_PIPELINE_STAGE_TRANSFER_BIT, destination, 0, 0, nullptr, 1,
                                         &barrier, 0, nullptr);
 }
 
-// Copies the counters to the frame's slot, then the tag that says that they are there.
+// Copies the counters to the frame's slot, with what the host knows of the frame, then the tag that says that they are
+// there.
 void copyStats(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
   const Dispatch& vk = target.context->vk;
   const Storage& storage = target.storage;
@@ -40,8 +34,12 @@ void copyStats(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
       {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT});
   const VkBufferCopy region{storage.offset + storage.layout.control.offset, slot, sizeof(layout::VitrailControl)};
   vk.CmdCopyBuffer(commandBuffer, storage.buffer, target.stats.buffer, 1, &region);
+  static_assert(offsetof(StatsSlot, sumsCleared) == offsetof(StatsSlot, nodeCapacity) + sizeof(std::uint32_t));
+  const std::array<std::uint32_t, 2> known = {storage.nodeCapacity, storage.sumsAreClear ? target.sumsCleared : 0};
+  vk.CmdUpdateBuffer(commandBuffer, target.stats.buffer, slot + offsetof(StatsSlot, nodeCapacity), sizeof(known),
+                     known.data());
 
-  // Writer: the copy. Readers: the host, and the order of the tag, which is written after.
+  // Writers: the copy and the update. Readers: the host, and the order of the tag, which is written after.
   slotBarrier(commandBuffer, target, VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_HOST_BIT,
               VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_HOST_READ_BIT);
   const std::uint64_t tag = target.frame + 1;
@@ -54,7 +52,7 @@ void copyStats(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
 // A fragment resolve only reads the sums, several times a pixel where it runs per sample.
 void cleanUpSums(VkCommandBuffer commandBuffer, VitrailTarget_T& target) {
   // Reader: the resolve. Writer: the cleaning.
-  recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
+  recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0},
                 {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT});
   bindTargetSet(commandBuffer, target);
   dispatchIndirect(commandBuffer, target, target.pipelines.clearSums,
@@ -79,11 +77,12 @@ extern "C" VkResult vitrailReadStats(VitrailTarget target, uint64_t frame, Vitra
   const std::atomic_ref<std::uint64_t> written(slot->tag);
   if (tag == 0 || written.load(std::memory_order_acquire) != tag) return VK_NOT_READY;
   const vitrail::layout::VitrailControl control = slot->control;
+  const std::uint32_t nodeCapacity = slot->nodeCapacity;
   std::atomic_thread_fence(std::memory_order_acquire);
   if (written.load(std::memory_order_relaxed) != tag) return VK_NOT_READY;
   *stats = {};
   stats->frame = frame;
-  stats->nodeCapacity = target->slotCapacity[target->slot(frame)];
+  stats->nodeCapacity = nodeCapacity;
   const std::uint64_t fitting = std::uint64_t{control.wraps} * vitrail::layout::VITRAIL_WRAP_STEP + control.requested;
   stats->fragmentsRequested = fitting + control.misfits;
   stats->fragmentsStored = std::min<std::uint64_t>(fitting, stats->nodeCapacity);

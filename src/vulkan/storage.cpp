@@ -108,7 +108,6 @@ VkBufferUsageFlags storageUsage(const VitrailContext_T& context) {
 }
 
 VkResult Storage::create(const VitrailContext_T& context, const StorageInfo& info) {
-  extent = info.extent;
   areaPixels = info.areaPixels;
   nodeCapacity = info.nodeCapacity;
   viewCount = info.views.count;

@@ -12,7 +12,6 @@
 namespace vitrail {
 
 struct StorageInfo {
-  VkExtent2D extent{};
   std::uint32_t areaPixels = 0;
   std::uint32_t nodeCapacity = 0;
   VitrailNodeFormat format = VITRAIL_NODE_STANDARD;
@@ -27,7 +26,6 @@ struct StorageInfo {
 VkBufferUsageFlags storageUsage(const VitrailContext_T& context);
 
 struct Storage {
-  VkExtent2D extent{};
   std::uint32_t areaPixels = 0;
   std::uint32_t nodeCapacity = 0;
   StorageLayout layout; // of `buffer`, from `offset` on
@@ -39,7 +37,7 @@ struct Storage {
   VkDescriptorSet set = VK_NULL_HANDLE;
   std::uint32_t viewCount = 0;
   std::array<VkDescriptorSet, VITRAIL_MAX_COLOR_VIEWS> viewSets{};
-  bool sumsAreClear = false; // as far as recorded; a new buffer holds anything
+  bool sumsAreClear = false; // once all that was recorded has run; a new buffer holds anything
 
   // Logs its errors. On error the storage is to be destroyed.
   VkResult create(const VitrailContext_T& context, const StorageInfo& info);

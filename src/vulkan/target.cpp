@@ -122,7 +122,7 @@ VkResult createStats(VitrailTarget_T& target) {
 VkResult build(VitrailTarget_T& target, const VitrailTargetDesc& desc) {
   target.desc = desc;
   target.debugName = desc.debugName;
-  target.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
+  target.keepSums = keepsSums(desc);
   target.constants = constantsOf(desc);
   keepViews(target, desc.views);
   if (desc.memoryBudget != 0) {
@@ -140,7 +140,6 @@ VkResult build(VitrailTarget_T& target, const VitrailTargetDesc& desc) {
 
 StorageInfo storageInfo(const VitrailTarget_T& target, std::uint32_t nodeCapacity) {
   StorageInfo info;
-  info.extent = target.desc.extent;
   info.areaPixels = target.desc.areaPixels;
   info.nodeCapacity = nodeCapacity;
   info.format = target.desc.nodeFormat;
@@ -193,10 +192,9 @@ extern "C" VkResult vitrailTargetRequirements(VitrailContext context, const Vitr
   const VitrailTargetDesc full = vitrail::withDefaults(context, *desc);
   const VkResult result = vitrail::checkMemory(context, full);
   if (result != VK_SUCCESS) return result;
-  const bool sums = full.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
-  requirements->size =
-      vitrail::layoutStorage(full.areaPixels, full.nodeCapacity, full.nodeFormat, sums, context->limits.alignment)
-          .total;
+  requirements->size = vitrail::layoutStorage(full.areaPixels, full.nodeCapacity, full.nodeFormat,
+                                              vitrail::keepsSums(full), context->limits.alignment)
+                           .total;
   requirements->alignment = context->limits.alignment;
   requirements->usage = vitrail::storageUsage(*context);
   return VK_SUCCESS;
@@ -250,7 +248,6 @@ extern "C" VkResult vitrailResizeTarget(VitrailTarget target, const VitrailResiz
     wanted.nodeCapacity = std::min(wanted.nodeCapacity, vitrail::budgetCapacity(context, wanted, wanted.areaPixels));
   }
   vitrail::StorageInfo storage = vitrail::storageInfo(*target, wanted.nodeCapacity);
-  storage.extent = wanted.extent;
   storage.areaPixels = wanted.areaPixels;
   storage.views = wanted.views;
   vitrail::freeRetired(*target, info->frame);
@@ -280,7 +277,7 @@ extern "C" void vitrailCollectSpecialization(const VitrailTargetDesc* desc, Vitr
   constexpr std::uint32_t kFirstId = 1700; // VITRAIL_CONSTANT_ID of shaders/vitrail/collect.glsl
   specialization->data[0] = desc->nodeFormat;
   specialization->data[1] = desc->samples != 0 ? desc->samples : VK_SAMPLE_COUNT_1_BIT;
-  specialization->data[2] = desc->overflow == VITRAIL_OVERFLOW_APPROXIMATE ? 1 : 0;
+  specialization->data[2] = vitrail::keepsSums(*desc) ? 1 : 0;
   for (std::uint32_t i = 0; i < 3; ++i) {
     specialization->entries[i] = {kFirstId + i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)),
                                   sizeof(std::uint32_t)};

@@ -19,9 +19,11 @@ namespace vitrail {
 // a slot whose tag is right, before and after the counters are read, is whole.
 struct StatsSlot {
   layout::VitrailControl control;
-  std::uint64_t tag; // frame + 1, so that a slot never written names no frame
+  std::uint32_t nodeCapacity; // of the pool that the frame used
+  std::uint32_t sumsCleared;  // VitrailTarget_T::sumsCleared of the frame; read without the tag
+  std::uint64_t tag;          // frame + 1, so that a slot never written names no frame
 };
-static_assert(sizeof(StatsSlot) == 80);
+static_assert(sizeof(StatsSlot) == 88);
 
 // The pipelines of a target's resolve; null where its kind does not need one.
 struct ResolvePipelines {
@@ -52,7 +54,7 @@ struct Demand {
 
 struct VitrailTarget_T {
   VitrailContext context = nullptr;
-  // As given, with defaults filled in; the pointers in it are of no use any more.
+  // As given, with defaults filled in; of its pointers only those of views are of use: they point to the arrays below.
   VitrailTargetDesc desc{};
   std::string debugName;
   bool keepSums = false;
@@ -65,8 +67,9 @@ struct VitrailTarget_T {
   std::array<VkImageView, VITRAIL_MAX_COLOR_VIEWS> opaqueViews{};
   std::array<VkImageView, VITRAIL_MAX_COLOR_VIEWS> depthViews{};
   vitrail::Buffer stats; // StatsSlot[framesInFlight]
-  // The pool of the frame in each slot.
-  std::array<std::uint32_t, VITRAIL_MAX_FRAMES_IN_FLIGHT> slotCapacity{};
+  // The number of the clear that the sums need, from 1. Frames record it until one of them is seen to have run: one
+  // that was recorded may never be submitted. Frames that ran leave the sums clear.
+  std::uint32_t sumsCleared = 0;
   vitrail::Demand demand;
   std::uint64_t frame = 0; // the one being recorded
   VkRect2D area{};         // of that frame

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,10 @@ TEST_F(BoundsTest, RequestsBeyond32BitsAreCountedAndTakeNoNode) {
     EXPECT_EQ(result.stats.fragmentsMissing, result.stats.fragmentsRequested - desc.capacity);
     EXPECT_EQ(result.stats.exact, 0U);
     EXPECT_TRUE(host.guardsUntouched());
+    // However many more follow, the counter does not come round to nodes that are in use.
+    const std::vector<std::uint32_t> control = host.words(&StorageLayout::control);
+    EXPECT_EQ(control[offsetof(layout::VitrailControl, wraps) / sizeof(std::uint32_t)], 1U);
+    EXPECT_LT(control[offsetof(layout::VitrailControl, requested) / sizeof(std::uint32_t)], layout::VITRAIL_WRAP_AT);
   }
 }
 
@@ -161,6 +166,26 @@ TEST_F(BoundsTest, AFrameThatOverflowsIsBlendedApproximatelyAndAlwaysTheSame) {
       EXPECT_EQ(fits.stats.exact, 1U);
       EXPECT_LT(largestError(fits.pixels, expectedFrame(desc, few).pixels), kTolerance);
     }
+  }
+}
+
+// The memory of a fresh target holds anything. That its first frames were recorded says nothing about it.
+TEST_F(BoundsTest, AFrameThatIsNeverSubmittedLeavesNothingBehind) {
+  for (const Way& way : everyWay(gpu(), 1)) {
+    SCOPED_TRACE(way.name);
+    PointHostDesc desc;
+    desc.behind = {0.1F, 0.8F, 0.3F, 1.0F};
+    desc.guarded = true; // the memory holds guard words at first
+    apply(way, desc);
+    const std::vector<Point> points = randomLists(desc, {0, 1, 2, 3, 5, 12, 17, 40, 90}, 17);
+    desc.capacity = static_cast<std::uint32_t>(points.size() / 2);
+    PointHost host(gpu(), desc);
+    for (int frame = 0; frame < 3; ++frame) host.drop(points);
+    const PointResult result = host.draw(points);
+    EXPECT_GT(result.stats.fragmentsMissing, 0U);
+    EXPECT_LT(largestError(result.pixels, averagedPixels(desc, points)), kSumTolerance);
+    host.drop(points);
+    EXPECT_TRUE(host.draw(points).pixels == result.pixels);
   }
 }
 

@@ -151,6 +151,24 @@ TEST_F(LibraryTest, WithoutDualSourceBlendingColouredFiltersAreCounted) {
   for (unsigned c = 0; c < 3; ++c) EXPECT_NEAR(result.pixels[2][c], expected.pixels[2][c], 1e-6);
 }
 
+// Of two pixels with 30 fragments each has at least 10 of 40 nodes. Whichever compute kernel blends the frame counts
+// both, a fragment resolve neither.
+TEST_F(LibraryTest, DeepPixelsOfAFrameThatOverflowsAreCounted) {
+  for (const bool compute : {true, false}) {
+    PointHostDesc desc;
+    desc.resolve = compute ? VITRAIL_RESOLVE_COMPUTE : VITRAIL_RESOLVE_FRAGMENT;
+    desc.maxLayers = 4;
+    desc.capacity = 40;
+    const std::vector<Point> points = randomLists(desc, {30, 0, 30}, 12);
+    const VitrailStats stats = PointHost(gpu(), desc).draw(points).stats;
+    EXPECT_EQ(stats.fragmentsMissing, 20U);
+    EXPECT_EQ(stats.approximatePixels, compute ? 2U : 0U);
+    EXPECT_EQ(stats.coveredPixels, compute ? 2U : 0U);
+    EXPECT_GE(stats.layersMax, compute ? 20U : 0U);
+    EXPECT_LE(stats.layersMax, compute ? 30U : 0U);
+  }
+}
+
 TEST_F(LibraryTest, TheNearestFragmentIsOnTop) {
   PointHostDesc desc;
   desc.capacity = 2;
@@ -406,6 +424,15 @@ TEST_F(LibraryTest, AShaderOfAnotherTargetStoresNothing) {
   EXPECT_EQ(result.stats.fragmentsStored, 0U);
   EXPECT_EQ(result.stats.fragmentsMissing, 1U);
   EXPECT_EQ(result.pixels[0], desc.behind);
+  // One for a target that keeps sums does not write them where there are none.
+  desc.specializedFor.reset();
+  desc.specializedForOverflow = VITRAIL_OVERFLOW_APPROXIMATE;
+  desc.guarded = true;
+  const std::vector<Point> points = randomLists(desc, std::vector<std::uint32_t>(64, 1), 2);
+  PointHost host(gpu(), desc);
+  EXPECT_EQ(host.draw(points).stats.fragmentsMissing, points.size());
+  EXPECT_TRUE(host.guardsUntouched());
+  for (const std::uint32_t word : host.words(&StorageLayout::sums)) EXPECT_EQ(word, PointHost::kGuard);
 }
 
 TEST_F(LibraryTest, StatisticsBelongToTheirFrame) {

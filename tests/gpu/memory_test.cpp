@@ -60,6 +60,25 @@ TEST_F(MemoryTest, ThePoolGrowsTowardsItsBudgetUntilFramesAreExact) {
   }
 }
 
+// A host reads a frame's statistics when it records the one that takes over its slot, and that one has a larger pool.
+TEST_F(MemoryTest, StatisticsKnowThePoolOfTheirFrame) {
+  PointHostDesc desc = squareHost();
+  desc.memoryBudget = 2 * kMebibyte;
+  desc.capacity = 1000;
+  PointHost host(gpu(), desc);
+  const std::vector<Point> points = manyLists(desc, 20, 1);
+  const VitrailStats drawn = host.draw(points).stats; // frame 0 of slot 0
+  EXPECT_GT(drawn.fragmentsMissing, 0U);
+  EXPECT_EQ(host.draw(points).stats.exact, 1U);
+  host.drop(points); // frame 2 of slot 0, as far as the host has recorded
+  VitrailStats stats{};
+  ASSERT_EQ(host.target().readStats(0, stats), VK_SUCCESS);
+  EXPECT_EQ(stats.nodeCapacity, 1000U);
+  EXPECT_EQ(stats.fragmentsStored, 1000U);
+  EXPECT_EQ(stats.fragmentsMissing, drawn.fragmentsMissing);
+  EXPECT_EQ(stats.exact, 0U);
+}
+
 TEST_F(MemoryTest, AFrameBeyondTheBudgetStaysApproximateAndStill) {
   PointHostDesc desc = squareHost();
   desc.memoryBudget = kMebibyte / 2;

@@ -256,10 +256,11 @@ PointPipelinesInfo PointHost::pipelinesInfo(VitrailTargetDesc target) const {
   if (!desc_.specialized) return info;
   VitrailSpecialization specialization{};
   target.nodeFormat = desc_.specializedFor.value_or(target.nodeFormat);
+  target.overflow = desc_.specializedForOverflow.value_or(target.overflow);
   vitrailCollectSpecialization(&target, &specialization);
   info.specialized = true;
   info.firstConstant = specialization.entries[0].constantID;
-  info.constants = {specialization.data[0], specialization.data[1]};
+  info.constants = {specialization.data[0], specialization.data[1], specialization.data[2]};
   return info;
 }
 
@@ -577,6 +578,30 @@ PointResult PointHost::drawScattered(std::span<const Point> points) {
     recordPicture(commands, slot, perSample());
   });
   return read(slot, frame);
+}
+
+void PointHost::drop(std::span<const Point> points) {
+  const Vertices vertices = upload(points);
+  const std::uint64_t frame = frame_++;
+  check(target_.update(frame), "vitrailUpdateTarget");
+  VkCommandBuffer commands = submitter_.begin();
+  recordOpaque(commands, slotOf(frame));
+  recordFrame(commands, frame, slotOf(frame), static_cast<std::uint32_t>(frame % kFramesTogether), wholeArea(),
+              vertices);
+}
+
+std::vector<std::uint32_t> PointHost::words(StoragePart StorageLayout::*part) {
+  const StoragePart from = storage_.*part;
+  const tool::GpuBuffer copy(gpu_, from.size, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryKind::Readback, "points: words");
+  submitter_.run("words", [&](VkCommandBuffer commands) {
+    const VkBufferCopy region{guardBytes_ + from.offset, 0, from.size};
+    vkCmdCopyBuffer(commands, memory_.get(), copy.get(), 1, &region);
+    // Writer: the copy. Reader: the host.
+    tool::cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+                           {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
+  });
+  const auto* first = static_cast<const std::uint32_t*>(copy.mapped());
+  return {first, first + from.size / sizeof(std::uint32_t)};
 }
 
 bool PointHost::guardsUntouched() {

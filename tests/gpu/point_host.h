@@ -53,8 +53,9 @@ struct PointHostDesc {
   bool dualSourceBlending = true; // where the device has it
   bool addresses = false;         // the pool is reached by its address
   bool stencilMark = false;
-  bool specialized = false; // the collecting shader is, for this target or, if given, for one of another format
+  bool specialized = false; // the collecting shader is, for this target or, if given, for one that differs in these
   std::optional<VitrailNodeFormat> specializedFor;
+  std::optional<VitrailOverflow> specializedForOverflow;
   bool guarded = false; // the memory is this host's, between guard words
   // The fragments that are taken to have asked for a node before the first point. `guarded` only.
   std::uint32_t requestedBefore = 0;
@@ -105,8 +106,14 @@ class PointHost {
   // and VITRAIL_OVERFLOW_SKIP only.
   PointResult drawScattered(std::span<const Point> points);
 
+  // Records a frame and never submits it, as hosts do whose swapchain is out of date.
+  void drop(std::span<const Point> points);
+
   // Whether every guard word is as it was.
   [[nodiscard]] bool guardsUntouched();
+
+  // A part of the library's memory, as the last frame left it. `guarded` only.
+  [[nodiscard]] std::vector<std::uint32_t> words(StoragePart StorageLayout::*part);
 
   [[nodiscard]] const Target& target() const { return target_; }
   [[nodiscard]] const Context& context() const { return *context_; }

@@ -1,4 +1,5 @@
-// Instance 0 is a wide floor; the nine after it are square panes, three across each axis, each cutting through six others.
+// Instance 0 is a wide floor; the nine after it are square panes, three across each axis, each cutting through six
+// others.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "scene.glsl"
