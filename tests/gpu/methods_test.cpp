@@ -248,7 +248,7 @@ TestScene shuffledPanes() {
 TestScene maskedPanes(const std::string& name, const glm::vec3& step) {
   TestScene result = straightOn(name, {});
   Scene& scene = result.scene;
-  scene.images.push_back({4, 1, {255, 90, 30, 0, 200, 90, 30, 255, 90, 200, 30, 80, 30, 90, 255, 255}});
+  scene.images.push_back({4, 1, {255, 90, 30, 0, 200, 90, 30, 255, 90, 200, 30, 80, 30, 90, 255, 0}});
   for (const int place : {1, 2, 0}) {
     Material material = unlitMaterial(glm::vec4(1.0F), AlphaMode::Mask);
     material.alphaCutoff = 0.45F;
@@ -264,7 +264,8 @@ TestScene maskedPanes(const std::string& name, const glm::vec3& step) {
     addRectangle(scene, {glm::vec2(low), glm::vec2(low) + glm::vec2(0.83F, 1.31F), low.z}, material);
     if (place == 1) continue;
     for (Vertex& vertex : scene.meshes.back().vertices) {
-      vertex.color = glm::vec4(0.3F, 0.9F, 0.2F + 0.3F * static_cast<float>(place), vertex.texCoord0.x);
+      vertex.color = glm::vec4(0.3F, 0.9F, 0.2F, vertex.texCoord0.x);
+      if (place == 0) vertex.color = glm::vec4(0.8F, 0.9F, 0.6F, 1.0F - vertex.texCoord0.x);
     }
   }
   result.opacity = 0.6F;
@@ -387,11 +388,12 @@ TEST_P(NearMethods, TwoPanesAreAsNearAsSaid) {
   EXPECT_LE(largestDifference(draw(scene, options()).picture, exactPicture(scene)), GetParam().twoPanes);
 }
 
+// Masks leave two panes of a pixel at most; where they leave the nearest alone, two were cut away that are no layers.
 TEST_P(PanesMethods, ParallelPanesAreExact) {
   expectRight(builtin("planes"));
   expectRight(occludedStack());
   expectRight(tintedGlass(3));
-  expectRight(maskedPanes("masked panes behind each other", {0.35F, 0.1F, 1.0F}));
+  expectRight(maskedPanes("masked panes behind each other", {0.15F, 0.1F, 1.0F}));
 }
 
 TEST_P(PartsMethods, PanesOfSeveralObjectsAreExact) { expectRight(shuffledPanes()); }

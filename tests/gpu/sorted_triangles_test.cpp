@@ -24,19 +24,21 @@ Scene interleavedTriangles() {
     const std::uint32_t cell = i / 2 % (kColumns * kRows);
     const glm::vec2 low(-1.2F + 0.04F * static_cast<float>(cell % kColumns),
                         -0.8F + 0.04F * static_cast<float>(cell / kColumns));
+    const auto hue = static_cast<float>(i / 400 % 5); // so that one more or less shows
     const float z = -6.0F + 12.0F * static_cast<float>(i) / static_cast<float>(kTriangles);
     const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const glm::vec2 corner : {glm::vec2(0.0F, 0.0F), glm::vec2(0.1F, 0.0F), glm::vec2(0.0F, 0.1F)}) {
       Vertex vertex;
       vertex.position = glm::vec3(low + corner, z);
+      vertex.color = glm::vec4(0.25F * hue, 1.0F - 0.25F * hue, 0.5F, 1.0F);
       mesh.vertices.push_back(vertex);
     }
     mesh.indices.insert(mesh.indices.end(), {base, base + 1, base + 2});
   }
   for (std::uint32_t i = 0; i < 2; ++i) {
     scene.meshes.push_back(meshes.at(i));
-    scene.materials.push_back(reference::unlitMaterial(i == 0 ? glm::vec4(0.9F, 0.2F, 0.1F, 0.3F) //
-                                                              : glm::vec4(0.1F, 0.4F, 0.9F, 0.2F)));
+    scene.materials.push_back(reference::unlitMaterial(i == 0 ? glm::vec4(0.9F, 0.2F, 0.1F, 0.6F) //
+                                                              : glm::vec4(0.1F, 0.4F, 0.9F, 0.5F)));
     scene.draws.push_back({.mesh = i, .material = i});
   }
   return scene;
