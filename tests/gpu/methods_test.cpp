@@ -142,8 +142,10 @@ TestScene straightOn(const std::string& name, Scene scene) {
   return result;
 }
 
-TestScene builtin(const std::string& name) {
-  TestScene result{name, makeBuiltinScene(name, {}), {}};
+TestScene builtin(const std::string& name, std::optional<std::uint32_t> count = {}) {
+  BuiltinOptions options;
+  options.count = count;
+  TestScene result{name, makeBuiltinScene(name, options), {}};
   result.picture = usualOptions(result.scene, 112, 63);
   return result;
 }
@@ -411,7 +413,7 @@ TEST_F(GpuTest, ShuffledPanesHaveNoOrderOfObjects) {
 
 TEST_P(ExactMethods, EverySceneIsExact) {
   expectRight(builtin("interlocked"));
-  expectRight(builtin("spheres"));
+  expectRight(builtin("spheres", 16)); // fewer than usual: peeling draws all of them for each layer
 }
 
 // Else the rows that promise less than they could would go unseen, and so would the README's claim.
