@@ -1,6 +1,7 @@
 // The fragments of each pixel that the method layer-count finds, against the reference's and against what fragment
 // lists store.
 #include <numeric>
+#include <stdexcept>
 
 #include "../../tool/methods/layer_count.h"
 #include "../../tool/scene/builtin.h"
@@ -15,6 +16,9 @@ using reference::addRectangle;
 using reference::straightView;
 using reference::unlitMaterial;
 
+constexpr std::uint32_t kWidth = 66;
+constexpr std::uint32_t kHeight = 44;
+
 FrameReport countLayers(Gpu& gpu, const Scene& scene, const RenderOptions& options) {
   MethodOptions method;
   method.name = kLayerCount;
@@ -28,7 +32,7 @@ class LayerCountTest : public GpuTest {
     BuiltinOptions builtin;
     builtin.count = count;
     const Scene scene = makeBuiltinScene(name, builtin);
-    const RenderOptions options = usualOptions(scene, 120, 80);
+    const RenderOptions options = usualOptions(scene, kWidth, kHeight);
     const FrameReport report = countLayers(gpu(), scene, options);
     reference::ReferenceOptions same;
     same.width = options.width;
@@ -39,8 +43,8 @@ class LayerCountTest : public GpuTest {
     const reference::Reference expected = renderReference(scene, same);
     ASSERT_EQ(report.pixelLayers.size(), expected.layerRanges.size());
     for (std::size_t i = 0; i < report.pixelLayers.size(); ++i) {
-      ASSERT_GE(report.pixelLayers[i], expected.layerRanges[i].least) << i % 120 << ", " << i / 120;
-      ASSERT_LE(report.pixelLayers[i], expected.layerRanges[i].most) << i % 120 << ", " << i / 120;
+      ASSERT_GE(report.pixelLayers[i], expected.layerRanges[i].least) << i % kWidth << ", " << i / kWidth;
+      ASSERT_LE(report.pixelLayers[i], expected.layerRanges[i].most) << i % kWidth << ", " << i / kWidth;
     }
     MethodOptions lists;
     lists.nodes = VITRAIL_NODE_HDR;
@@ -89,6 +93,12 @@ TEST_F(LayerCountTest, PanesByHand) {
     ASSERT_EQ(sized.pixelLayers.size(), std::size_t{side} * side);
     EXPECT_EQ(sized.fragmentsRequested, std::uint64_t{side} * side);
   }
+}
+
+// No user chooses layer-count, which is in no table of methods.
+TEST(LayerCountOptions, WhatIsNotAskedForIsNotRefused) {
+  EXPECT_NO_THROW(checkPictureOptions(kLayerCount, false));
+  EXPECT_THROW(traitsOf(kLayerCount), std::logic_error);
 }
 
 } // namespace

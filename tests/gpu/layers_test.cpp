@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "../../tool/methods/layer_memory.h"
 #include "../../tool/scene/builtin.h"
 #include "../reference/test_scenes.h"
 #include "gpu_fixture.h"
@@ -82,15 +83,36 @@ TEST_F(LayersTest, LayersAreCounted) {
   }
 }
 
+// 858,993,460 layers of five words, or 2^31 and more of two, have few words in 32 bits.
 TEST_F(LayersTest, TooManyLayersAreRefused) {
   const Scene scene = makeBuiltinScene("planes", {});
-  try {
-    draw(scene, usualOptions(scene, 64, 64), "loop", 1U << 20U);
-    ADD_FAILURE() << "32 GiB were found";
-  } catch (const GpuError& error) {
-    const std::string reason = error.what();
-    EXPECT_NE(reason.find("--layers"), std::string::npos) << reason;
-    EXPECT_EQ(reason.find('\n'), std::string::npos) << reason;
+  std::vector<std::string> names = methods();
+  if (gpu().features().fragmentInterlock) names.emplace_back("multi-layer");
+  for (const std::string& name : names) {
+    for (const std::uint32_t layers : {1U << 20U, 858'993'460U, 1U << 31U, UINT32_MAX}) {
+      SCOPED_TRACE(name + ", " + std::to_string(layers) + " layers");
+      try {
+        draw(scene, usualOptions(scene, 64, 64), name, layers);
+        ADD_FAILURE() << "32 GiB and more were found";
+      } catch (const GpuError& error) {
+        const std::string reason = error.what();
+        EXPECT_NE(reason.find(name), std::string::npos) << reason;
+        EXPECT_NE(reason.find("--layers"), std::string::npos) << reason;
+        EXPECT_EQ(reason.find('\n'), std::string::npos) << reason;
+      }
+    }
+  }
+}
+
+// The memory of a picture may have more bytes than 64 bits count: these have 2^64, and 2^64 + 2^48.
+TEST_F(LayersTest, MoreMemoryThanCanBeCountedIsRefused) {
+  for (const std::uint32_t height : {1U << 16U, (1U << 16U) + 1U}) {
+    try {
+      makeLayerMemory(gpu(), {1U << 16U, height}, {"loop", 1U << 29U, std::uint64_t{1} << 30U});
+      ADD_FAILURE() << "more than 2^64 bytes were found";
+    } catch (const GpuError& error) {
+      EXPECT_NE(std::string(error.what()).find("17592"), std::string::npos) << error.what(); // 2^44 MiB
+    }
   }
 }
 

@@ -163,6 +163,23 @@ TEST_F(GpuTest, StencilRoutedRefusesMoreThanItsStencilCounts) {
   }
 }
 
+// Two sheets of glass at one depth that reflect and hide the same and differ in what they tint alone.
+TEST_F(GpuTest, StencilRoutedOrdersTintsAtOneDepth) {
+  Scene scene = stackOf({{{0.2F, 0.6F, 0.4F, 1.0F}, 0.0F}, {{0.9F, 0.3F, 0.5F, 1.0F}, 0.0F}});
+  for (Material& glass : scene.materials) {
+    glass.alphaMode = AlphaMode::Opaque;
+    glass.unlit = false;
+    glass.metallic = 0.0F;
+    glass.roughness = 0.3F;
+    glass.emissive = glm::vec3(0.3F);
+    glass.transmission = 1.0F;
+  }
+  const auto draw = [&](DrawOrder order) {
+    return renderOnce(gpu(), scene, straightOn(24, 16), {}, order, named("stencil-routed")).picture;
+  };
+  EXPECT_TRUE(draw(DrawOrder::Forward).rgba == draw(DrawOrder::Reversed).rgba);
+}
+
 // Surfaces that cross, in several passes. Where samples are drawn by themselves a few pixels on edges may differ.
 TEST_F(GpuTest, StencilRoutedIsRightButForEdges) {
   const Scene scene = makeBuiltinScene("interlocked", {});

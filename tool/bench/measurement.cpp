@@ -44,7 +44,7 @@ std::optional<double> fragmentsOf(const Measurement& measured, const std::vector
 }
 
 // Methods whose fragments lie in nodes of lists: traffic.h tells of no others.
-bool hasLists(const Measurement& measured) { return traitsOf(measured.options.name).nodeCapacity; }
+bool hasLists(const Measurement& measured) { return traitsOf(measured.options.name).lists; }
 
 void addFloor(Measurement& measured, double bytesPerSecond) {
   if (!hasLists(measured) || !measured.report.counted || bytesPerSecond <= 0.0) return;

@@ -83,7 +83,7 @@ void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
 void checkMethod(const RenderArguments& arguments) {
   try {
     checkMethodOptions(arguments.method);
-    checkPictureOptions(arguments.method.name, arguments.memoryBudget.has_value(), false);
+    checkPictureOptions(arguments.method.name, arguments.memoryBudget.has_value());
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }

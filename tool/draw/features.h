@@ -1,6 +1,7 @@
 // What devices differ in: the optional features that the tool uses, and the sample counts.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <volk.h>
@@ -27,6 +28,9 @@ struct GpuFeatures {
 };
 
 GpuFeatures supportedFeatures(VkPhysicalDevice device);
+
+// A sample count as a flag, whose value is the count.
+inline VkSampleCountFlagBits flagOf(std::uint32_t samples) { return static_cast<VkSampleCountFlagBits>(samples); }
 
 // Sample counts in words: "1 and 4", "1, 2, 4 and 8".
 std::string sampleCountsText(VkSampleCountFlags counts);

@@ -1,6 +1,7 @@
 // One frame of a picture while it is recorded: what a transparency method draws with.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -28,8 +29,10 @@ class Frame {
   void drawSurfaces(const SurfacePipelines& pipelines, VkDescriptorSet set, std::span<const SurfaceRun> runs,
                     VkBuffer indices = VK_NULL_HANDLE);
 
+  // The most passes that one submission has, the renderer's own among them; submitAndWait() begins another.
+  static constexpr std::uint32_t kMostPasses = 64;
   // The pass `name` ends here and another begins: how the frame's time is reported. Passes of one name are summed.
-  // Outside a rendering scope.
+  // Outside a rendering scope. Throws std::logic_error where the submission has kMostPasses.
   void endPass(const std::string& name);
   // The host worked so long on the frame: reported as a pass of that name.
   void addHostPass(const std::string& name, double milliseconds);

@@ -136,7 +136,7 @@ VkPipelineSampleLocationsStateCreateInfoEXT samplesAt(const std::vector<VkSample
       VK_STRUCTURE_TYPE_PIPELINE_SAMPLE_LOCATIONS_STATE_CREATE_INFO_EXT);
   state.sampleLocationsEnable = VK_TRUE;
   state.sampleLocationsInfo = vkStruct<VkSampleLocationsInfoEXT>(VK_STRUCTURE_TYPE_SAMPLE_LOCATIONS_INFO_EXT);
-  state.sampleLocationsInfo.sampleLocationsPerPixel = static_cast<VkSampleCountFlagBits>(places.size());
+  state.sampleLocationsInfo.sampleLocationsPerPixel = flagOf(static_cast<std::uint32_t>(places.size()));
   state.sampleLocationsInfo.sampleLocationGridSize = {1, 1};
   state.sampleLocationsInfo.sampleLocationsCount = static_cast<std::uint32_t>(places.size());
   state.sampleLocationsInfo.pSampleLocations = places.data();

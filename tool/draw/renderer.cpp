@@ -20,8 +20,6 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr std::uint32_t kMostPasses = 64; // in one submission
-
 // The first frame counts, the second one fits: more are never needed unless a device counts wrong.
 constexpr int kMaxAttempts = 3;
 
@@ -40,7 +38,7 @@ VkSampleCountFlagBits sampleFlag(const Gpu& gpu, std::uint32_t samples) {
     throw GpuError(fmt::format("{} draws {} samples a pixel, not {}: choose one of these with --samples",
                                gpu.properties().deviceName, sampleCountsText(offered), samples));
   }
-  return static_cast<VkSampleCountFlagBits>(samples); // a flag's value is its count
+  return flagOf(samples);
 }
 
 GraphicsPipelineInfo skyPipeline(VkPipelineLayout layout, const PictureImagesInfo& images) {
@@ -105,7 +103,7 @@ Renderer::Impl::Impl(Gpu& device, const Scene& source, std::optional<float> opac
                       }),
       sky(makeGraphicsPipeline(gpu, skyPipeline(opaquePipelines.layout(), imagesInfo))),
       encode(gpu),
-      timers(gpu, kMostPasses) {}
+      timers(gpu, Frame::kMostPasses) {}
 
 void Renderer::Impl::makeImages(VkExtent2D extent) {
   if (extent.width == images.extent().width && extent.height == images.extent().height) return;
@@ -117,7 +115,7 @@ void Renderer::Impl::makeImages(VkExtent2D extent) {
 }
 
 void Renderer::Impl::prepare(const RenderOptions& picture) {
-  checkPictureOptions(options.name, picture.memoryBudget.has_value(), picture.nodeCapacity.has_value());
+  checkPictureOptions(options.name, picture.memoryBudget.has_value());
   makeImages({picture.width, picture.height});
   surfaces.setView(makeFrameData(picture.view, picture.width, picture.height, surfaces.scene().origin()));
   MethodTarget target;
@@ -126,7 +124,6 @@ void Renderer::Impl::prepare(const RenderOptions& picture) {
   target.opaque = images.multisampled().view();
   target.depth = images.sampledDepth();
   target.stencil = images.sampledStencil();
-  target.nodeCapacity = picture.nodeCapacity;
   target.memoryBudget = picture.memoryBudget;
   target.surfaces = !surfaces.scene().transparentDraws().empty();
   method->setTarget(target);
@@ -166,7 +163,7 @@ bool Renderer::Impl::draw(const Background& background, bool encoded) {
   return method->finish();
 }
 
-// Draws until every fragment has a node, or once where the pool is fixed.
+// Draws until the method has room for every fragment.
 FrameReport Renderer::Impl::drawUntilComplete(const RenderOptions& picture, bool encoded) {
   prepare(picture);
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {

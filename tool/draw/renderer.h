@@ -24,9 +24,6 @@ struct RenderOptions {
   std::uint32_t height = 720;
   View view;
   Background background;
-  // Fixes the node pool and renders once, whether or not it overflows. Default: the pool is made as large as the frame
-  // needs, and the frame is rendered again where the first guess was too small.
-  std::optional<std::uint32_t> nodeCapacity;
   // Bytes that the method may keep for fragments, at least 64 KiB: a frame that needs more is drawn in tiles. The
   // picture is the same. Default: what the device can give.
   std::optional<std::uint64_t> memoryBudget;
@@ -74,7 +71,8 @@ struct RenderResult {
 class Renderer {
  public:
   // With `opacity`, every material is blended with that factor (X-ray view). The method options have passed
-  // checkMethodOptions(). Throws GpuError (device.h), also where the device does not offer them.
+  // checkMethodOptions(), or are kLayerCount's (methods/layer_count.h). Throws GpuError (device.h), also where the
+  // device does not offer them.
   Renderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity = {}, DrawOrder order = DrawOrder::Forward,
            const MethodOptions& method = {});
   ~Renderer();

@@ -1,5 +1,7 @@
 #include "used_image.h"
 
+#include "accesses.h"
+
 namespace vitrail::tool {
 
 namespace {
@@ -30,6 +32,14 @@ void UsedImage::cmdUse(VkCommandBuffer commands, VkImageLayout layout, const Acc
   cmdImageBarrier(commands, image_.get(), image_.range(), layout_, access_, layout, access);
   layout_ = layout;
   access_ = access;
+}
+
+void UsedImage::cmdClear(VkCommandBuffer commands, const VkClearColorValue& value) {
+  discard();
+  // Who used it last -> it is cleared.
+  cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kClear);
+  const VkImageSubresourceRange all = image_.range();
+  vkCmdClearColorImage(commands, image_.get(), VK_IMAGE_LAYOUT_GENERAL, &value, 1, &all);
 }
 
 void UsedImage::forget() {

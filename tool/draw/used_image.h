@@ -21,6 +21,9 @@ class UsedImage {
 
   // The image is used so from here on, in that layout: after what it was used for before.
   void cmdUse(VkCommandBuffer commands, VkImageLayout layout, const Access& access);
+  // All of it is `value`, whatever it held and whoever used it; its layout is VK_IMAGE_LAYOUT_GENERAL. For images with
+  // transfer destination usage. Outside a rendering scope.
+  void cmdClear(VkCommandBuffer commands, const VkClearColorValue& value);
   // What it holds is not needed any more; the next use waits for the last one.
   void discard() { layout_ = VK_IMAGE_LAYOUT_UNDEFINED; }
   // What it holds is not needed any more, and nobody uses it.

@@ -18,13 +18,8 @@ namespace vitrail::tool {
 namespace {
 
 constexpr std::uint64_t kFragmentBytes = 8;
-constexpr std::uint64_t kFragmentsPerPixel = 4; // the first guess
 constexpr std::uint32_t kScanned = 2 * shaders::A_BUFFER_SCAN_GROUP;
 constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
-
-std::uint32_t groups(std::uint32_t pixels) {
-  return (pixels + shaders::A_BUFFER_GROUP_SIDE - 1) / shaders::A_BUFFER_GROUP_SIDE;
-}
 
 std::uint32_t scanGroups(std::uint32_t count) { return (count + kScanned - 1) / kScanned; }
 
@@ -68,30 +63,18 @@ ABuffer::ABuffer(const MethodHost& host)
                                      "a-buffer scan")),
       scan_(makeComputePipeline(gpu_, scanLayout_.get(), shaders::a_buffer_scan_comp, "a-buffer scan")),
       add_(makeComputePipeline(gpu_, scanLayout_.get(), shaders::a_buffer_add_comp, "a-buffer add")),
-      resolveLayout_(makePipelineLayout(
-          gpu_, {set_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(shaders::ABufferResolve)}, "a-buffer resolve")),
-      resolve_(makeComputePipeline(gpu_, resolveLayout_.get(), shaders::a_buffer_resolve_comp, "a-buffer resolve")),
-      control_(gpu_, sizeof(shaders::ABufferControl), "a-buffer control") {
+      resolve_(gpu_, set_,
+               {.shader = shaders::a_buffer_resolve_comp,
+                .name = "a-buffer resolve",
+                .constantBytes = sizeof(shaders::ABufferResolve)}),
+      control_(gpu_, sizeof(shaders::ABufferControl), "a-buffer control"),
+      fragments_(gpu_, set_, {.method = "a-buffer", .fragmentBytes = kFragmentBytes, .binding = 2}) {
   set_.writeBuffer(3, control_.buffer().get(), control_.buffer().size());
-}
-
-// What one shader can reach, and one allocation can hold.
-std::uint64_t ABuffer::mostFragments() const {
-  const std::uint64_t reach = gpu_.properties().limits.maxStorageBufferRange;
-  return std::min(reach, gpu_.maxAllocation()) / kFragmentBytes;
-}
-
-void ABuffer::makeFragments(std::uint64_t count) {
-  fragments_ = GpuBuffer();                      // first: the old one and the new one need not fit together
-  capacity_ = std::max<std::uint64_t>(count, 1); // there are no empty buffers
-  fragments_ = GpuBuffer(gpu_, capacity_ * kFragmentBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryKind::Device,
-                         "a-buffer fragments");
-  set_.writeBuffer(2, fragments_.get(), fragments_.size());
 }
 
 void ABuffer::setTarget(const MethodTarget& target) {
   set_.writeImage(4, target.color, VK_IMAGE_LAYOUT_GENERAL);
-  if (offsets_.get() != VK_NULL_HANDLE) return; // released where the size changes
+  if (offsets_.get() != VK_NULL_HANDLE && fragments_.made()) return; // released where the size changes
   extent_ = target.extent;
   const std::uint64_t pixels = std::uint64_t{extent_.width} * extent_.height;
   const std::uint64_t most = gpu_.properties().limits.maxStorageBufferRange / sizeof(std::uint32_t);
@@ -107,11 +90,12 @@ void ABuffer::setTarget(const MethodTarget& target) {
   filled_ = GpuBuffer(gpu_, pixels * sizeof(std::uint32_t), kUsage, MemoryKind::Device, "a-buffer filled");
   set_.writeBuffer(0, offsets_.get(), offsets_.size());
   set_.writeBuffer(1, filled_.get(), filled_.size());
-  makeFragments(target.surfaces ? std::min(kFragmentsPerPixel * pixels, mostFragments()) : 0);
+  fragments_.guess(pixels, target.surfaces);
 }
 
 void ABuffer::releaseTarget() {
-  for (GpuBuffer* buffer : {&offsets_, &filled_, &fragments_}) *buffer = GpuBuffer();
+  for (GpuBuffer* buffer : {&offsets_, &filled_}) *buffer = GpuBuffer();
+  fragments_.release();
 }
 
 void ABuffer::draw(Frame& frame) {
@@ -130,7 +114,7 @@ void ABuffer::draw(Frame& frame) {
 void ABuffer::clear(Frame& frame) {
   VkCommandBuffer commands = frame.commands();
   // The last frame's resolve read counts -> they are cleared.
-  cmdMemoryBarrier(commands, kComputeReadWrite, kClear);
+  cmdMemoryBarrier(commands, {kComputeRead.stages, VK_ACCESS_2_NONE}, kClear);
   vkCmdFillBuffer(commands, offsets_.get(), 0, VK_WHOLE_SIZE, 0);
   vkCmdFillBuffer(commands, filled_.get(), 0, VK_WHOLE_SIZE, 0);
   // The clears -> the geometry passes count.
@@ -173,7 +157,7 @@ void ABuffer::sumUp(Frame& frame) {
     cmdMemoryBarrier(commands, kComputeWrite, kComputeReadWrite); // so here
   }
   // The sums -> the second geometry pass reads them.
-  cmdMemoryBarrier(commands, kComputeWrite, kFragmentReadWrite);
+  cmdMemoryBarrier(commands, kComputeWrite, kFragmentRead);
 }
 
 void ABuffer::sortAndBlend(Frame& frame) {
@@ -181,27 +165,12 @@ void ABuffer::sortAndBlend(Frame& frame) {
   // The second geometry pass wrote fragments -> the resolve reads them.
   cmdMemoryBarrier(commands, kFragmentWrite, kComputeReadWrite);
   frame.images().cmdToComputeResolve(commands);
-  const VkDescriptorSet set = set_.set();
   const shaders::ABufferResolve constants{extent_.width, extent_.height, total_};
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, resolve_.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, resolveLayout_.get(), 0, 1, &set, 0, nullptr);
-  vkCmdPushConstants(commands, resolveLayout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(constants), &constants);
-  vkCmdDispatch(commands, groups(extent_.width), groups(extent_.height), 1);
+  resolve_.cmdRun(commands, extent_, &constants);
   control_.cmdRead(commands, kComputeWrite);
 }
 
-bool ABuffer::finish() {
-  const std::uint64_t wanted = control_.read<shaders::ABufferControl>().total;
-  if (wanted <= capacity_) return true;
-  if (wanted > mostFragments()) {
-    throw GpuError(
-        fmt::format("the method a-buffer holds all {} fragments of the picture at once, and has room for "
-                    "{}: use linked-list, or a smaller --size",
-                    wanted, mostFragments()));
-  }
-  makeFragments(wanted);
-  return false;
-}
+bool ABuffer::finish() { return fragments_.fits(control_.read<shaders::ABufferControl>().total); }
 
 MethodStats ABuffer::stats() const {
   const auto control = control_.read<shaders::ABufferControl>();
@@ -216,7 +185,7 @@ MethodStats ABuffer::stats() const {
   stats.fragmentsRequested = stats.fragmentsStored;
   stats.exact = stats.cutPixels == 0;
   if (covered > 0) stats.layersMean = static_cast<double>(stats.fragmentsStored) / static_cast<double>(covered);
-  stats.nodesBytes = capacity_ * kFragmentBytes;
+  stats.nodesBytes = fragments_.bytes();
   stats.headsBytes = offsets_.size() + filled_.size();
   stats.totalBytes = stats.nodesBytes + stats.headsBytes + control_.bytes();
   return stats;

@@ -1,9 +1,9 @@
 // An A-buffer as linear arrays: Carpenter, "The A-buffer, an antialiased hidden surface method" (SIGGRAPH 1984), whose
 // per-pixel lists are here arrays of the right length, as in Lipowski, "Multi-layered framebuffer condensation: the
-// l-buffer concept" (ICCVG 2010), and Vasilakos and
-// Fudos, "S-buffer: Sparsity-aware multi-fragment rendering" (Eurographics 2012). A first geometry pass counts each
-// pixel's fragments, a prefix sum over the image gives each pixel the start of its array, a second geometry pass fills
-// the arrays, and a resolve sorts and blends them. Any number of fragments in a pixel.
+// l-buffer concept" (ICCVG 2010), and Vasilakos and Fudos, "S-buffer: Sparsity-aware multi-fragment rendering"
+// (Eurographics 2012). A first geometry pass counts each pixel's fragments, a prefix sum over the image gives each
+// pixel the start of its array, a second geometry pass fills the arrays, and a resolve sorts and blends them. Any
+// number of fragments in a pixel.
 //
 // Cost: two draws of the surfaces, the first of which shades masked surfaces only, with an atomic operation a fragment
 // in each; the prefix sum reads and writes each pixel's count about twice; the resolve of n fragments reads them
@@ -18,7 +18,9 @@
 
 #include "../draw/counters.h"
 #include "../draw/descriptors.h"
+#include "../draw/pixel_pass.h"
 #include "../draw/shaders/a_buffer_shared.h"
+#include "fragment_pool.h"
 #include "method.h"
 
 namespace vitrail::tool {
@@ -38,8 +40,6 @@ class ABuffer final : public Method {
   MethodStats stats() const override;
 
  private:
-  std::uint64_t mostFragments() const;
-  void makeFragments(std::uint64_t count);
   void clear(Frame& frame);
   void drawGeometry(Frame& frame, const SurfacePipelines& pipelines);
   void sumUp(Frame& frame);
@@ -53,15 +53,13 @@ class ABuffer final : public Method {
   Unique<VkPipelineLayout> scanLayout_;
   Unique<VkPipeline> scan_;
   Unique<VkPipeline> add_;
-  Unique<VkPipelineLayout> resolveLayout_;
-  Unique<VkPipeline> resolve_;
+  PixelPass resolve_;
   Counters control_; // shaders::ABufferControl
+  FragmentPool fragments_;
   VkExtent2D extent_{};
   GpuBuffer offsets_; // counts at first; the sums of work groups behind them
   GpuBuffer filled_;
-  GpuBuffer fragments_;
   std::uint32_t total_ = 0; // where in offsets_ the sum of all counts is
-  std::uint64_t capacity_ = 0;
 };
 
 } // namespace vitrail::tool

@@ -11,11 +11,8 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr std::uint32_t kGroupSide = 8;
 constexpr std::uint32_t kOpaque = 1; // bindings of composite.glsl
 constexpr std::uint32_t kFirstPlane = 2;
-
-std::uint32_t groups(std::uint32_t pixels) { return (pixels + kGroupSide - 1) / kGroupSide; }
 
 SingleSet makeSet(Gpu& gpu, const CompositeInfo& info) {
   std::vector<std::pair<VkDescriptorType, VkShaderStageFlags>> bindings{
@@ -36,7 +33,7 @@ GpuImageInfo planeInfo(VkExtent2D extent, VkFormat format, std::uint32_t samples
   GpuImageInfo info;
   info.extent = extent;
   info.format = format;
-  info.samples = static_cast<VkSampleCountFlagBits>(samples); // a flag's value is its count
+  info.samples = flagOf(samples);
   info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   return info;
 }
@@ -44,9 +41,10 @@ GpuImageInfo planeInfo(VkExtent2D extent, VkFormat format, std::uint32_t samples
 Composite::Composite(Gpu& gpu, const CompositeInfo& info)
     : severalSamples_(info.samples > 1),
       set_(makeSet(gpu, info)),
-      layout_(makePipelineLayout(gpu, {set_.layout()}, {}, info.name)),
-      pipeline_(makeComputePipeline(gpu, layout_.get(), severalSamples_ ? info.several : info.one, info.name,
-                                    {{0, info.samples}, {1, info.filters ? 1 : 0}})) {}
+      pass_(gpu, set_,
+            {.shader = severalSamples_ ? info.several : info.one,
+             .name = info.name,
+             .constants = {{0, info.samples}, {1, info.filters ? 1 : 0}}}) {}
 
 void Composite::setTarget(const MethodTarget& target) {
   set_.writeImage(0, target.color, VK_IMAGE_LAYOUT_GENERAL);
@@ -62,11 +60,7 @@ void Composite::cmdComposite(Frame& frame, std::span<UsedImage* const> planes) c
   // The surfaces' passes blended into the planes -> the composite samples them.
   for (UsedImage* plane : planes) plane->cmdUse(commands, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kComputeSample);
   frame.images().cmdToComputeResolve(commands);
-  const VkDescriptorSet set = set_.set();
-  const VkExtent2D extent = frame.images().extent();
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
-  vkCmdDispatch(commands, groups(extent.width), groups(extent.height), 1);
+  pass_.cmdRun(commands, frame.images().extent());
 }
 
 } // namespace vitrail::tool

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "../draw/descriptors.h"
+#include "../draw/pixel_pass.h"
 #include "../draw/used_image.h"
 #include "method.h"
 
@@ -43,8 +44,7 @@ class Composite {
  private:
   bool severalSamples_;
   SingleSet set_;
-  Unique<VkPipelineLayout> layout_;
-  Unique<VkPipeline> pipeline_;
+  PixelPass pass_;
 };
 
 } // namespace vitrail::tool

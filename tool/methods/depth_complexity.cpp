@@ -111,11 +111,7 @@ void DepthComplexity::countInStencil(Frame& frame) {
 void DepthComplexity::countInImage(Frame& frame) {
   VkCommandBuffer commands = frame.commands();
   // Who used the counts last -> they are cleared.
-  counts_.discard();
-  counts_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kClear);
-  const VkClearColorValue none{};
-  const VkImageSubresourceRange all = counts_.get().range();
-  vkCmdClearColorImage(commands, counts_.get().get(), VK_IMAGE_LAYOUT_GENERAL, &none, 1, &all);
+  counts_.cmdClear(commands, {});
   // The clear wrote -> the surfaces are counted.
   counts_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kFragmentReadWrite);
   Scope scope = frame.images().wholeScope();
@@ -135,8 +131,12 @@ void DepthComplexity::reduce(Frame& frame, std::uint32_t source, std::uint32_t n
   const VkDescriptorSet set = reduceSet_.set();
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
-  shaders::ComplexityReduction step{source, extent_.width * extent_.height,    extent_.width, 0,
-                                    1,      nearest > 0 ? nearest : UINT32_MAX};
+  shaders::ComplexityReduction step{.source = source,
+                                    .count = extent_.width * extent_.height,
+                                    .width = extent_.width,
+                                    .from = 0,
+                                    .to = 1,
+                                    .nearest = nearest > 0 ? nearest : UINT32_MAX};
   for (bool last = false; !last;) {
     const std::uint32_t groups = groupsOf(step.count);
     last = groups == 1;

@@ -27,6 +27,11 @@ class DepthComplexity {
   // What its methods need at least.
   static constexpr MethodNeeds kNeeds{.stencil = true, .depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT};
 
+  // How often its methods draw the surfaces in one submission, with a pass for the draw and one for what follows it.
+  // They then wait, so that no submission takes too long.
+  static constexpr std::uint32_t kRounds = 24;
+  static_assert(2 * kRounds + 8 < Frame::kMostPasses); // and some for what comes before and after
+
   void setTarget(const MethodTarget& target);
   void releaseTarget();
 

@@ -17,11 +17,6 @@ constexpr VkFormat kTakenFormat = VK_FORMAT_R32G32_UINT;
 constexpr VkFormat kFrontFormat = VK_FORMAT_R32G32B32A32_SFLOAT; // many layers would add up the rounding of 16 bits
 constexpr VkFormat kLayerDepthFormat = VK_FORMAT_D32_SFLOAT;
 constexpr std::uint64_t kPixelBytes = 4 * 8 + 2 * 16 + 4;
-constexpr std::uint32_t kPassesPerSubmission = 24;
-
-std::uint32_t groups(std::uint32_t pixels) {
-  return (pixels + shaders::PEELING_GROUP_SIDE - 1) / shaders::PEELING_GROUP_SIDE;
-}
 
 SurfacePipelines makePeel(const MethodHost& host, VkDescriptorSetLayout set) {
   if (!host.gpu.features().primitiveNumbers) {
@@ -42,14 +37,6 @@ SurfacePipelines makePeel(const MethodHost& host, VkDescriptorSetLayout set) {
           describe};
 }
 
-void clearTo(VkCommandBuffer commands, UsedImage& image, const VkClearColorValue& value) {
-  // The last frame's passes used the image -> it is cleared.
-  image.discard();
-  image.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kClear);
-  const VkImageSubresourceRange all = image.get().range();
-  vkCmdClearColorImage(commands, image.get().get(), VK_IMAGE_LAYOUT_GENERAL, &value, 1, &all);
-}
-
 } // namespace
 
 DepthPeeling::DepthPeeling(const MethodHost& host, const MethodOptions& options)
@@ -62,9 +49,10 @@ DepthPeeling::DepthPeeling(const MethodHost& host, const MethodOptions& options)
                "depth-peeling"),
       blendSet_(gpu_, {7, {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}}, "depth-peeling blend"),
       surfaces_(makePeel(host, peelSet_.layout())),
-      layout_(makePipelineLayout(gpu_, {blendSet_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(std::uint32_t)},
-                                 "depth-peeling blend")),
-      blend_(makeComputePipeline(gpu_, layout_.get(), shaders::depth_peeling_blend_comp, "depth-peeling blend")) {}
+      blend_(gpu_, blendSet_,
+             {.shader = shaders::depth_peeling_blend_comp,
+              .name = "depth-peeling blend",
+              .constantBytes = sizeof(std::uint32_t)}) {}
 
 void DepthPeeling::setTarget(const MethodTarget& target) {
   extent_ = target.extent;
@@ -111,9 +99,9 @@ void DepthPeeling::draw(Frame& frame) {
   for (std::uint32_t pass = 0; pass < passes; ++pass) {
     peel(frame);
     frame.endPass("peel");
-    blend(frame, pass == 0 ? shaders::PEELING_FIRST : shaders::PEELING_NEXT);
+    blend(frame, shaders::PEELING_NEXT);
     frame.endPass("compose");
-    if ((pass + 1) % kPassesPerSubmission == 0) frame.submitAndWait();
+    if ((pass + 1) % DepthComplexity::kRounds == 0) frame.submitAndWait();
   }
   blend(frame, shaders::PEELING_LAST);
   frame.endPass("compose");
@@ -122,11 +110,13 @@ void DepthPeeling::draw(Frame& frame) {
 void DepthPeeling::clear(Frame& frame) {
   VkCommandBuffer commands = frame.commands();
   VkClearColorValue value{};
-  clearTo(commands, frontColor_, value);
+  frontColor_.cmdClear(commands, value);
   std::fill_n(value.float32, 4, 1.0F);
-  clearTo(commands, frontThrough_, value);
+  frontThrough_.cmdClear(commands, value);
   std::fill_n(value.uint32, 4, UINT32_MAX); // nearer than all
-  clearTo(commands, taken_, value);
+  taken_.cmdClear(commands, value);
+  // The opaque draws wrote the picture -> the last step reads and writes it.
+  frame.images().color().cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
 }
 
 void DepthPeeling::peel(Frame& frame) {
@@ -163,12 +153,7 @@ void DepthPeeling::blend(Frame& frame, std::uint32_t step) {
   frontColor_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
   frontThrough_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
   taken_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeWrite);
-  frame.images().color().cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
-  const VkDescriptorSet set = blendSet_.set();
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, blend_.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
-  vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(step), &step);
-  vkCmdDispatch(commands, groups(extent_.width), groups(extent_.height), 1);
+  blend_.cmdRun(commands, extent_, &step);
 }
 
 MethodStats DepthPeeling::stats() const {

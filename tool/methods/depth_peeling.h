@@ -7,13 +7,14 @@
 // their triangle: none is lost.
 //
 // Cost: n draws of the surfaces for n layers in the deepest pixel, as many times all fragments through the depth test;
-// what has textures is shaded in each, since neighbours take derivatives. Seven images of the picture's size, 52 bytes
+// what has textures is shaded in each, since neighbours take derivatives. Seven images of the picture's size, 68 bytes
 // a pixel, however many layers there are. One sample a pixel.
 //
 // What it gets wrong: of surfaces at equal depths the one that is drawn first counts as nearer, so there, and only
 // there, the order of submission shows. Each layer is kept in 16-bit floats.
 #pragma once
 
+#include "../draw/pixel_pass.h"
 #include "depth_complexity.h"
 #include "method.h"
 
@@ -42,8 +43,7 @@ class DepthPeeling final : public Method {
   SingleSet peelSet_;
   SingleSet blendSet_;
   SurfacePipelines surfaces_;
-  Unique<VkPipelineLayout> layout_;
-  Unique<VkPipeline> blend_;
+  PixelPass blend_;
   VkExtent2D extent_{};
   UsedImage depth_; // of the layer that a pass takes
   UsedImage color_;

@@ -17,11 +17,6 @@ constexpr VkFormat kFoundFormat = VK_FORMAT_R32G32_SFLOAT;
 constexpr VkFormat kSumFormat = VK_FORMAT_R32G32B32A32_SFLOAT; // many layers would add up the rounding of 16 bits
 constexpr std::uint32_t kAttachments = 5;
 constexpr std::uint64_t kPixelBytes = 6 * 8 + 3 * 16;
-constexpr std::uint32_t kPassesPerSubmission = 24;
-
-std::uint32_t groups(std::uint32_t pixels) {
-  return (pixels + shaders::PEELING_GROUP_SIDE - 1) / shaders::PEELING_GROUP_SIDE;
-}
 
 // Throws GpuError where the device cannot blend what a pass writes.
 Gpu& withBlending(Gpu& gpu) {
@@ -67,14 +62,6 @@ VkClearColorValue all(float value) {
   return clear;
 }
 
-void clearTo(VkCommandBuffer commands, UsedImage& image, const VkClearColorValue& value) {
-  // The last frame's passes used the image -> it is cleared.
-  image.discard();
-  image.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kClear);
-  const VkImageSubresourceRange range = image.get().range();
-  vkCmdClearColorImage(commands, image.get().get(), VK_IMAGE_LAYOUT_GENERAL, &value, 1, &range);
-}
-
 } // namespace
 
 DualDepthPeeling::DualDepthPeeling(const MethodHost& host)
@@ -83,10 +70,10 @@ DualDepthPeeling::DualDepthPeeling(const MethodHost& host)
       peelSets_{makePeelSet(gpu_), makePeelSet(gpu_)},
       blendSet_(gpu_, {8, {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}}, "dual-depth-peeling blend"),
       surfaces_(makePeel(host, peelSets_[0].layout())),
-      layout_(makePipelineLayout(gpu_, {blendSet_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(std::uint32_t)},
-                                 "dual-depth-peeling blend")),
-      blend_(makeComputePipeline(gpu_, layout_.get(), shaders::dual_depth_peeling_blend_comp,
-                                 "dual-depth-peeling blend")) {}
+      blend_(gpu_, blendSet_,
+             {.shader = shaders::dual_depth_peeling_blend_comp,
+              .name = "dual-depth-peeling blend",
+              .constantBytes = sizeof(std::uint32_t)}) {}
 
 void DualDepthPeeling::setTarget(const MethodTarget& target) {
   extent_ = target.extent;
@@ -138,16 +125,16 @@ void DualDepthPeeling::draw(Frame& frame) {
     frame.endPass("peel");
     blend(frame, pass == 1 ? shaders::PEELING_FIRST : shaders::PEELING_NEXT);
     frame.endPass("compose");
-    if (pass % kPassesPerSubmission == 0) frame.submitAndWait();
+    if (pass % DepthComplexity::kRounds == 0) frame.submitAndWait();
   }
   blend(frame, shaders::PEELING_LAST);
   frame.endPass("compose");
 }
 
 void DualDepthPeeling::clear(Frame& frame) {
-  clearTo(frame.commands(), front_[0], all(0.0F));
-  clearTo(frame.commands(), front_[1], all(1.0F));
-  clearTo(frame.commands(), found_[1], all(2.0F)); // all surfaces are between these
+  front_[0].cmdClear(frame.commands(), all(0.0F));
+  front_[1].cmdClear(frame.commands(), all(1.0F));
+  found_[1].cmdClear(frame.commands(), all(2.0F)); // all surfaces are between these
 }
 
 void DualDepthPeeling::peel(Frame& frame, std::uint32_t pass) {
@@ -175,12 +162,11 @@ void DualDepthPeeling::blend(Frame& frame, std::uint32_t step) {
   // The layers before them were blended -> so are these.
   for (UsedImage& front : front_) front.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
   back_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
-  frame.images().color().cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
-  const VkDescriptorSet set = blendSet_.set();
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, blend_.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
-  vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(step), &step);
-  vkCmdDispatch(commands, groups(extent_.width), groups(extent_.height), 1);
+  if (step != shaders::PEELING_NEXT) {
+    // The opaque draws wrote the picture -> the first step reads it, and the last one writes it.
+    frame.images().color().cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeReadWrite);
+  }
+  blend_.cmdRun(commands, extent_, &step);
 }
 
 MethodStats DualDepthPeeling::stats() const {

@@ -8,13 +8,14 @@
 // pixel, however many layers there are. One sample a pixel.
 //
 // What it gets wrong: surfaces of one pixel at equal depths are one layer. Here their colours are added and their
-// opacities united, instead of the MAX of the paper, which loses all but one; the sum is then scaled as if
-// they were equal, which is exact where they are and evens them out where they are not. The order of submission does
-// not show. Each layer is kept in 16-bit floats.
+// opacities united, instead of the MAX of the paper, which loses all but one; the sum is then scaled as if they were
+// equal, which is exact where they are and evens them out where they are not. The order of submission does not show.
+// Each layer is kept in 16-bit floats.
 #pragma once
 
 #include <array>
 
+#include "../draw/pixel_pass.h"
 #include "depth_complexity.h"
 #include "method.h"
 
@@ -42,8 +43,7 @@ class DualDepthPeeling final : public Method {
   std::array<SingleSet, 2> peelSets_; // of each of the depths below, as what the last pass found
   SingleSet blendSet_;
   SurfacePipelines surfaces_;
-  Unique<VkPipelineLayout> layout_;
-  Unique<VkPipeline> blend_;
+  PixelPass blend_;
   VkExtent2D extent_{};
   std::array<UsedImage, 2> found_;  // by the last pass and the present one, in turns
   std::array<UsedImage, 4> layers_; // the nearer one's colour and opacity, the farther one's

@@ -27,7 +27,7 @@ SurfacePipelines makeBlendedSurfaces(const MethodHost& host, const MethodOptions
     const BlendFactors alpha{VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_SRC1_ALPHA};
     info.fragmentShader = shaders::unsorted_frag;
     if (transmissive) info.fragmentShader = shaders::unsorted_transmission_frag;
-    info.samples = static_cast<VkSampleCountFlagBits>(options.samples); // a flag's value is its count
+    info.samples = flagOf(options.samples);
     info.colors = {{PictureImages::kColorFormat, transmissive ? blendWith(color, alpha) : blendWith(over, over)}};
     info.depthFormat = PictureImages::depthFormat(false);
     adjust(features, info);

@@ -9,8 +9,10 @@
 
 #include "../draw/counters.h"
 #include "../draw/descriptors.h"
+#include "../draw/pixel_pass.h"
 #include "../draw/shaders/insertion_shared.h"
 #include "../draw/used_image.h"
+#include "fragment_pool.h"
 #include "method.h"
 
 namespace vitrail::tool {
@@ -30,8 +32,6 @@ class Insertion final : public Method {
   MethodStats stats() const override;
 
  private:
-  std::uint64_t mostNodes() const;
-  void makePool(std::uint64_t nodes);
   void clear(Frame& frame);
   void collect(Frame& frame);
   void sortAndBlend(Frame& frame);
@@ -39,13 +39,11 @@ class Insertion final : public Method {
   Gpu& gpu_;
   SingleSet set_; // of both passes
   SurfacePipelines surfaces_;
-  Unique<VkPipelineLayout> layout_;
-  Unique<VkPipeline> resolve_;
+  PixelPass resolve_;
   Counters control_; // shaders::InsertionControl
-  MethodTarget target_;
+  VkExtent2D extent_{};
   UsedImage heads_;
-  GpuBuffer nodes_;
-  std::uint64_t capacity_ = 0;
+  FragmentPool nodes_;
 };
 
 } // namespace vitrail::tool

@@ -46,11 +46,7 @@ void LayerCount::releaseTarget() {
 void LayerCount::draw(Frame& frame) {
   VkCommandBuffer commands = frame.commands();
   // The last frame's copy read the counts -> they are cleared.
-  counts_.discard();
-  counts_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kClear);
-  const VkClearColorValue none{};
-  const VkImageSubresourceRange all = counts_.get().range();
-  vkCmdClearColorImage(commands, counts_.get().get(), VK_IMAGE_LAYOUT_GENERAL, &none, 1, &all);
+  counts_.cmdClear(commands, {});
   // The clear -> the surfaces add.
   counts_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kFragmentReadWrite);
   PictureImages& images = frame.images();

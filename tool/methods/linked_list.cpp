@@ -19,7 +19,7 @@ namespace vitrail::tool {
 
 namespace {
 
-// The first guess where nobody fixed the pool: most models that are looked at have fewer fragments than this a pixel
+// The first guess: most models that are looked at have fewer fragments than this a pixel
 // of the whole picture.
 constexpr std::uint64_t kNodesPerPixel = 4;
 constexpr std::uint64_t kLargestGuess = std::uint64_t{1} << 24U;
@@ -34,10 +34,6 @@ std::uint32_t libraryFeatures(const GpuFeatures& features) {
   if (features.dualSourceBlending) bits |= VITRAIL_FEATURE_DUAL_SRC_BLEND;
   if (features.sampleRateShading) bits |= VITRAIL_FEATURE_SAMPLE_RATE_SHADING;
   return bits;
-}
-
-VkSampleCountFlagBits flagOf(std::uint32_t samples) {
-  return static_cast<VkSampleCountFlagBits>(samples); // a flag's value is its count
 }
 
 std::uint64_t pixelsOf(VkExtent2D extent) { return std::uint64_t{extent.width} * extent.height; }
@@ -59,8 +55,7 @@ std::vector<VitrailBounds> boxesOf(const Surfaces& surfaces) {
 
 bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
   return a.extent.width == b.extent.width && a.extent.height == b.extent.height && a.color == b.color &&
-         a.opaque == b.opaque && a.depth == b.depth && a.nodeCapacity == b.nodeCapacity &&
-         a.memoryBudget == b.memoryBudget && a.surfaces == b.surfaces;
+         a.opaque == b.opaque && a.depth == b.depth && a.memoryBudget == b.memoryBudget && a.surfaces == b.surfaces;
 }
 
 } // namespace
@@ -152,12 +147,8 @@ void LinkedList::setTarget(const MethodTarget& target) {
   wanted_ = target;
   expected_ = 0;
   budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
-  inTiles_ = target.memoryBudget.has_value() && !target.nodeCapacity;
+  inTiles_ = target.memoryBudget.has_value();
   if (inTiles_) return; // drawTiles() knows how large the tiles are
-  if (target.nodeCapacity) {
-    if (createWholeTarget(*target.nodeCapacity)) return;
-    check(VK_ERROR_OUT_OF_DEVICE_MEMORY, "vitrailCreateTarget");
-  }
   const std::uint64_t largest = context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
   const std::uint64_t guess = std::min({kNodesPerPixel * pixelsOf(target.extent), kLargestGuess, largest});
   inTiles_ = !createWholeTarget(target.surfaces ? static_cast<std::uint32_t>(guess) : 0);
@@ -277,7 +268,7 @@ bool LinkedList::finish() {
   if (wasInTiles_) return true;
   const VitrailStats stats = readStats();
   add(stats);
-  if (stats.fragmentsMissing == 0 || wanted_.nodeCapacity) return true;
+  if (stats.fragmentsMissing == 0) return true;
   grow(stats.fragmentsRequested);
   return false;
 }

@@ -1,8 +1,7 @@
 // Per-pixel linked lists: exact transparency through libvitrail, as any host embeds it.
 //
-// A picture is drawn whole where that fits: with a fixed number of nodes once, whatever becomes of it; else into a pool
-// that grows until the picture fits. A picture that does not fit into the memory budget, or by default into what the
-// device can hold, is drawn in tiles.
+// A picture is drawn whole where that fits, into a pool that grows until it does. A picture that does not fit into the
+// memory budget, or by default into what the device can hold, is drawn in tiles.
 #pragma once
 
 #include <optional>

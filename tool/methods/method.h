@@ -43,9 +43,6 @@ struct MethodTarget {
   VkImageView opaque = VK_NULL_HANDLE;  // samples > 1: the multisampled colour, with sampled usage unless perSample
   VkImageView depth = VK_NULL_HANDLE;   // the opaque depth, where MethodNeeds::depthUsage has it sampled
   VkImageView stencil = VK_NULL_HANDLE; // and the stencil beside it, where MethodNeeds::stencil has one
-  // Fixes the number of fragments that are kept; a frame that has more is blended approximately. Default: the frame's.
-  // For methods that have it.
-  std::optional<std::uint32_t> nodeCapacity;
   // Bytes that the method may keep for fragments. Default: what the device can give. For methods that have it.
   std::optional<std::uint64_t> memoryBudget;
   bool surfaces = true; // whether there is anything transparent
@@ -101,7 +98,8 @@ class Method {
   virtual MethodStats stats() const = 0;
 };
 
-// Makes a method. The options have passed checkMethodOptions(). Throws GpuError where the device does not offer them.
+// Makes a method. The options have passed checkMethodOptions(), or are kLayerCount's (layer_count.h). Throws GpuError
+// where the device does not offer them.
 std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& options);
 
 } // namespace vitrail::tool

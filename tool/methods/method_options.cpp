@@ -22,7 +22,7 @@ constexpr std::array kMethods{
                  .msaaResolves = true,
                  .layers = true,
                  .memoryBudget = true,
-                 .nodeCapacity = true,
+                 .lists = true,
                  .orderIndependent = true},
     MethodTraits{.name = "unsorted", .wrong = "surfaces are blended in the order in which they are drawn"},
     MethodTraits{.name = "sorted",
@@ -44,7 +44,7 @@ constexpr std::array kMethods{
                  .wrong = "edges may lie a little beside the others' where samples are not moved to the middle"},
     MethodTraits{.name = "insertion",
                  .severalSamples = false,
-                 .nodeCapacity = true,
+                 .lists = true,
                  .wrong = "fragments of a pixel beyond 128 are dropped"},
     MethodTraits{.name = "weighted",
                  .orderIndependent = true,
@@ -148,7 +148,11 @@ void checkStored(const MethodOptions& options) {
 
 std::span<const std::string_view> methodNames() { return kNames; }
 
-const MethodTraits& traitsOf(std::string_view name) { return *std::ranges::find(kMethods, name, &MethodTraits::name); }
+const MethodTraits& traitsOf(std::string_view name) {
+  const auto* found = std::ranges::find(kMethods, name, &MethodTraits::name);
+  if (found == kMethods.end()) throw std::logic_error(fmt::format("the method {} is not in the table", name));
+  return *found;
+}
 
 void checkMethodOptions(const MethodOptions& options) {
   if (std::ranges::find(kNames, options.name) == kNames.end()) {
@@ -162,10 +166,9 @@ void checkMethodOptions(const MethodOptions& options) {
   checkStored(options);
 }
 
-void checkPictureOptions(std::string_view method, bool memoryBudget, bool nodeCapacity) {
-  const MethodTraits& traits = traitsOf(method);
-  if (memoryBudget && !traits.memoryBudget) refuse("--memory-budget", &MethodTraits::memoryBudget, method);
-  if (nodeCapacity && !traits.nodeCapacity) refuse("a fixed node capacity", &MethodTraits::nodeCapacity, method);
+void checkPictureOptions(std::string_view method, bool memoryBudget) {
+  if (!memoryBudget) return;
+  if (!traitsOf(method).memoryBudget) refuse("--memory-budget", &MethodTraits::memoryBudget, method);
 }
 
 std::string_view nameOf(VitrailNodeFormat nodes) { return nameIn(kNodeFormats, nodes); }

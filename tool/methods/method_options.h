@@ -34,8 +34,9 @@ struct MethodTraits {
   bool layers = false;       // --layers
   bool passes = false;       // --passes
   bool memoryBudget = false; // --memory-budget
-  bool nodeCapacity = false; // a fixed number of nodes, of RenderOptions
-  // Whether pictures are the same whatever order surfaces are drawn in, where they are not exact too.
+  bool lists = false;        // its fragments are nodes of lists
+  // Whether pictures are the same whatever order surfaces are drawn in, where they are not exact too; with
+  // depth-peeling and reverse-depth-peeling but for surfaces at equal depths.
   bool orderIndependent = false;
   std::string_view wrong{}; // what its pictures get wrong, in words; nothing: they are exact
 };
@@ -43,15 +44,15 @@ struct MethodTraits {
 // All methods, the default first.
 std::span<const std::string_view> methodNames();
 
-// The method of that name, which there is.
+// The method of that name, which is one of methodNames(); else throws std::logic_error.
 const MethodTraits& traitsOf(std::string_view name);
 
 // Throws std::invalid_argument with a one-line reason for an unknown name, for options that the method does not have,
 // or for options that exclude each other.
 void checkMethodOptions(const MethodOptions& options);
 
-// The same for what is chosen with each picture.
-void checkPictureOptions(std::string_view method, bool memoryBudget, bool nodeCapacity);
+// The same for what is chosen with each picture: whether there is a memory budget.
+void checkPictureOptions(std::string_view method, bool memoryBudget);
 
 // The names of the choices: "standard", "compact", "hdr"; "compute", "fragment"; "per-pixel", "per-sample".
 std::string_view nameOf(VitrailNodeFormat nodes);

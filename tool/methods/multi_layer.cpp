@@ -11,11 +11,8 @@ namespace vitrail::tool {
 namespace {
 
 constexpr std::uint32_t kLayers = 4;     // by default
-constexpr std::uint32_t kLayerWords = 5; // of multi_layer.glsl
-constexpr std::uint32_t kGroupSide = 8;
+constexpr std::uint64_t kLayerWords = 5; // of multi_layer.glsl
 constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
-
-std::uint32_t groups(std::uint32_t pixels) { return (pixels + kGroupSide - 1) / kGroupSide; }
 
 SurfacePipelines makeSurfaces(const MethodHost& host, VkDescriptorSetLayout set, std::uint32_t layers) {
   requireInterlock(host.gpu, "multi-layer");
@@ -38,9 +35,9 @@ MultiLayer::MultiLayer(const MethodHost& host, const MethodOptions& options)
             {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}}, // colour, of the resolve
            "multi-layer"),
       surfaces_(makeSurfaces(host, set_.layout(), layers_)),
-      layout_(makePipelineLayout(gpu_, {set_.layout()}, {}, "multi-layer")),
-      resolve_(makeComputePipeline(gpu_, layout_.get(), shaders::multi_layer_resolve_comp, "multi-layer resolve",
-                                   {{1, layers_}})) {}
+      resolve_(
+          gpu_, set_,
+          {.shader = shaders::multi_layer_resolve_comp, .name = "multi-layer resolve", .constants = {{1, layers_}}}) {}
 
 void MultiLayer::setTarget(const MethodTarget& target) {
   set_.writeImage(1, target.color, VK_IMAGE_LAYOUT_GENERAL);
@@ -70,10 +67,7 @@ void MultiLayer::draw(Frame& frame) {
   // The draw wrote the layers -> the resolve reads them.
   cmdMemoryBarrier(commands, kFragmentWrite, kComputeRead);
   frame.images().cmdToComputeResolve(commands);
-  const VkDescriptorSet set = set_.set();
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, resolve_.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
-  vkCmdDispatch(commands, groups(extent_.width), groups(extent_.height), 1);
+  resolve_.cmdRun(commands, extent_);
   frame.endPass("resolve");
 }
 

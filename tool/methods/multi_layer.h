@@ -13,6 +13,7 @@
 // floats.
 #pragma once
 
+#include "../draw/pixel_pass.h"
 #include "method.h"
 
 namespace vitrail::tool {
@@ -34,8 +35,7 @@ class MultiLayer final : public Method {
   std::uint32_t layers_;
   SingleSet set_; // of the draw and the resolve
   SurfacePipelines surfaces_;
-  Unique<VkPipelineLayout> layout_;
-  Unique<VkPipeline> resolve_;
+  PixelPass resolve_;
   VkExtent2D extent_{};
   GpuBuffer memory_;
 };

@@ -14,10 +14,6 @@ namespace {
 constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
 constexpr std::uint64_t kEntryWords = 2;
 
-std::uint32_t groups(std::uint32_t pixels) {
-  return (pixels + shaders::LAYERS_GROUP_SIDE - 1) / shaders::LAYERS_GROUP_SIDE;
-}
-
 } // namespace
 
 NearestLayers::NearestLayers(const MethodHost& host, const MethodOptions& options)
@@ -30,9 +26,8 @@ NearestLayers::NearestLayers(const MethodHost& host, const MethodOptions& option
             {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages},                     // tails
             {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}}, // colour, of the resolve
            method_),
-      layout_(makePipelineLayout(gpu_, {set_.layout()}, {}, method_)),
-      resolve_(
-          makeComputePipeline(gpu_, layout_.get(), shaders::layers_resolve_comp, method_ + " resolve", {{1, layers_}})),
+      resolve_(gpu_, set_,
+               {.shader = shaders::layers_resolve_comp, .name = method_ + " resolve", .constants = {{1, layers_}}}),
       control_(gpu_, sizeof(shaders::LayersControl), method_ + " control") {
   set_.writeBuffer(0, control_.buffer().get(), control_.buffer().size());
 }
@@ -97,10 +92,7 @@ void NearestLayers::blend(Frame& frame) const {
   // The draws wrote entries and tails -> the resolve reads them.
   cmdMemoryBarrier(commands, kFragmentWrite, kComputeRead);
   frame.images().cmdToComputeResolve(commands);
-  const VkDescriptorSet set = set_.set();
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, resolve_.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
-  vkCmdDispatch(commands, groups(extent_.width), groups(extent_.height), 1);
+  resolve_.cmdRun(commands, extent_);
   control_.cmdRead(commands, kComputeWrite);
 }
 

@@ -13,6 +13,7 @@
 
 #include "../draw/counters.h"
 #include "../draw/descriptors.h"
+#include "../draw/pixel_pass.h"
 #include "method.h"
 
 namespace vitrail::tool {
@@ -49,8 +50,7 @@ class NearestLayers : public Method {
   std::string method_;
   std::uint32_t layers_;
   SingleSet set_; // of the draws and the resolve
-  Unique<VkPipelineLayout> layout_;
-  Unique<VkPipeline> resolve_;
+  PixelPass resolve_;
   Counters control_; // shaders::LayersControl
   VkExtent2D extent_{};
   GpuBuffer entries_;

@@ -12,7 +12,6 @@ namespace vitrail::tool {
 namespace {
 
 constexpr VkFormat kLayerDepthFormat = VK_FORMAT_D32_SFLOAT;
-constexpr std::uint32_t kPassesPerSubmission = 24;
 
 SingleSet makeSet(Gpu& gpu) {
   return {gpu, {{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_FRAGMENT_BIT}}, "depth of the last layer"};
@@ -86,7 +85,7 @@ void ReverseDepthPeeling::draw(Frame& frame) {
     frame.endPass("blend");
     last = &found;
     lastSet = sets_[pass % 2].set();
-    if ((pass + 1) % kPassesPerSubmission == 0) frame.submitAndWait();
+    if ((pass + 1) % DepthComplexity::kRounds == 0) frame.submitAndWait();
   }
 }
 

@@ -6,7 +6,6 @@
 
 #include "../draw/accesses.h"
 #include "../draw/screen_pass.h"
-#include "../draw/shaders/peeling_shared.h"
 #include "shaders/stencil_routed.frag.h"
 #include "shaders/stencil_routed_begin.frag.h"
 #include "shaders/stencil_routed_blend.comp.h"
@@ -21,7 +20,6 @@ constexpr std::array<VkFormat, 3> kFormats{PictureImages::kColorFormat, PictureI
                                            VK_FORMAT_R32_SFLOAT};
 constexpr std::uint64_t kLayerBytes = 8 + 8 + 4;
 constexpr std::uint64_t kDepthBytes = 8;
-constexpr std::uint32_t kPassesPerSubmission = 24;
 constexpr std::uint32_t kMostLayers = 254;
 
 // A sample whose stencil is at or above this is still to be written; the fragment that finds it here is the sample's.
@@ -31,10 +29,6 @@ struct KeepConstants {
   std::uint32_t firstLayer;
   std::uint32_t samples;
 };
-
-std::uint32_t groups(std::uint32_t pixels) {
-  return (pixels + shaders::PEELING_GROUP_SIDE - 1) / shaders::PEELING_GROUP_SIDE;
-}
 
 // The most of the offered counts; 1: there are no several.
 std::uint32_t mostSamples(VkSampleCountFlags offered) {
@@ -94,11 +88,11 @@ StencilRouted::StencilRouted(const MethodHost& host)
                   {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}}, // the picture
                  "stencil-routed layers"),
       beginLayout_(makePipelineLayout(gpu_, {beginSet_.layout()}, {}, "stencil-routed begin")),
-      layersLayout_(makePipelineLayout(gpu_, {layersSet_.layout()},
-                                       {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(KeepConstants)}, "stencil-routed layers")),
-      keep_(makeComputePipeline(gpu_, layersLayout_.get(), shaders::stencil_routed_keep_comp, "stencil-routed keep")),
-      blend_(
-          makeComputePipeline(gpu_, layersLayout_.get(), shaders::stencil_routed_blend_comp, "stencil-routed blend")) {
+      keep_(gpu_, layersSet_,
+            {.shader = shaders::stencil_routed_keep_comp,
+             .name = "stencil-routed keep",
+             .constantBytes = sizeof(KeepConstants)}),
+      blend_(gpu_, layersSet_, {.shader = shaders::stencil_routed_blend_comp, .name = "stencil-routed blend"}) {
   GraphicsPipelineInfo info = beginPipeline("stencil-routed begin depth");
   info.depthTest = VK_COMPARE_OP_ALWAYS;
   info.depthWrite = true;
@@ -117,7 +111,7 @@ StencilRouted::StencilRouted(const MethodHost& host)
 // Over the whole picture, without colours.
 GraphicsPipelineInfo StencilRouted::beginPipeline(const std::string& name) const {
   GraphicsPipelineInfo info = screenPipeline(beginLayout_.get(), shaders::stencil_routed_begin_frag, name);
-  info.samples = static_cast<VkSampleCountFlagBits>(samples_);
+  info.samples = flagOf(samples_);
   info.samplesInMiddle = inMiddle_;
   for (const VkFormat format : kFormats) info.colors.push_back({format, VkPipelineColorBlendAttachmentState{}});
   info.depthFormat = PictureImages::depthFormat(true);
@@ -131,7 +125,7 @@ SurfacePipelines StencilRouted::makeSurfaces(const MethodHost& host, std::uint32
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     info.fragmentShader = shaders::stencil_routed_frag;
     if (!inMiddle_) info.fragmentShader = shaders::stencil_routed_each_frag;
-    info.samples = static_cast<VkSampleCountFlagBits>(samples_);
+    info.samples = flagOf(samples_);
     info.samplesInMiddle = inMiddle_;
     info.shadeEverySample = !inMiddle_;
     info.sampleMask = sampleMask;
@@ -147,7 +141,7 @@ void StencilRouted::setTarget(const MethodTarget& target) {
   complexity_.setTarget(target);
   GpuImageInfo info;
   info.extent = extent_;
-  info.samples = static_cast<VkSampleCountFlagBits>(samples_);
+  info.samples = flagOf(samples_);
   info.format = PictureImages::depthFormat(true);
   info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
   info.aspect = VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
@@ -204,7 +198,7 @@ void StencilRouted::draw(Frame& frame) {
     frame.endPass("route");
     keep(frame, pass * samples_);
     frame.endPass("keep");
-    if ((pass + 1) % kPassesPerSubmission == 0) frame.submitAndWait();
+    if ((pass + 1) % DepthComplexity::kRounds == 0) frame.submitAndWait();
   }
   blend(frame);
   frame.endPass("compose");
@@ -255,12 +249,8 @@ void StencilRouted::keep(Frame& frame, std::uint32_t firstLayer) {
   // The surfaces wrote samples -> they are read, and stored beside those of the passes before.
   for (UsedImage& image : sampled_) image.cmdUse(commands, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kComputeSample);
   for (UsedImage& image : layers_) image.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeWrite);
-  const VkDescriptorSet set = layersSet_.set();
   const KeepConstants constants{firstLayer, samples_};
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, keep_.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layersLayout_.get(), 0, 1, &set, 0, nullptr);
-  vkCmdPushConstants(commands, layersLayout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(constants), &constants);
-  vkCmdDispatch(commands, groups(extent_.width), groups(extent_.height), 1);
+  keep_.cmdRun(commands, extent_, &constants);
 }
 
 void StencilRouted::blend(Frame& frame) {
@@ -268,10 +258,7 @@ void StencilRouted::blend(Frame& frame) {
   // The passes stored layers -> they are read.
   for (UsedImage& image : layers_) image.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kComputeRead);
   frame.images().cmdToComputeResolve(commands);
-  const VkDescriptorSet set = layersSet_.set();
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, blend_.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layersLayout_.get(), 0, 1, &set, 0, nullptr);
-  vkCmdDispatch(commands, groups(extent_.width), groups(extent_.height), 1);
+  blend_.cmdRun(commands, extent_);
 }
 
 MethodStats StencilRouted::stats() const {

@@ -22,6 +22,7 @@
 #include <array>
 #include <vector>
 
+#include "../draw/pixel_pass.h"
 #include "depth_complexity.h"
 #include "method.h"
 
@@ -59,9 +60,8 @@ class StencilRouted final : public Method {
   Unique<VkPipeline> beginDepth_;
   std::vector<Unique<VkPipeline>> beginStencil_; // adds 1 to all samples but the first, the first two, ...
   std::vector<SurfacePipelines> surfaces_;       // of all samples, or of each
-  Unique<VkPipelineLayout> layersLayout_;
-  Unique<VkPipeline> keep_;
-  Unique<VkPipeline> blend_;
+  PixelPass keep_;
+  PixelPass blend_;
   VkExtent2D extent_{};
   UsedImage depth_;                  // with the stencil
   std::array<UsedImage, 3> sampled_; // colour, opacity and depth, of the samples

@@ -53,7 +53,7 @@ SurfacePipelines makeSurfaces(const MethodHost& host, std::uint32_t samples, con
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     info.fragmentShader = draws.shader;
     info.constants = {{1, samples}};
-    info.samples = static_cast<VkSampleCountFlagBits>(samples); // a flag's value is its count
+    info.samples = flagOf(samples);
     info.colors = draws.colors;
     info.depthFormat = PictureImages::depthFormat(false);
     info.depthTest = draws.test;
@@ -101,7 +101,7 @@ void Stochastic::setTarget(const MethodTarget& target) {
   GpuImageInfo info;
   info.extent = target.extent;
   info.format = PictureImages::depthFormat(false);
-  info.samples = static_cast<VkSampleCountFlagBits>(samples_);
+  info.samples = flagOf(samples_);
   info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   info.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
   depth_.ensure(gpu_, info, "stochastic depth");

@@ -33,7 +33,7 @@ SurfacePipelines makeSurfaces(const MethodHost& host, std::uint32_t samples, boo
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     info.fragmentShader = shaders::weighted_frag;
     if (filters) info.fragmentShader = shaders::weighted_filters_frag;
-    info.samples = static_cast<VkSampleCountFlagBits>(samples); // a flag's value is its count
+    info.samples = flagOf(samples);
     info.colors = planes.outputs(0, planes.size());
     info.depthFormat = PictureImages::depthFormat(false);
   };

@@ -5,8 +5,9 @@
 #include "vitrail/node.glsl"
 
 #include "a_buffer_shared.h"
+#include "pixel_pass_shared.h"
 
-layout(local_size_x = A_BUFFER_GROUP_SIDE, local_size_y = A_BUFFER_GROUP_SIDE) in;
+layout(local_size_x = PIXEL_GROUP_SIDE, local_size_y = PIXEL_GROUP_SIDE) in;
 
 layout(set = 0, binding = 0, std430) readonly buffer OffsetsBlock { uint offsets[]; };
 layout(set = 0, binding = 1, std430) readonly buffer FilledBlock { uint filled[]; };

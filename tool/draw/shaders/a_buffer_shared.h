@@ -8,7 +8,6 @@ namespace vitrail::tool::shaders {
 using uint = std::uint32_t;
 #endif
 
-const uint A_BUFFER_GROUP_SIDE = 8u;   // of the resolve
 const uint A_BUFFER_SCAN_GROUP = 256u; // threads of a scan, which take two numbers each
 const uint A_BUFFER_ROW = 32768u;      // work groups in a row of a scan's dispatch
 const uint A_BUFFER_SLOTS = 64u;       // so that few work groups count in one place

@@ -6,7 +6,9 @@
 
 #extension GL_EXT_samplerless_texture_functions : require
 
-layout(local_size_x = 8, local_size_y = 8) in;
+#include "pixel_pass_shared.h"
+
+layout(local_size_x = PIXEL_GROUP_SIDE, local_size_y = PIXEL_GROUP_SIDE) in;
 
 layout(constant_id = 0) const uint kSamples = 1u;
 layout(constant_id = 1) const bool kFilters = false; // some surfaces add light or tint it: their planes are there

@@ -25,7 +25,7 @@ void main() {
   uvec2 mine = uvec2(floatBitsToUint(gl_FragCoord.z), firstTriangle + uint(gl_PrimitiveID) + 1u); // 0: none
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   if (!shadesFirst() && !remains(mine, pixel)) discard;
-  Layer layer = layerOf(shadeSurface());
+  SurfaceLight layer = lightOf(shadeSurface());
   if (shadesFirst() && !remains(mine, pixel)) discard;
   outColor = vec4(layer.color, 0.0);
   outOpacity = opacityOf(layer);

@@ -1,10 +1,11 @@
-// Puts the layer that a pass of the method depth-peeling took under those that are nearer; at the end, the picture under
-// them all.
+// Puts the layer that a pass of the method depth-peeling took under those that are nearer; at the end, the picture
+// under them all.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "peeling_shared.h"
+#include "pixel_pass_shared.h"
 
-layout(local_size_x = PEELING_GROUP_SIDE, local_size_y = PEELING_GROUP_SIDE) in;
+layout(local_size_x = PIXEL_GROUP_SIDE, local_size_y = PIXEL_GROUP_SIDE) in;
 
 layout(set = 0, binding = 0, rgba16f) uniform readonly image2D layerColor;
 layout(set = 0, binding = 1, rgba16f) uniform readonly image2D layerOpacity;
@@ -14,7 +15,7 @@ layout(set = 0, binding = 4, rgba32f) uniform image2D frontThrough;
 layout(set = 0, binding = 5, rg32ui) uniform writeonly uimage2D takenImage;
 layout(set = 0, binding = 6, rgba16f) uniform image2D pictureImage;
 
-layout(push_constant) uniform StepBlock { uint step; }; // PEELING_*; after the last layer comes the picture
+layout(push_constant) uniform StepBlock { uint step; }; // PEELING_NEXT; after the last layer PEELING_LAST
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

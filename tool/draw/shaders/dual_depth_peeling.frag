@@ -1,5 +1,5 @@
-// A pass of the method dual-depth-peeling: of each pixel's surfaces, those at the nearest and the farthest depth that the
-// last pass found are this pass's two layers; among those between them the blending finds the next two depths.
+// A pass of the method dual-depth-peeling: of each pixel's surfaces, those at the nearest and the farthest depth that
+// the last pass found are this pass's two layers; among those between them the blending finds the next two depths.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -26,7 +26,7 @@ void main() {
   outFound = isBetween ? vec2(depth, -depth) : NOTHING;
   outFrontColor = outFrontOpacity = outBackColor = outBackOpacity = vec4(0.0);
   if (!shadesFirst() && !has(FEATURE_MASK) && !isFront && !isBack) return;
-  Layer layer = layerOf(shadeSurface());
+  SurfaceLight layer = lightOf(shadeSurface());
   if (isFront) {
     outFrontColor = vec4(layer.color, 1.0);
     outFrontOpacity = opacityOf(layer);

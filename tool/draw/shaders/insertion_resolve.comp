@@ -5,8 +5,9 @@
 #include "vitrail/node.glsl"
 
 #include "insertion_shared.h"
+#include "pixel_pass_shared.h"
 
-layout(local_size_x = INSERTION_GROUP_SIDE, local_size_y = INSERTION_GROUP_SIDE) in;
+layout(local_size_x = PIXEL_GROUP_SIDE, local_size_y = PIXEL_GROUP_SIDE) in;
 
 layout(set = 0, binding = 0, std430) buffer ControlBlock { InsertionControl control; };
 layout(set = 0, binding = 1, r32ui) uniform readonly uimage2D heads;

@@ -9,8 +9,7 @@ using uint = std::uint32_t;
 #endif
 
 const uint INSERTION_LAYERS = 128u; // fragments of a pixel that are kept
-const uint INSERTION_GROUP_SIDE = 8u;
-const uint INSERTION_SLOTS = 64u; // so that few work groups count in one place
+const uint INSERTION_SLOTS = 64u;   // so that few work groups count in one place
 
 // A fragment as those samples store it.
 struct InsertionNode {

@@ -22,8 +22,7 @@ void main() {
   Surface surface = shadeSurface();
   uint fragments;
   if (has(FEATURE_TRANSMISSION)) {
-    fragments =
-        kept(reflectionOf(surface), VITRAIL_PREMULTIPLIED) + kept(filterOf(surface), VITRAIL_MULTIPLY);
+    fragments = kept(reflectionOf(surface), VITRAIL_PREMULTIPLIED) + kept(filterOf(surface), VITRAIL_MULTIPLY);
   } else {
     fragments = kept(vec4(surface.color, surface.alpha), has(FEATURE_ADDITIVE) ? VITRAIL_ADDITIVE : VITRAIL_OVER);
   }

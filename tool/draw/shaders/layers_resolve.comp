@@ -5,8 +5,9 @@
 #include "vitrail/sums.glsl"
 
 #include "layers_shared.h"
+#include "pixel_pass_shared.h"
 
-layout(local_size_x = LAYERS_GROUP_SIDE, local_size_y = LAYERS_GROUP_SIDE) in;
+layout(local_size_x = PIXEL_GROUP_SIDE, local_size_y = PIXEL_GROUP_SIDE) in;
 
 layout(constant_id = 1) const uint kLayers = 8u;
 

@@ -10,8 +10,7 @@ using uint = std::uint32_t;
 
 const uint LAYERS_EMPTY = 0xffffffffu; // the order of an entry that holds nothing: farther than any fragment
 const uint LAYERS_TAIL_WORDS = 6u;     // of a pixel: the words of VitrailSums in memory, and how many fragments it has
-const uint LAYERS_GROUP_SIDE = 8u;
-const uint LAYERS_SLOTS = 64u; // so that few work groups count in one place
+const uint LAYERS_SLOTS = 64u;         // so that few work groups count in one place
 
 // What some work groups have counted; as large as a cache line, so that no two share one.
 struct LayersCounts {

@@ -10,7 +10,7 @@ layout(push_constant) uniform Depths {
   uint logarithmic;
 };
 
-const float BIAS = 5e-7;           // towards moments that are always those of some distribution: the paper's for 32 bits
+const float BIAS = 5e-7; // towards moments that are always those of some distribution: the paper's for 32 bits
 const vec4 BIAS_MOMENTS = vec4(0.0, 0.375, 0.0, 0.375);
 const float OVERESTIMATION = 0.25; // of the transmittance between its bounds: the paper's
 const float LEAST_TRANSMITTANCE = 1.0 / 4096.0; // that absorbance stays finite

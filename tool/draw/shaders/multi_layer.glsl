@@ -3,6 +3,8 @@
 #ifndef VITRAIL_TOOL_MULTI_LAYER_GLSL
 #define VITRAIL_TOOL_MULTI_LAYER_GLSL
 
+#include "shared.h"
+
 struct Layer {
   float depth; // nearest is 1; negative: the layer is empty
   vec3 color;
@@ -10,10 +12,9 @@ struct Layer {
 };
 
 const uint LAYER_WORDS = 5u; // in memory; the depth's is 0 where the layer is empty
-const float LARGEST_SUM = 65504.0;
 
 void packLayer(Layer layer, out uint words[LAYER_WORDS]) {
-  vec3 color = min(layer.color, LARGEST_SUM);
+  vec3 color = min(layer.color, LARGEST_HALF);
   words[0] = layer.depth < 0.0 ? 0u : floatBitsToUint(layer.depth) + 1u;
   words[1] = packHalf2x16(color.rg);
   words[2] = packHalf2x16(vec2(color.b, layer.transmittance.r));

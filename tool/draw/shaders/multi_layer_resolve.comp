@@ -2,8 +2,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "multi_layer.glsl"
+#include "pixel_pass_shared.h"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = PIXEL_GROUP_SIDE, local_size_y = PIXEL_GROUP_SIDE) in;
 
 layout(constant_id = 1) const uint kLayers = 4u;
 

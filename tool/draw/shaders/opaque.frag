@@ -5,8 +5,6 @@
 
 layout(location = 0) out vec4 outColor;
 
-const float LARGEST_HALF = 65504.0;
-
 void main() {
   // An infinite colour would turn into NaN where a transparent surface covers it.
   outColor = vec4(min(shadeSurface().color, LARGEST_HALF), 1.0);

@@ -8,10 +8,8 @@ namespace vitrail::tool::shaders {
 using uint = std::uint32_t;
 #endif
 
-const uint PEELING_GROUP_SIDE = 8u;
-
 // Which layers a dispatch blends: the first, the others, or, when all are, what is behind them.
-const uint PEELING_FIRST = 0u;
+const uint PEELING_FIRST = 0u; // of dual-depth-peeling, whose back is the picture at first
 const uint PEELING_NEXT = 1u;
 const uint PEELING_LAST = 2u;
 

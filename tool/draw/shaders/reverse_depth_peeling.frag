@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "layer.glsl"
+#include "surface_light.glsl"
 
 layout(early_fragment_tests) in;
 
@@ -16,11 +16,11 @@ layout(location = 0) out vec4 outColor;
 #endif
 
 void main() {
-  Layer layer = layerOf(shadeSurface());
+  SurfaceLight layer = lightOf(shadeSurface());
   // Where nothing was found the depth is that of the near plane, and a surface there is in the picture.
   if (gl_FragCoord.z <= texelFetch(lastDepth, ivec2(gl_FragCoord.xy), 0).r) discard;
-  outColor = vec4(layer.color, 1.0 - layer.through.a);
+  outColor = vec4(layer.color, 1.0 - layer.transmittance.a);
 #ifdef VITRAIL_TRANSMISSION
-  outThrough = layer.through;
+  outThrough = layer.transmittance;
 #endif
 }

@@ -12,6 +12,8 @@ using glm::mat4;
 using glm::vec4;
 #endif
 
+const float LARGEST_HALF = 65504.0f; // of 16-bit floats
+
 // The texture slots of a material, which are also the bindings of its descriptor set.
 const uint SLOT_BASE_COLOR = 0u;
 const uint SLOT_METALLIC_ROUGHNESS = 1u;

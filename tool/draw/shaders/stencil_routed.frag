@@ -11,7 +11,7 @@ layout(location = 1) out vec4 outOpacity;
 layout(location = 2) out float outDepth;
 
 void main() {
-  Layer layer = layerOf(shadeSurface());
+  SurfaceLight layer = lightOf(shadeSurface());
   outColor = vec4(layer.color, 0.0);
   outOpacity = opacityOf(layer);
   outDepth = gl_FragCoord.z;

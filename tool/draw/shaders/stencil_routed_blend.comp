@@ -5,9 +5,9 @@
 
 #include "vitrail/node.glsl"
 
-#include "peeling_shared.h"
+#include "pixel_pass_shared.h"
 
-layout(local_size_x = PEELING_GROUP_SIDE, local_size_y = PEELING_GROUP_SIDE) in;
+layout(local_size_x = PIXEL_GROUP_SIDE, local_size_y = PIXEL_GROUP_SIDE) in;
 
 layout(set = 0, binding = 3, rgba16f) uniform readonly image2DArray colors;
 layout(set = 0, binding = 4, rgba16f) uniform readonly image2DArray opacities;
@@ -20,14 +20,15 @@ ivec2 pixel;
 uvec4 arrayKey(uint i) {
   ivec3 place = ivec3(pixel, i);
   vec3 color = imageLoad(colors, place).rgb;
-  float opacity = imageLoad(opacities, place).a;
+  vec4 opacity = imageLoad(opacities, place);
   uint depth = vitrailDepthKey(vitrailDepthBits(imageLoad(depths, place).r, true), true);
-  // Surfaces at equal depths are ordered by what they are, not by when they came.
-  return uvec4(depth, packHalf2x16(color.rg), packHalf2x16(vec2(color.b, opacity)), i);
+  // Surfaces at equal depths are ordered by what they are, not by when they came; their tints by 8 bits a channel.
+  uint tint = packUnorm4x8(vec4(0.0, opacity.rgb));
+  return uvec4(depth, packHalf2x16(color.rg), packHalf2x16(vec2(color.b, opacity.a)), tint | i);
 }
 
 VitrailPair arrayPair(uvec4 key) {
-  ivec3 place = ivec3(pixel, key.w);
+  ivec3 place = ivec3(pixel, key.w & 0xffu); // there are at most 254
   return VitrailPair(imageLoad(colors, place).rgb, 1.0 - imageLoad(opacities, place));
 }
 

@@ -2,9 +2,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "peeling_shared.h"
+#include "pixel_pass_shared.h"
 
-layout(local_size_x = PEELING_GROUP_SIDE, local_size_y = PEELING_GROUP_SIDE) in;
+layout(local_size_x = PIXEL_GROUP_SIDE, local_size_y = PIXEL_GROUP_SIDE) in;
 
 layout(set = 0, binding = 0) uniform texture2DMS sampleColors;
 layout(set = 0, binding = 1) uniform texture2DMS sampleOpacities;

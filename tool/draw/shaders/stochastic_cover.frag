@@ -1,6 +1,6 @@
-// The depth passes of the method stochastic: a surface hides what is behind it in a random part of its samples, as large
-// as its opacity. What is random is a hash of pixel, pass and the fragment itself, so a frame is the same each time and
-// in any order of submission.
+// The depth passes of the method stochastic: a surface hides what is behind it in a random part of its samples, as
+// large as its opacity. What is random is a hash of pixel, pass and the fragment itself, so a frame is the same each
+// time and in any order of submission.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "surface_light.glsl"
@@ -33,10 +33,9 @@ uint coverage(float opacity, uvec4 random) {
 
 void main() {
   SurfaceLight light = lightOf(shadeSurface());
-  uint channel = pass.channel < STOCHASTIC_ALL_CHANNELS ? pass.channel : 3u;
   uint fragment = floatBitsToUint(gl_FragCoord.z) ^ floatBitsToUint(light.color.g) * 0x9e3779b9u;
   uvec4 seed = uvec4(uvec2(gl_FragCoord.xy), fragment, pass.number * 4u + pass.channel);
-  uint mask = coverage(1.0 - light.transmittance[channel], randomBits(seed));
+  uint mask = coverage(1.0 - light.transmittance[pass.channel], randomBits(seed));
   if (mask == 0u) discard;
   gl_SampleMask[0] = int(mask);
 }

@@ -8,7 +8,7 @@ namespace vitrail::tool::shaders {
 using uint = std::uint32_t;
 #endif
 
-const uint STOCHASTIC_ALL_CHANNELS = 3u;
+const uint STOCHASTIC_ALL_CHANNELS = 3u; // the component of a transmittance that is alpha's, then that of all
 
 // Push constants.
 struct StochasticPass {

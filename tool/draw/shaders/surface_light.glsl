@@ -1,5 +1,5 @@
-// What a surface does to the light d behind it, for methods that do not keep fragments: color + transmittance * d. The
-// fourth component is for the picture's alpha, to which the surface adds 1 - transmittance.a.
+// What a surface does to the light d behind it, the reflection and the filter of a transmissive one together: color +
+// transmittance * d. The fourth component is for the picture's alpha, to which the surface adds 1 - transmittance.a.
 #ifndef VITRAIL_TOOL_SURFACE_LIGHT_GLSL
 #define VITRAIL_TOOL_SURFACE_LIGHT_GLSL
 
@@ -10,8 +10,6 @@ struct SurfaceLight {
   vec4 transmittance; // equal in all channels unless the surface has FEATURE_ADDITIVE or FEATURE_TRANSMISSION
   vec3 body;          // the part of `color` that goes with hiding what is behind: opacity times the surface's colour
 };
-
-const float LARGEST_HALF = 65504.0;
 
 SurfaceLight lightOf(Surface surface) {
   vec3 color = min(surface.color, LARGEST_HALF); // an infinite one would turn into NaN

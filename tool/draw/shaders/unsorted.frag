@@ -7,8 +7,6 @@ layout(early_fragment_tests) in;
 
 layout(location = 0) out vec4 outColor;
 
-const float LARGEST_HALF = 65504.0;
-
 void main() {
   Surface surface = shadeSurface();
   vec3 color = min(surface.alpha * surface.color, LARGEST_HALF); // an infinite one would turn into NaN

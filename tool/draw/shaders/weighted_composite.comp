@@ -2,12 +2,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "composite.glsl"
+#include "shared.h"
 
 layout(set = 0, binding = FIRST_PLANE) uniform Plane bodyPlane;
 layout(set = 0, binding = FIRST_PLANE + 1) uniform Plane throughPlane;
 layout(set = 0, binding = FIRST_PLANE + 2) uniform Plane glowPlane;
-
-const float LARGEST_HALF = 65504.0;
 
 vec4 composite(ivec2 pixel, int i, vec4 behind) {
   vec4 body = min(planeAt(bodyPlane, pixel, i), LARGEST_HALF); // where a sum is infinite, the surfaces look white
