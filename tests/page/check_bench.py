@@ -1,5 +1,5 @@
 """The page of `vitrail bench -o`, in headless Chromium: it opens without an error and without a network, every chart is
-there with every method in its colour, and so are the advice and the tables.
+there with every method in its colour, and so are the advice, the tables and what was skipped.
 
 Usage: check_bench.py VITRAIL [NAME]     NAME: what files begin with in which to leave screenshots of the pages"""
 import base64
@@ -70,6 +70,25 @@ def check_content(browser, report):
     sizes = [[1 + len({setting_of(scene, m) for scene in scenes for m in scene["measurements"]}), 1 + len(scenes)]
              for scenes in groups.values() for _ in measures]
     expect(tables == sizes, f"the tables have {tables} rows and columns, not {sizes}")
+    check_skipped(browser, groups.values())
+
+
+def check_skipped(browser, groups):
+    """Every setting that was skipped is named once, with the scenes or steps at which it was if not at all of them."""
+    wanted = []
+    for scenes in groups:
+        where = {}
+        for scene in scenes:
+            everything = not scene["measurements"]
+            for skipped in scene["skipped"]:
+                if everything and skipped["method"] != "unsorted":
+                    continue
+                name = "every method" if everything else setting_of(scene, skipped)
+                count = "" if scene["count"] is None else f" × {scene['count']}"
+                where.setdefault(f"{name}: {skipped['reason']}", []).append(scene["label"] or scene["scene"] + count)
+        wanted += [text if len(at) == len(scenes) else f"at {', '.join(at)}: {text}" for text, at in where.items()]
+    told = browser.value("[...document.querySelectorAll('.skipped li')].map((item) => item.textContent)")
+    expect(told == wanted, f"the page tells of skipped settings {told}, not {wanted}")
 
 
 def check_hiding(browser):
@@ -103,7 +122,7 @@ def main():
         try:
             for name, arguments in {
                 "sweeps": ["--sweep", "layers,triangles,samples", "--count", "1", *small],
-                "scenes": ["--scene", "planes,interlocked", *small],
+                "scenes": ["--scene", "planes,interlocked", "--nodes", "standard,hdr", "--samples", "1,8", *small],
             }.items():
                 page = os.path.join(folder, name)
                 report = make_page(tool, page, arguments)

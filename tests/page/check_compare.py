@@ -12,6 +12,7 @@ import tempfile
 from browser import Browser
 
 WIDTH, HEIGHT = 96, 64
+NOT_EXACT = "The picture that all are compared with is itself not exact."
 failures = []
 
 
@@ -22,7 +23,7 @@ def expect(condition, what):
 
 def make_page(tool, folder):
     subprocess.run([tool, "compare", "--scene", "interlocked", "--count", "3", "--size", f"{WIDTH}x{HEIGHT}",
-                    "--repeat", "1", "--quiet", "-o", folder], check=True)
+                    "--repeat", "1", "--passes", "3", "--quiet", "-o", folder], check=True)
     with open(os.path.join(folder, "report.json"), encoding="utf-8") as file:
         return json.load(file)
 
@@ -44,8 +45,21 @@ def check_content(browser, report):
     marks = browser.value("[...document.querySelectorAll('#layers-legend span')].map((mark) => mark.textContent)")
     expect(marks[0] == "0" and marks[-1] == str(report["layers_max"]), f"the legend of the layers has {marks}")
     text = browser.value("document.body.innerText")
-    for words in (report["device"], "Chart.js 3", "MIT License"):
+    for words in (report["device"], "Chart.js 3", "MIT License", "Of the methods that have the option: --passes 3."):
         expect(words in text, f"the page does not say {words}")
+    expect(NOT_EXACT not in text, "the page says that the exact picture is not exact")
+
+
+def check_inexact(browser, page):
+    """The same page of a picture that was to be exact and is not."""
+    with open(os.path.join(page, "index.html"), encoding="utf-8") as file:
+        html = file.read()
+    begin = html.index('"exact_picture"')
+    with open(os.path.join(page, "inexact.html"), "w", encoding="utf-8") as file:
+        file.write(html[:begin] + html[begin:].replace('"exact": true', '"exact": false', 1))
+    browser.events.clear()
+    browser.open(os.path.join(page, "inexact.html"))
+    expect(NOT_EXACT in browser.value("document.body.innerText"), "the page does not say that its exact picture is not")
 
 
 def place_of_handle(browser):
@@ -93,6 +107,7 @@ def main():
                 with open(picture[0], "wb") as file:
                     file.write(base64.b64decode(browser.screenshot(whole=True)))
             check_slider(browser)
+            check_inexact(browser, page)
         finally:
             browser.close()
     failures.extend(browser.errors)

@@ -1,37 +1,18 @@
 // `vitrail bench` and the method insertion as a user meets them.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "png_reader.h"
-#include "process.h"
+#include "vitrail.h"
 
 namespace vitrail::tests {
 namespace {
-
-using Json = nlohmann::json;
-using Words = std::vector<std::string>;
-
-const std::string kTool = VITRAIL_TEST_TOOL;
-const std::string kSanitizedTool = VITRAIL_TEST_SANITIZED_TOOL;
-
-ProcessResult vitrail(const TemporaryFolder& folder, Words arguments) {
-  arguments.insert(arguments.begin(), kTool);
-  ProcessOptions options;
-  options.folder = folder.path();
-  return run(arguments, options);
-}
-
-Json readJson(const std::string& path) {
-  std::ifstream file(path);
-  return Json::parse(file);
-}
 
 // A spread of at least one time above 0.
 void expectTimes(const Json& spread) {
@@ -129,6 +110,10 @@ TEST(Bench, EverySettingIsMeasuredOrSkippedWithAReason) {
   EXPECT_EQ(scene.at("measurements")[2].at("nodes"), "standard");
   for (const Json& skipped : scene.at("skipped")) {
     EXPECT_EQ(skipped.at("samples"), 8) << skipped.dump();
+    const bool hasNodes = skipped.at("method") == "linked-list";
+    EXPECT_EQ(skipped.at("nodes").is_null(), !hasNodes) << skipped.dump();
+    const std::string nodes = hasNodes ? ", " + skipped.at("nodes").get<std::string>() + ", fragment" : "";
+    EXPECT_EQ(skipped.at("setting"), skipped.at("method").get<std::string>() + nodes) << skipped.dump();
     EXPECT_NE(skipped.at("reason").get<std::string>().find("samples"), std::string::npos) << skipped.dump();
     EXPECT_NE(result.out.find(skipped.at("reason")), std::string::npos) << result.out;
   }
@@ -266,16 +251,11 @@ TEST(Bench, SweepsGoToTheTableAndToAllFiles) {
 
 TEST(Bench, ProgressOfASweepIsShownOnATerminalAlone) {
   const TemporaryFolder folder;
-  const std::string command = kTool + " bench --sweep samples --count 1 --size 16x16 --repeat 1 --methods unsorted ";
-  const auto onTerminal = [&](const std::string& more) {
-    return run({"/usr/bin/script", "-qec", command + more, "/dev/null"},
-               {.folder = folder.path(), .environment = {}, .running = {}})
-        .out;
-  };
-  const std::string shown = onTerminal("");
-  EXPECT_NE(shown.find("samples, step 2 of 4"), std::string::npos) << shown;
-  EXPECT_NE(shown.find("round 1 of 1"), std::string::npos) << shown;
-  EXPECT_EQ(onTerminal("--quiet"), "");
+  const std::string command = "bench --sweep samples --count 1 --size 16x16 --repeat 1 --methods unsorted ";
+  const std::string shown = onTerminal(folder, command);
+  EXPECT_NE(shown.find("samples: step 2 of 4, unsorted, 2 samples"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("samples: round 1 of 1"), std::string::npos) << shown; // of all steps
+  EXPECT_EQ(onTerminal(folder, command + "--quiet"), "");
 }
 
 TEST(Bench, TheReportCanGoToStandardOutput) {
@@ -296,26 +276,11 @@ TEST(Bench, QuietPrintsNothing) {
 
 TEST(Bench, TheHelpPageNamesEveryOption) {
   const std::string help = vitrail(TemporaryFolder(), {"bench", "--help"}).out;
-  for (const char* option :
-       {"MODEL", "--scene", "--count", "--size", "--opacity", "--methods", "--nodes", "--samples", "--resolve",
-        "--repeat", "--warmup", "--json", "--csv", "--sweep", "--output", "-o", "--quiet", "--device"}) {
+  for (const char* option : {"MODEL",     "--scene",   "--count",  "--size",   "--opacity", "--methods", "--nodes",
+                             "--samples", "--resolve", "--layers", "--passes", "--repeat",  "--warmup",  "--json",
+                             "--csv",     "--sweep",   "--output", "-o",       "--quiet",   "--device"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
-}
-
-// One line on standard error, nothing on standard output, nothing on disk.
-void expectRefusal(const std::string& tool, Words arguments, int exitCode, const std::string& reason) {
-  const TemporaryFolder folder;
-  arguments.insert(arguments.begin(), {tool, "bench"});
-  ProcessOptions options;
-  options.folder = folder.path();
-  const ProcessResult result = run(arguments, options);
-  EXPECT_EQ(result.exitCode, exitCode) << result.error;
-  EXPECT_EQ(result.out, "");
-  EXPECT_TRUE(result.error.starts_with("vitrail: error: ")) << result.error;
-  EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
-  EXPECT_NE(result.error.find(reason), std::string::npos) << result.error;
-  EXPECT_EQ(folder.names(), Words{});
 }
 
 TEST(Bench, WrongUsageIsOneLineAndExitCode2) {
@@ -353,9 +318,14 @@ TEST(Bench, WrongUsageIsOneLineAndExitCode2) {
       {{"--sweep", "samples", "--samples", "4"}, "leave --samples out"},
       {{"--sweep", "layers", "--samples", "1,4"}, "one number of --samples"},
       {{"--csv", "a.json"}, "--json and --csv name one file"},
+      {{"--layers", "0"}, "--layers"},
+      {{"--passes", "1.5"}, "--passes"},
+      {{"--methods", "weighted", "--layers", "4"}, "weighted has no choice"},
+      {{"--methods", "linked-list,loop", "--passes", "4"}, "linked-list has no choice"},
   };
   for (const auto& [arguments, reason] : cases) {
-    Words words = arguments;
+    Words words{"bench"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
     words.insert(words.end(), {"--json", "a.json"});
     expectRefusal(kTool, words, 2, reason);
     expectRefusal(kSanitizedTool, words, 2, reason);
@@ -364,14 +334,59 @@ TEST(Bench, WrongUsageIsOneLineAndExitCode2) {
 
 TEST(Bench, WhatCannotBeDoneIsOneLineAndExitCode1) {
   for (const std::string& tool : {kTool, kSanitizedTool}) {
-    expectRefusal(tool, {"no-such-file.glb", "--json", "a.json"}, 1, "no-such-file.glb");
-    expectRefusal(tool, {"--json", "nowhere/a.json"}, 1, "nowhere");
-    expectRefusal(tool, {"--csv", "nowhere/a.csv"}, 1, "nowhere");
-    expectRefusal(tool, {"-o", "nowhere/out"}, 1, "nowhere");
+    expectRefusal(tool, {"bench", "no-such-file.glb", "--json", "a.json"}, 1, "no-such-file.glb");
+    expectRefusal(tool, {"bench", "--json", "nowhere/a.json"}, 1, "nowhere");
+    expectRefusal(tool, {"bench", "--csv", "nowhere/a.csv"}, 1, "nowhere");
+    expectRefusal(tool, {"bench", "-o", "nowhere/out"}, 1, "nowhere");
   }
-  expectRefusal(kTool, {"--device", "abacus", "--json", "a.json"}, 1, "abacus");
+  expectRefusal(kTool, {"bench", "--device", "abacus", "--json", "a.json"}, 1, "abacus");
   const std::string opaque = VITRAIL_TEST_CORPUS "/good/triangle.gltf";
-  expectRefusal(kTool, {opaque, "--size", "16x16", "--repeat", "1", "--json", "a.json"}, 1, "--opacity");
+  for (const char* methods : {"linked-list", "unsorted", "weighted"}) { // whether or not one of them counts fragments
+    expectRefusal(kTool,
+                  {"bench", opaque, "--size", "16x16", "--repeat", "1", "--methods", methods, "--json", "a.json"}, 1,
+                  "--opacity");
+  }
+}
+
+// What -o writes cannot be another output too: said before anything is measured.
+TEST(Bench, AnOutputThatTheFolderHasIsRefused) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "out");
+  for (const std::string option : {"--json", "--csv"}) {
+    for (const std::string name : {"report.json", "report.csv", "index.html"}) {
+      expectRefusal(folder, kTool, {"bench", "-o", "out/", option, "./out/" + name}, 2,
+                    "-o writes out/" + name + " itself: leave " + option + " out or name another file");
+    }
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "out"));
+}
+
+// They are of the methods that have them, in every list of settings.
+TEST(Bench, LayersAndPasses) {
+  const TemporaryFolder folder;
+  const ProcessResult result = vitrail(folder, {"bench", "--scene", "planes", "--count", "5", "--size", "16x16",
+                                                "--repeat", "1", "--methods", "linked-list,depth-peeling,stochastic",
+                                                "--samples", "1,4", "--layers", "2", "--passes", "3", "-o", "out"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_NE(result.out.find("\nOf the methods that have the option: --layers 2 --passes 3\n"), std::string::npos)
+      << result.out;
+  const Json scene = readJson(folder.file("out/report.json")).at("scenes")[0];
+  const std::map<std::string, std::string> settings{{"unsorted", "unsorted"},
+                                                    {"linked-list", "linked-list, standard, 2 layers"},
+                                                    {"depth-peeling", "depth-peeling, 2 layers"},
+                                                    {"stochastic", "stochastic, 3 passes"}};
+  std::size_t count = 0;
+  for (const char* list : {"measurements", "skipped"}) {
+    for (const Json& each : scene.at(list)) {
+      const std::string setting = settings.at(each.at("method"));
+      EXPECT_EQ(each.at("setting"), setting);
+      EXPECT_EQ(each.at("max_layers"), setting.ends_with("layers") ? Json(2) : Json()) << setting;
+      EXPECT_EQ(each.at("passes"), setting.ends_with("passes") ? Json(3) : Json()) << setting;
+      ++count;
+    }
+  }
+  EXPECT_EQ(count, 8U);
+  EXPECT_EQ(scene.at("measurements")[1].at("exact"), false); // 2 of 5
 }
 
 // The same picture as the library's resolve, to the last bit of rounding, as long as no list is longer than its array.

@@ -2,12 +2,9 @@
 // program takes every bad option and every bad file.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include <signal.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdlib>
@@ -17,50 +14,13 @@
 #include <utility>
 
 #include "png_reader.h"
-#include "process.h"
+#include "vitrail.h"
 
 namespace vitrail::tests {
 namespace {
 
 namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
-
-const std::string kTool = VITRAIL_TEST_TOOL;
-const std::string kSanitizedTool = VITRAIL_TEST_SANITIZED_TOOL;
 const std::string kModels = VITRAIL_TEST_MODELS; // assimp-testmodels
-
-ProcessResult vitrail(Words arguments, const ProcessOptions& options = {}) {
-  arguments.insert(arguments.begin(), kTool);
-  return run(arguments, options);
-}
-
-ProcessOptions in(const TemporaryFolder& folder) {
-  ProcessOptions options;
-  options.folder = folder.path();
-  return options;
-}
-
-// One line on standard error that says what is wrong, nothing on standard output, nothing on disk.
-void expectRefusal(const std::string& tool, Words arguments, int exitCode, const std::string& reason = "") {
-  std::string command;
-  for (const std::string& argument : arguments) command += " " + argument;
-  SCOPED_TRACE(tool + command);
-  const TemporaryFolder folder;
-  arguments.insert(arguments.begin(), tool);
-  const ProcessResult result = run(arguments, in(folder));
-  EXPECT_EQ(result.exitCode, exitCode) << result.error;
-  EXPECT_EQ(result.out, "");
-  EXPECT_TRUE(result.error.starts_with("vitrail: error: ")) << result.error;
-  EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
-  EXPECT_LT(result.error.size(), 500U) << result.error;
-  EXPECT_NE(result.error.find(reason), std::string::npos) << result.error;
-  EXPECT_EQ(folder.names(), Words{});
-}
-
-std::string readText(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 // A small picture that is quick to draw.
 Words smallRender(const std::string& output) {
@@ -213,7 +173,7 @@ TEST(Cli, APictureAndItsReport) {
   const TemporaryFolder folder;
   Words arguments = smallRender("a.png");
   arguments.insert(arguments.end(), {"--json", "a.json"});
-  const ProcessResult result = vitrail(arguments, in(folder));
+  const ProcessResult result = vitrail(folder, arguments);
   ASSERT_EQ(result.exitCode, 0) << result.error;
   EXPECT_EQ(folder.names(), (Words{"a.json", "a.png"}));
   EXPECT_TRUE(result.out.starts_with("a.png: 96x64, ")) << result.out;
@@ -226,7 +186,7 @@ TEST(Cli, APictureAndItsReport) {
   for (std::size_t i = 0; i < png.rgba.size(); i += 4) colors.insert({png.rgba[i], png.rgba[i + 1], png.rgba[i + 2]});
   EXPECT_GT(colors.size(), 100U); // lit surfaces over each other
 
-  const auto json = nlohmann::json::parse(readText(folder.path() / "a.json"));
+  const auto json = readJson(folder.file("a.json"));
   EXPECT_TRUE(json.at("device").is_string());
   EXPECT_TRUE(json.at("api").is_string());
   EXPECT_EQ(json.at("method"), "linked-list");
@@ -259,7 +219,7 @@ TEST(Cli, APictureAndItsReport) {
 // A picture and what its report says.
 struct Drawn {
   ReadPng png;
-  nlohmann::json report;
+  Json report;
 };
 
 // Draws a small picture with some options, under the validation layer.
@@ -271,10 +231,10 @@ Drawn draw(const Words& options, const std::string& scene = "interlocked", const
   Words arguments = {"render", "--scene", scene, "--size", size, "--background", "transparent", "--validate"};
   arguments.insert(arguments.end(), {"-o", "a.png", "--json", "a.json"});
   arguments.insert(arguments.end(), options.begin(), options.end());
-  const ProcessResult result = vitrail(arguments, in(folder));
+  const ProcessResult result = vitrail(folder, arguments);
   EXPECT_EQ(result.exitCode, 0) << result.error;
   if (result.exitCode != 0) return {};
-  return {readPng(folder.file("a.png")), nlohmann::json::parse(readText(folder.path() / "a.json"))};
+  return {readPng(folder.file("a.png")), readJson(folder.file("a.json"))};
 }
 
 int largestDifference(const ReadPng& a, const ReadPng& b) {
@@ -383,7 +343,7 @@ TEST(Cli, AMemoryBudgetForLittleOrNothing) {
     tiled.back() = "tiled.png";
     tiled.insert(tiled.end(), {"--memory-budget", "1"});
     for (const Words& arguments : {whole, tiled}) {
-      const ProcessResult result = vitrail(arguments, in(folder));
+      const ProcessResult result = vitrail(folder, arguments);
       EXPECT_EQ(result.exitCode, 0) << result.error;
     }
     EXPECT_EQ(readText(folder.path() / "tiled.png"), readText(folder.path() / "whole.png"));
@@ -418,8 +378,10 @@ TEST(Cli, ASampleCountThatTheDeviceLacksIsRefusedByName) {
   const std::string line = info.substr(at, info.find('\n', at) - at);
   for (const std::string samples : {"2", "4", "8"}) {
     if (line.find(samples) != std::string::npos) continue;
-    expectRefusal(kTool, {"render", "--scene", "interlocked", "-o", "a.png", "--samples", samples}, 1,
-                  "not " + samples);
+    for (const char* command : {"render", "compare"}) {
+      expectRefusal(kTool, {command, "--scene", "interlocked", "-o", "a.png", "--samples", samples}, 1,
+                    "not " + samples);
+    }
   }
 }
 
@@ -430,7 +392,7 @@ TEST(Cli, TransmissionTintsWhatIsBehind) {
   const auto picture = [&](const Words& options) {
     Words arguments = {"render", model, "--size", "160x60", "--validate", "-o", "a.png"};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    const ProcessResult result = vitrail(arguments, in(folder));
+    const ProcessResult result = vitrail(folder, arguments);
     EXPECT_EQ(result.exitCode, 0) << result.error;
     return readPng(folder.file("a.png"));
   };
@@ -448,7 +410,7 @@ TEST(Cli, TheSamePictureTenTimes) {
   const TemporaryFolder folder;
   std::string first;
   for (int i = 0; i < 10; ++i) {
-    ASSERT_EQ(vitrail(smallRender("a.png"), in(folder)).exitCode, 0);
+    ASSERT_EQ(vitrail(folder, smallRender("a.png")).exitCode, 0);
     const std::string bytes = readText(folder.path() / "a.png");
     if (i == 0) first = bytes;
     EXPECT_TRUE(bytes == first) << "run " << i;
@@ -459,7 +421,7 @@ TEST(Cli, QuietPrintsNothing) {
   const TemporaryFolder folder;
   Words arguments = smallRender("a.png");
   arguments.push_back("--quiet");
-  const ProcessResult result = vitrail(arguments, in(folder));
+  const ProcessResult result = vitrail(folder, arguments);
   EXPECT_EQ(result.exitCode, 0) << result.error;
   EXPECT_EQ(result.out + result.error, "");
 }
@@ -468,7 +430,7 @@ TEST(Cli, ATransparentBackgroundMakesAnAlphaChannel) {
   const TemporaryFolder folder;
   Words arguments = smallRender("a.png");
   arguments.insert(arguments.end(), {"--background", "transparent"});
-  ASSERT_EQ(vitrail(arguments, in(folder)).exitCode, 0);
+  ASSERT_EQ(vitrail(folder, arguments).exitCode, 0);
   const ReadPng png = readPng(folder.file("a.png"));
   EXPECT_TRUE(png.hasAlpha);
   EXPECT_EQ(png.rgba[3], 0); // the corner shows nothing
@@ -481,7 +443,7 @@ TEST(Cli, TheBackgroundColourReachesThePictureExactly) {
   const TemporaryFolder folder;
   Words arguments = smallRender("a.png");
   arguments.insert(arguments.end(), {"--background", "#0a80fe"});
-  ASSERT_EQ(vitrail(arguments, in(folder)).exitCode, 0);
+  ASSERT_EQ(vitrail(folder, arguments).exitCode, 0);
   const ReadPng png = readPng(folder.file("a.png"));
   EXPECT_EQ(png.rgba[0], 0x0a);
   EXPECT_EQ(png.rgba[1], 0x80);
@@ -492,10 +454,9 @@ TEST(Cli, AnOldPictureStaysUntilTheNewOneIsThere) {
   const TemporaryFolder folder;
   const std::string old = "an older picture";
   std::ofstream(folder.path() / "a.png") << old;
-  const ProcessOptions here = in(folder);
-  EXPECT_EQ(vitrail({"render", "no-such-file.glb", "-o", "a.png"}, here).exitCode, 1);
+  EXPECT_EQ(vitrail(folder, {"render", "no-such-file.glb", "-o", "a.png"}).exitCode, 1);
   EXPECT_EQ(readText(folder.path() / "a.png"), old);
-  EXPECT_EQ(vitrail(smallRender("a.png"), here).exitCode, 0);
+  EXPECT_EQ(vitrail(folder, smallRender("a.png")).exitCode, 0);
   EXPECT_EQ(readPng(folder.file("a.png")).width, 96U);
   EXPECT_EQ(folder.names(), Words{"a.png"});
 }
@@ -504,7 +465,7 @@ TEST(Cli, ALinkStaysALink) {
   const TemporaryFolder folder;
   fs::create_symlink("real.png", folder.path() / "link.png");
   std::ofstream(folder.path() / "real.png") << "old";
-  ASSERT_EQ(vitrail(smallRender("link.png"), in(folder)).exitCode, 0);
+  ASSERT_EQ(vitrail(folder, smallRender("link.png")).exitCode, 0);
   EXPECT_TRUE(fs::is_symlink(folder.path() / "link.png"));
   EXPECT_EQ(readPng(folder.file("real.png")).width, 96U);
 }
@@ -536,17 +497,17 @@ TEST(Cli, StandardOutputCanTakeTheReport) {
   const TemporaryFolder folder;
   Words arguments = smallRender("a.png");
   arguments.insert(arguments.end(), {"--json", "/dev/stdout"});
-  const ProcessResult result = vitrail(arguments, in(folder));
+  const ProcessResult result = vitrail(folder, arguments);
   ASSERT_EQ(result.exitCode, 0) << result.error;
-  EXPECT_EQ(nlohmann::json::parse(result.out).at("exact"), true);
+  EXPECT_EQ(Json::parse(result.out).at("exact"), true);
 }
 
 TEST(Cli, AMovedProgramNeedsNoFilesBesideIt) {
   const TemporaryFolder folder;
   fs::copy_file(kTool, folder.path() / "moved");
   const ProcessResult result =
-      run({folder.file("moved"), "render", "--scene", "interlocked", "--size", "32x32", "--validate", "-o", "a.png"},
-          in(folder));
+      vitrail(folder, {"render", "--scene", "interlocked", "--size", "32x32", "--validate", "-o", "a.png"},
+              folder.file("moved"));
   EXPECT_EQ(result.exitCode, 0) << result.error;
   EXPECT_EQ(readPng(folder.file("a.png")).width, 32U);
 }
@@ -555,11 +516,10 @@ TEST(Cli, AMovedProgramNeedsNoFilesBesideIt) {
 TEST(Cli, AnEngineSeenThrough) {
   const TemporaryFolder folder;
   const std::string model = kModels + "/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb";
-  const ProcessResult result = vitrail({"render", model, "--opacity", "0.25", "--size", "320x180", "--validate", "-o",
-                                        "engine.png", "--json", "engine.json"},
-                                       in(folder));
+  const ProcessResult result = vitrail(folder, {"render", model, "--opacity", "0.25", "--size", "320x180", "--validate",
+                                                "-o", "engine.png", "--json", "engine.json"});
   ASSERT_EQ(result.exitCode, 0) << result.error;
-  const auto json = nlohmann::json::parse(readText(folder.path() / "engine.json"));
+  const auto json = readJson(folder.file("engine.json"));
   EXPECT_EQ(json.at("exact"), true);
   EXPECT_GT(json.at("layers").at("max"), 10);
 }

@@ -1,27 +1,18 @@
 // `vitrail compare` of transparency methods as a user meets it. The page is opened by tests/page.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <fstream>
 
 #include "png_reader.h"
-#include "process.h"
+#include "vitrail.h"
 
 namespace vitrail::tests {
 namespace {
 
-using Json = nlohmann::json;
-using Words = std::vector<std::string>;
-
-const std::string kTool = VITRAIL_TEST_TOOL;
-
 ProcessResult compare(const TemporaryFolder& folder, Words arguments) {
-  arguments.insert(arguments.begin(), {kTool, "compare"});
-  ProcessOptions options;
-  options.folder = folder.path();
-  return run(arguments, options);
+  arguments.insert(arguments.begin(), "compare");
+  return vitrail(folder, std::move(arguments));
 }
 
 // A small comparison that is quick to draw.
@@ -29,11 +20,6 @@ Words smallComparison(const Words& more) {
   Words all{"--scene", "interlocked", "--size", "96x64", "--repeat", "2", "--warmup", "1"};
   all.insert(all.end(), more.begin(), more.end());
   return all;
-}
-
-Json readJson(const std::string& path) {
-  std::ifstream file(path);
-  return Json::parse(file);
 }
 
 const Json& methodNamed(const Json& report, const std::string& name) {
@@ -128,17 +114,11 @@ TEST(Compare, MethodsThatAreLeftOut) {
 
 TEST(Compare, ProgressIsShownOnATerminalAlone) {
   const TemporaryFolder folder;
-  const auto onTerminal = [&](const std::string& more) {
-    const std::string command =
-        kTool + " compare --scene planes --count 2 --size 32x32 --repeat 1 --methods unsorted " + more;
-    return run({"/usr/bin/script", "-qec", command, "/dev/null"},
-               {.folder = folder.path(), .environment = {}, .running = {}})
-        .out;
-  };
-  const std::string shown = onTerminal("");
+  const std::string command = "compare --scene planes --count 2 --size 32x32 --repeat 1 --methods unsorted ";
+  const std::string shown = onTerminal(folder, command);
   EXPECT_NE(shown.find("round 1 of 1"), std::string::npos) << shown;
   EXPECT_NE(shown.find("the exact picture"), std::string::npos) << shown;
-  EXPECT_EQ(onTerminal("--quiet"), "");
+  EXPECT_EQ(onTerminal(folder, command + "--quiet"), "");
 }
 
 TEST(Compare, WhatCannotBeDoneLeavesNothing) {
@@ -148,21 +128,55 @@ TEST(Compare, WhatCannotBeDoneLeavesNothing) {
       {smallComparison({"-o", "file"}), 1, "not a folder"},
       {smallComparison({"-o", "nowhere/out"}), 1, "nowhere"},
       {smallComparison({"-o", "out", "--device", "abacus"}), 1, "abacus"},
-      {smallComparison({"-o", "out", "--samples", "8"}), 1, "8"}, // Mesa's CPU driver has none
+      {{VITRAIL_TEST_CORPUS "/good/triangle.gltf", "--methods", "unsorted", "-o", "out"}, 1, "--opacity"},
       {{"none.glb", "-o", "out"}, 1, "none.glb"},
       {{"--scene", "spheres", "--size", "65536x1", "-o", "out"}, 1, "too large"},
       {{"--scene", "sheres", "-o", "out"}, 2, "spheres"},
       {{"--scene", "spheres", "--camera", "9", "-o", "out"}, 2, "--camera"},
   };
   for (const auto& [arguments, exitCode, reason] : cases) {
-    SCOPED_TRACE(reason);
-    const ProcessResult result = compare(folder, arguments);
-    EXPECT_EQ(result.exitCode, exitCode) << result.error;
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
-    EXPECT_NE(result.error.find(reason), std::string::npos) << result.error;
-    EXPECT_EQ(folder.names(), Words{"file"});
+    Words words{"compare"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    expectRefusal(folder, kTool, words, exitCode, reason);
   }
+}
+
+// What -o writes cannot be the report of --json too: said before anything is measured.
+TEST(Compare, AReportThatTheFolderHasIsRefused) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "out");
+  for (const std::string name : {"report.json", "index.html", "exact.png", "unsorted-error.png"}) {
+    Words words = smallComparison({"-o", "out", "--json", "./out/" + name});
+    words.insert(words.begin(), "compare");
+    expectRefusal(folder, kTool, words, 2, "-o writes out/" + name + " itself: leave --json out or name another file");
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "out"));
+  }
+  ASSERT_EQ(compare(folder, smallComparison({"--methods", "unsorted", "-o", "out", "--json", "out/r.json"})).exitCode,
+            0);
+  EXPECT_EQ(readJson(folder.file("out/r.json")), readJson(folder.file("out/report.json")));
+}
+
+// They are of the methods that have them, and the exact picture stays exact.
+TEST(Compare, LayersAndPasses) {
+  const TemporaryFolder folder;
+  const ProcessResult result =
+      compare(folder, smallComparison({"--methods", "linked-list,depth-peeling,stochastic", "--layers", "1", "--passes",
+                                       "3", "--quiet", "--validate", "-o", "out"}));
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json report = readJson(folder.file("out/report.json"));
+  const Json none;
+  for (const Json& method : report.at("methods")) {
+    const std::string name = method.at("method");
+    const bool hasLayers = name == "linked-list" || name == "depth-peeling";
+    EXPECT_EQ(method.at("max_layers"), hasLayers ? Json(1) : none) << name;
+    EXPECT_EQ(method.at("passes"), name == "stochastic" ? Json(3) : none) << name;
+    if (hasLayers) {
+      EXPECT_EQ(method.at("exact"), false) << name;
+      EXPECT_GT(method.at("metrics").at("flip"), 0.01) << name;
+    }
+  }
+  EXPECT_EQ(report.at("methods").size(), 4U);
+  EXPECT_EQ(report.at("exact_picture").at("exact"), true);
 }
 
 // A folder that is there keeps what else lies in it, and gets the new files.
@@ -181,9 +195,10 @@ TEST(Compare, TheHelpPageNamesEveryOption) {
   const TemporaryFolder folder;
   const ProcessResult result = compare(folder, {"--help"});
   EXPECT_EQ(result.exitCode, 0);
-  for (const char* option : {"--scene", "--count", "--seed", "--size", "--camera", "--orbit", "--opacity",
-                             "--background", "--methods", "--samples", "--repeat", "--warmup", "--output", "-o",
-                             "--heatmap", "--json", "--quiet", "--device", "--validate"}) {
+  for (const char* option :
+       {"--scene",      "--count",   "--seed",    "--size",   "--camera", "--orbit",  "--opacity",
+        "--background", "--methods", "--samples", "--layers", "--passes", "--repeat", "--warmup",
+        "--output",     "-o",        "--heatmap", "--json",   "--quiet",  "--device", "--validate"}) {
     EXPECT_NE(result.out.find(option), std::string::npos) << option;
   }
 }

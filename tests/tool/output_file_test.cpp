@@ -37,6 +37,20 @@ int inChild(const std::function<void()>& work) {
   return status;
 }
 
+// The same on a disk that takes 1000 bytes a file. Exit code 7: the work threw std::runtime_error.
+int onAFullDisk(const std::function<void()>& work) {
+  return inChild([&] {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{1000, 1000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      work();
+    } catch (const std::runtime_error&) {
+      ::_exit(7);
+    }
+  });
+}
+
 TEST(OutputFile, ASignalRemovesWhatIsNotWhole) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const TemporaryFolder folder;
@@ -53,16 +67,9 @@ TEST(OutputFile, ASignalRemovesWhatIsNotWhole) {
 
 TEST(OutputFile, AFullDiskRemovesWhatIsNotWhole) {
   const TemporaryFolder folder;
-  const int status = inChild([&] {
-    ::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{1000, 1000}; // bytes a file may have
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-    try {
-      OutputFile file(folder.file("a.png"));
-      file.write(kContent);
-    } catch (const std::runtime_error&) {
-      ::_exit(7);
-    }
+  const int status = onAFullDisk([&] {
+    OutputFile file(folder.file("a.png"));
+    file.write(kContent);
   });
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
   EXPECT_EQ(folder.names(), std::vector<std::string>{});
@@ -96,17 +103,10 @@ TEST(OutputFolder, ASignalRemovesItWithWhatIsNotWhole) {
 
 TEST(OutputFolder, AFullDiskRemovesItWithWhatIsNotWhole) {
   const TemporaryFolder folder;
-  const int status = inChild([&] {
-    ::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{1000, 1000}; // bytes a file may have
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-    try {
-      OutputFolder out(folder.file("out"));
-      out.write("small", std::span(kContent).first(10));
-      out.write("large", kContent);
-    } catch (const std::runtime_error&) {
-      ::_exit(7);
-    }
+  const int status = onAFullDisk([&] {
+    OutputFolder out(folder.file("out"));
+    out.write("small", std::span(kContent).first(10));
+    out.write("large", kContent);
   });
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
   EXPECT_EQ(folder.names(), std::vector<std::string>{});

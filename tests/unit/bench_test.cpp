@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "bench/cells.h"
 #include "bench/csv.h"
 #include "bench/matrix.h"
 #include "bench/measurement.h"
@@ -69,7 +70,6 @@ TEST(Traffic, BytesByHand) {
   EXPECT_EQ(leastBytes(frame), 8000U + 800U + 16800U + 40000U);
 }
 
-// Words, for comparison.
 std::vector<std::string> describeAll(const BenchMatrix& matrix) {
   std::vector<std::string> texts;
   for (const MethodOptions& options : configurationsOf(matrix).measured) texts.push_back(describe(options));
@@ -101,6 +101,31 @@ TEST(BenchMatrix, WhatAMethodDoesNotHaveIsSkippedWithAReason) {
     EXPECT_NE(each.reason.find("sample"), std::string::npos) << each.reason;
   }
   EXPECT_EQ(skipped, (std::vector<std::string>{"insertion, 8 samples", "linked-list, compact, 8 samples"}));
+}
+
+std::string refusalOf(const std::vector<std::string>& methods, const MethodLimits& limits) {
+  try {
+    checkLimits(methods, limits);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(BenchMatrix, LimitsAreOfTheMethodsThatHaveThem) {
+  BenchMatrix matrix;
+  matrix.methods = {"linked-list", "weighted", "loop", "stochastic"};
+  matrix.resolves = {VITRAIL_RESOLVE_FRAGMENT};
+  matrix.limits = {16, 1};
+  EXPECT_EQ(describeAll(matrix), (std::vector<std::string>{"unsorted", "linked-list, standard, fragment, 16 layers",
+                                                           "weighted", "loop, 16 layers", "stochastic, 1 pass"}));
+  EXPECT_EQ(describe(matrix.limits), "Of the methods that have the option: --layers 16 --passes 1\n");
+  EXPECT_EQ(describe(MethodLimits{}), "");
+  EXPECT_EQ(refusalOf({}, matrix.limits), ""); // all methods
+  EXPECT_EQ(refusalOf({"weighted"}, {}), "");
+  EXPECT_EQ(refusalOf({"unsorted", "loop"}, {16, 0}), "");
+  EXPECT_EQ(refusalOf({"weighted", "sorted"}, {16, 0}).find("--layers is of the method linked-list, "), 0U);
+  EXPECT_EQ(refusalOf({"loop"}, {16, 4}), "--passes is of the method stochastic: loop has no choice, leave it out");
 }
 
 TEST(BenchMatrix, WithoutAChoiceThereIsEveryMethodOnce) {
@@ -191,6 +216,19 @@ TEST(Measurement, ABaselineThatTookNoTimeGivesNoRatio) {
   EXPECT_FALSE(both[0].fragmentsPerSecond.has_value());
 }
 
+TEST(Cells, NumbersInFewCharacters) {
+  EXPECT_EQ(shortCount(999), "999");
+  EXPECT_EQ(shortCount(9'949), "9.9 k");
+  EXPECT_EQ(shortCount(9'950), "10 k");
+  EXPECT_EQ(shortCount(999'499), "999 k");
+  EXPECT_EQ(shortCount(999'500), "1.0 M");
+  EXPECT_EQ(milliseconds(999.9994), "999.999");
+  EXPECT_EQ(milliseconds(1000.04), "1000.0");
+  EXPECT_EQ(ratio(1.084), "1.08");
+  EXPECT_EQ(ratio(std::nan("")), "-");
+  EXPECT_EQ(mebibytes(std::uint64_t{3} << 19U), "1.5 MiB");
+}
+
 BenchReport smallReport() {
   BenchReport report;
   report.device = "Abacus";
@@ -226,14 +264,16 @@ TEST(BenchTable, HoldsWhatWasMeasuredIn120Columns) {
   slow.report.resolve = "fragment";
   Measurement other = slow; // the longest name, and many passes
   other.options = MethodOptions{};
-  other.options.name = "sorted-triangles";
+  other.options.name = *std::ranges::max_element(methodNames(), {}, &std::string_view::size);
   other.report.nodes.clear();
+  other.report.resolve.clear();
   for (const char* pass : {"count", "absorbance", "composite", "stochastic"}) other.passes.emplace_back(pass, Spread{});
   report.scenes[0].measurements.push_back(other);
   const std::string table = toTable(report);
   std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120U) << line;
   EXPECT_NE(table.find(" linked-list, standard, fragment   1 "), std::string::npos) << table;
+  EXPECT_NE(table.find(" reverse-depth-peeling "), std::string::npos) << table;
 }
 
 BenchReport sweepReport() {
@@ -261,6 +301,17 @@ TEST(BenchTable, ASweepIsAGridOfMethodsAndSteps) {
   std::istringstream words(ratios);
   const std::vector<std::string> cells{std::istream_iterator<std::string>(words), {}};
   EXPECT_EQ(cells, (std::vector<std::string>{"linked-list,", "standard", "3.50", "-", "3.50", "3.50", "3.50"}));
+  BenchReport limited = sweepReport(); // the longest names
+  limited.limits.layers = 128;
+  for (SceneMeasurement& step : limited.scenes) {
+    for (Measurement& measured : step.measurements) {
+      measured.options.resolve = VITRAIL_RESOLVE_FRAGMENT;
+      measured.options = withLimits(measured.options, limited.limits);
+    }
+  }
+  const std::string named = toTable(limited);
+  EXPECT_NE(named.find(" linked-list, standard, fragment, 128 layers      3.50         -"), std::string::npos) << named;
+  EXPECT_NE(named.find("\nOf the methods that have the option: --layers 128\n"), std::string::npos) << named;
   for (const char* text : {"320x180", "3840x2160", "cost, ms", "skipped at 640x360 linked-list, standard: no room"}) {
     EXPECT_NE(table.find(text), std::string::npos) << text << " in\n" << table;
   }
@@ -279,18 +330,19 @@ std::vector<std::string> linesOf(const std::string& text) {
 TEST(BenchCsv, OneRowForEachMeasurement) {
   BenchReport report = smallReport();
   report.device = "Abacus, \"large\"";
+  report.scenes[0].measurements[1].options.maxLayers = 16;
   const std::vector<std::string> lines = linesOf(toCsv(report));
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0],
             "device,driver,cpu,sweep,step,scene,count,width,height,triangles,method,nodes,resolve,samples,exact,"
             "fragments,missing,layers_max,tiles,cost_ms,cost_lower_quartile_ms,cost_upper_quartile_ms,frame_ms,"
-            "cost_ratio,frame_ratio,memory_bytes");
+            "cost_ratio,frame_ratio,memory_bytes,max_layers,passes");
   EXPECT_EQ(lines[1],
             "\"Abacus, \"\"large\"\"\",beads 1.0,false,,,spheres,400,100,10,1600000,unsorted,,,1,false,,,,1,2,"
-            "2,2,4,1,1,0");
+            "2,2,4,1,1,0,,");
   EXPECT_EQ(lines[2],
             "\"Abacus, \"\"large\"\"\",beads 1.0,false,,,spheres,400,100,10,1600000,linked-list,standard,"
-            "compute,1,true,700,0,9,1,7,5.25,8.75,9,3.5,2.25,0");
+            "compute,1,true,700,0,9,1,7,5.25,8.75,9,3.5,2.25,0,16,");
 }
 
 TEST(BenchCsv, ASweepNamesItsStep) {
@@ -299,7 +351,7 @@ TEST(BenchCsv, ASweepNamesItsStep) {
   const std::vector<std::string> lines = linesOf(toCsv(report));
   ASSERT_EQ(lines.size(), 10U); // 5 steps of 2, less one
   EXPECT_NE(lines[1].find(",resolution,57600,spheres,"), std::string::npos) << lines[1];
-  EXPECT_TRUE(lines[1].ends_with(",4,,1,0")) << lines[1]; // no ratio
+  EXPECT_TRUE(lines[1].ends_with(",4,,1,0,,")) << lines[1]; // no ratio
 }
 
 TEST(BenchTable, SaysWhatItIs) {

@@ -66,6 +66,19 @@ TEST(Recommendation, TheCheapestExactMethodOfEachStep) {
       "the cost of unsorted (4.000 to 6.000 ms) and 10.0 to 12.0 MiB.");
 }
 
+// The cheapest one keeps over a tenth more than the other, or a tenth.
+TEST(Recommendation, LittleMemoryIsATenthLess) {
+  const auto adviceWith = [](std::uint64_t mib) {
+    return adviceFor(
+        reportOf({layersOf(1, {measuredAs("linked-list", 3, mib, true), measuredAs("sorted", 9, 100, true)})}),
+        "Little memory");
+  };
+  EXPECT_EQ(adviceWith(110), "");
+  EXPECT_EQ(adviceWith(111),
+            "At 1 layer the exact method that keeps the least memory is sorted: 4.50 times the cost of unsorted (9.000 "
+            "ms) and 100.0 MiB.");
+}
+
 TEST(Recommendation, NoiseDoesNotChangeTheAdviceFromStepToStep) {
   BenchReport report = reportOf({
       layersOf(1, {measuredAs("linked-list", 4.1, 10, true), measuredAs("sorted", 4.0, 20, true)}),
@@ -98,11 +111,16 @@ TEST(Recommendation, AnApproximateMethodHasToBeCheaper) {
   });
   EXPECT_EQ(adviceFor(report, "Approximate will do"),
             "At 1 layer no order-independent method that was measured is cheaper than the exact one.");
-  // One whose cost can be told from the exact one's. A list that was cut is the one approximation that says it does not
-  // depend on the order of surfaces.
+  // One whose cost can be told from the exact one's, and what it gets wrong.
+  report.scenes[0].measurements.push_back(measuredAs("weighted", 2.5, 5, false));
+  EXPECT_EQ(adviceFor(report, "Approximate will do"),
+            "At 1 layer weighted is the cheapest order-independent method: 1.25 times the cost of unsorted (2.500 ms) "
+            "and 5.0 MiB. It is not exact: near surfaces let too much through of what they hide: colours wash out "
+            "towards their mean.");
+  // Lists that were cut: what a method that can be exact gets wrong is not known.
   Measurement cut = measuredAs("linked-list", 2.5, 5, false);
   cut.options.nodes = VITRAIL_NODE_COMPACT;
-  report.scenes[0].measurements.push_back(cut);
+  report.scenes[0].measurements.back() = cut;
   EXPECT_EQ(adviceFor(report, "Approximate will do"),
             "At 1 layer linked-list, compact is the cheapest order-independent method: 1.25 times the cost of unsorted "
             "(2.500 ms) and 5.0 MiB. It is not exact.");

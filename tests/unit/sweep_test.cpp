@@ -75,11 +75,6 @@ TEST(Sweep, AModelOfManyTrianglesHasOneStep) {
 TEST(Sweep, Names) {
   for (const SweepKind kind : kSweepKinds) EXPECT_EQ(sweepNamed(nameOf(kind)), kind);
   EXPECT_FALSE(sweepNamed("layer").has_value());
-  EXPECT_EQ(shortCount(999), "999");
-  EXPECT_EQ(shortCount(9'949), "9.9 k");
-  EXPECT_EQ(shortCount(9'950), "10 k");
-  EXPECT_EQ(shortCount(999'499), "999 k");
-  EXPECT_EQ(shortCount(999'500), "1.0 M");
 }
 
 double areaOf(const Mesh& mesh) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
 namespace vitrail::tool {
 
 namespace {
@@ -35,6 +37,7 @@ void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t s
   MethodOptions options;
   options.name = method;
   options.samples = samples;
+  options = withLimits(options, matrix.limits);
   if (!hasChoices(method)) return addSetting(settings, options);
   for (const VitrailNodeFormat nodes : matrix.nodes) {
     for (const VitrailResolve resolve : matrix.resolves) {
@@ -46,6 +49,33 @@ void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t s
 }
 
 } // namespace
+
+MethodOptions withLimits(MethodOptions options, const MethodLimits& limits) {
+  const MethodTraits& traits = traitsOf(options.name);
+  if (traits.layers) options.maxLayers = limits.layers;
+  if (traits.passes) options.passes = limits.passes;
+  return options;
+}
+
+void checkLimits(const std::vector<std::string>& methods, const MethodLimits& limits) {
+  const auto check = [&](bool MethodTraits::*has, std::uint32_t MethodOptions::*option, std::uint32_t limit) {
+    const auto hasIt = [&](const std::string& name) { return traitsOf(name).*has; };
+    if (limit == 0 || methods.empty() || std::ranges::any_of(methods, hasIt)) return;
+    MethodOptions options;
+    options.name = methods.front();
+    options.*option = limit;
+    checkMethodOptions(options); // says whose option it is
+  };
+  check(&MethodTraits::layers, &MethodOptions::maxLayers, limits.layers);
+  check(&MethodTraits::passes, &MethodOptions::passes, limits.passes);
+}
+
+std::string describe(const MethodLimits& limits) {
+  std::string text;
+  if (limits.layers > 0) text += fmt::format(" --layers {}", limits.layers);
+  if (limits.passes > 0) text += fmt::format(" --passes {}", limits.passes);
+  return text.empty() ? text : fmt::format("Of the methods that have the option:{}\n", text);
+}
 
 BenchSettings configurationsOf(const BenchMatrix& matrix) {
   std::vector<std::string_view> methods(matrix.methods.begin(), matrix.methods.end());
@@ -65,7 +95,15 @@ std::string describe(const MethodOptions& options) {
   if (hasChoices(options.name) && options.resolve != VITRAIL_RESOLVE_DEFAULT) {
     text.append(", ").append(nameOf(options.resolve));
   }
+  if (options.maxLayers > 0)
+    text += fmt::format(", {} {}", options.maxLayers, options.maxLayers > 1 ? "layers" : "layer");
+  if (options.passes > 0) text += fmt::format(", {} {}", options.passes, options.passes > 1 ? "passes" : "pass");
   return text;
+}
+
+std::string describeWithoutSamples(MethodOptions options) {
+  options.samples = 1;
+  return describe(options);
 }
 
 } // namespace vitrail::tool

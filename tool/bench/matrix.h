@@ -13,12 +13,28 @@ namespace vitrail::tool {
 // Unordered hardware blending: what every cost is compared with.
 inline constexpr std::string_view kBaselineMethod = "unsorted";
 
+// What is said of all methods that have such an option (MethodTraits), and of no other.
+struct MethodLimits {
+  std::uint32_t layers = 0; // --layers; 0: the method's own
+  std::uint32_t passes = 0; // --passes
+};
+
+// The options of a method with the limits that it has.
+MethodOptions withLimits(MethodOptions options, const MethodLimits& limits);
+
+// Throws std::invalid_argument where a limit is of none of the methods. None named: all of methodNames().
+void checkLimits(const std::vector<std::string>& methods, const MethodLimits& limits);
+
+// A line that says which limits there are; empty where there is none.
+std::string describe(const MethodLimits& limits);
+
 // The choices of each kind, every one of which is measured with every one of the others.
 struct BenchMatrix {
   std::vector<std::string> methods; // none: all of methodNames()
   std::vector<VitrailNodeFormat> nodes = {VITRAIL_NODE_STANDARD};
   std::vector<std::uint32_t> samples = {1};
   std::vector<VitrailResolve> resolves = {VITRAIL_RESOLVE_DEFAULT};
+  MethodLimits limits; // one for all
 };
 
 // A setting that the options or the device do not allow, and why.
@@ -37,7 +53,10 @@ struct BenchSettings {
 // checkMethodOptions() refuses, such as several samples of a method that has one, is skipped. Nothing is listed twice.
 BenchSettings configurationsOf(const BenchMatrix& matrix);
 
-// A setting in words, for people: "linked-list, compact, 4 samples, compute".
+// A setting in words, for people: "linked-list, compact, 4 samples, compute", "loop, 16 layers".
 std::string describe(const MethodOptions& options);
+
+// The same beside its sample count: "linked-list, compact, compute".
+std::string describeWithoutSamples(MethodOptions options);
 
 } // namespace vitrail::tool

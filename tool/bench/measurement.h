@@ -49,6 +49,7 @@ struct SceneMeasurement {
 struct BenchReport : Machine {
   std::uint32_t repeats = 0;
   std::uint32_t warmups = 0;
+  MethodLimits limits;
   double bytesPerSecond = 0.0; // bandwidth.h
   std::vector<SceneMeasurement> scenes;
 };

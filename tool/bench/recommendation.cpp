@@ -31,12 +31,8 @@ struct Run {
   std::string setting;
 };
 
-// A setting's name without its sample count, which is the step of a sweep over samples.
-std::string nameOf(const Measurement& measured) {
-  MethodOptions options = measured.options;
-  options.samples = 1;
-  return describe(options);
-}
+// A setting's name: its sample count is the step of a sweep over samples.
+std::string nameOf(const Measurement& measured) { return describeWithoutSamples(measured.options); }
 
 bool isExact(const Measurement& measured) { return measured.report.exact; }
 
@@ -107,7 +103,7 @@ const Measurement& measurementOf(const SceneMeasurement& scene, const std::strin
   return *found.front();
 }
 
-// "at 1 to 64 layers", "in spheres and planes".
+// "at 1 to 64 layers", "in spheres, planes".
 std::string placesOf(const Scenes& scenes, std::size_t first, std::size_t last) {
   if (!scenes[first]->sweep) {
     std::vector<std::string> names;
@@ -146,7 +142,7 @@ std::string rangeOf(const Scenes& scenes, const Run& run, const char* format, Nu
   return low == high ? low : fmt::format("{} to {}", low, high);
 }
 
-// "1.10 to 2.30 times unsorted (0.52 to 1.10 ms) and 3.5 to 120.0 MiB".
+// "1.10 to 2.30 times the cost of unsorted (0.520 to 1.100 ms) and 3.5 to 120.0 MiB".
 std::string numbersOf(const Scenes& scenes, const Run& run, bool isCpu) {
   const auto of = [&](const SceneMeasurement& scene) -> const Measurement& {
     return measurementOf(scene, run.setting);
@@ -242,14 +238,14 @@ std::string approximateText(const Scenes& scenes, bool isCpu) {
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
-// Whether a setting keeps less than others by more than a trifle at a step.
+// Whether the cheapest keep more than a setting by more than a trifle at a step.
 bool savesMemory(const Scenes& scenes, const Run& run, const std::vector<Run>& cheapest) {
   constexpr double kTrifle = 0.1;
   for (const Run& other : cheapest) {
     for (std::size_t i = std::max(run.first, other.first); i <= std::min(run.last, other.last); ++i) {
       const auto most = static_cast<double>(measurementOf(*scenes[i], other.setting).report.totalBytes);
       const auto least = static_cast<double>(measurementOf(*scenes[i], run.setting).report.totalBytes);
-      if (least < (1.0 - kTrifle) * most) return true;
+      if (most > (1.0 + kTrifle) * least) return true;
     }
   }
   return false;

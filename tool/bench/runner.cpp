@@ -35,19 +35,28 @@ Contender prepare(Gpu& gpu, const Scene& scene, const BenchRun& run, const Metho
   return contender;
 }
 
-// A picture without anything to blend costs nothing: no ratio would mean a thing.
-void checkFragments(const std::vector<Contender>& contenders) {
-  const bool empty = std::ranges::any_of(contenders, [](const Contender& contender) {
-    return contender.report.counted && contender.report.fragmentsRequested == 0;
-  });
-  if (!empty) return;
-  throw std::runtime_error(
-      "nothing transparent is in the picture, so there is nothing to measure: choose another model, or make it "
-      "translucent with --opacity");
+// The transparent fragments of a picture, by a method that counts them.
+std::uint64_t countFragments(Gpu& gpu, const Scene& scene, const BenchRun& run, std::uint32_t samples) {
+  MethodOptions options;
+  options.nodes = VITRAIL_NODE_HDR; // which rounds no surface away
+  options.samples = samples;
+  return Renderer(gpu, scene, run.opacity, DrawOrder::Forward, options).measure(run.picture).fragmentsRequested;
 }
 
-// Sets up and warms up all settings; what cannot be done goes to `skipped`.
-std::vector<Contender> prepareAll(Gpu& gpu, const Scene& scene, const BenchRun& run,
+// Looks at the picture of each sample count that has a baseline.
+void checkFragments(Gpu& gpu, const Scene& scene, const BenchRun& run, const std::vector<Contender>& contenders) {
+  for (const Contender& baseline : contenders) {
+    if (baseline.options.name != kBaselineMethod) continue;
+    const auto counting = std::ranges::find_if(contenders, [&](const Contender& contender) {
+      return contender.report.counted && contender.options.samples == baseline.options.samples;
+    });
+    requireFragments(counting != contenders.end() ? counting->report.fragmentsRequested
+                                                  : countFragments(gpu, scene, run, baseline.options.samples));
+  }
+}
+
+// Sets up and warms up all settings; what cannot be done goes to `skipped`. `place` is that of a step.
+std::vector<Contender> prepareAll(Gpu& gpu, const Scene& scene, const BenchRun& run, const std::string& place,
                                   std::vector<SkippedSetting>& skipped) {
   std::vector<Contender> contenders;
   for (const MethodOptions& options : run.settings) {
@@ -58,7 +67,7 @@ std::vector<Contender> prepareAll(Gpu& gpu, const Scene& scene, const BenchRun& 
       skipped.push_back({options, refused->reason});
       continue;
     }
-    if (run.progress) run.progress(describe(options));
+    if (run.progress) run.progress(place.empty() ? describe(options) : place + ", " + describe(options));
     try {
       contenders.push_back(prepare(gpu, scene, run, options));
     } catch (const GpuError& error) {
@@ -68,10 +77,10 @@ std::vector<Contender> prepareAll(Gpu& gpu, const Scene& scene, const BenchRun& 
   return contenders;
 }
 
-Stage prepareStage(Gpu& gpu, const Scene& scene, const BenchRun& run) {
+Stage prepareStage(Gpu& gpu, const Scene& scene, const BenchRun& run, const std::string& place = {}) {
   Stage stage{run, triangleCount(scene), {}, {}};
-  stage.contenders = prepareAll(gpu, scene, run, stage.skipped);
-  checkFragments(stage.contenders);
+  stage.contenders = prepareAll(gpu, scene, run, place, stage.skipped);
+  checkFragments(gpu, scene, run, stage.contenders);
   return stage;
 }
 
@@ -137,7 +146,7 @@ std::vector<SceneMeasurement> measureSteps(Gpu& gpu, std::size_t count,
   std::vector<Stage> waiting;
   for (std::size_t i = 0; i < count; ++i) {
     const BenchStep made = step(i);
-    waiting.push_back(prepareStage(gpu, made.scene, made.run));
+    waiting.push_back(prepareStage(gpu, made.scene, made.run, made.place));
     if (i + 1 < count && gpu.memoryHeld() < memoryToHold(gpu)) continue;
     drawRounds(waiting);
     for (Stage& stage : waiting) results.push_back(finish(stage));
@@ -145,6 +154,13 @@ std::vector<SceneMeasurement> measureSteps(Gpu& gpu, std::size_t count,
   }
   requireOne(results);
   return results;
+}
+
+void requireFragments(std::uint64_t transparentFragments) {
+  if (transparentFragments > 0) return;
+  throw std::runtime_error(
+      "nothing transparent is in the picture, so there is nothing to measure: choose another model, or make it "
+      "translucent with --opacity");
 }
 
 } // namespace vitrail::tool

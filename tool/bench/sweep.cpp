@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "cells.h"
+
 namespace vitrail::tool {
 
 namespace {
@@ -90,13 +92,6 @@ SweepPlace placeOf(SweepKind kind, const SweepStep& step, std::uint64_t triangle
       break;
   }
   return {kind, static_cast<double>(step.samples), fmt::format("{}", step.samples)};
-}
-
-std::string shortCount(std::uint64_t count) {
-  const auto value = static_cast<double>(count);
-  if (count >= 999'500) return fmt::format("{:.1f} M", value / 1e6);
-  if (count >= 1'000) return fmt::format("{:.{}f} k", value / 1e3, count < 9'950 ? 1 : 0);
-  return fmt::format("{}", count);
 }
 
 } // namespace vitrail::tool

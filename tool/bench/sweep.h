@@ -52,7 +52,4 @@ std::vector<SweepStep> planSweep(SweepKind kind, const SweepStart& start);
 // The place of a step whose scene turned out to have this many triangles.
 SweepPlace placeOf(SweepKind kind, const SweepStep& step, std::uint64_t triangles);
 
-// A count in a few characters: "950", "33 k", "2.1 M".
-std::string shortCount(std::uint64_t count);
-
 } // namespace vitrail::tool

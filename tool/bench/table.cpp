@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "cells.h"
 #include "matrix.h"
 #include "recommendation.h"
 
@@ -18,8 +19,6 @@ namespace vitrail::tool {
 namespace {
 
 constexpr const char* kNone = "-";
-
-constexpr std::size_t kColumns = 120;
 
 // One row: the setting, samples, then numbers.
 constexpr char kRow[] = " {:<32}{:>3}{:>10}{:>7}{:>8}{:>10}{:>8}{:>9}{:>9}{:>7}{:>12}\n";
@@ -30,22 +29,12 @@ range over its median; x: times unsorted's; frame: all passes; M/s: million frag
 time that a frame with lists takes to move its bytes at the measured bandwidth; bw: floor over cost.
 )";
 
-std::string milliseconds(double value) {
-  return value < 1000.0 ? fmt::format("{:.3f}", value) : fmt::format("{:.1f}", value);
-}
-
 std::string percent(double fraction) {
   if (!std::isfinite(fraction)) return kNone;
   return fmt::format("{:.{}f}%", fraction * 100.0, fraction < 0.0995 ? 1 : 0);
 }
 
-std::string ratio(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : kNone; }
-
 std::string rate(double perSecond) { return fmt::format("{:.{}f}", perSecond * 1e-6, perSecond < 1e8 ? 1 : 0); }
-
-std::string mebibytes(std::uint64_t bytes) {
-  return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1024.0 * 1024.0));
-}
 
 // What was measured: the method, its nodes and its resolve, where it has such.
 std::string settingOf(const Measurement& measured) {
@@ -66,20 +55,9 @@ std::string rowOf(const Measurement& measured) {
                      measured.bandwidthShare ? percent(*measured.bandwidthShare) : kNone, mebibytes(frame.totalBytes));
 }
 
-// The passes of a setting, on as many lines as they take.
-std::string passesOf(const Measurement& measured) {
-  std::string text;
-  std::string line = fmt::format(" {:<32}{:>3}  ", settingOf(measured), measured.report.samples);
-  const std::size_t indent = line.size();
-  for (const auto& [name, spread] : measured.passes) {
-    const std::string pass = fmt::format("{} {}", name, milliseconds(spread.median));
-    if (line.size() > indent && line.size() + 3 + pass.size() > kColumns) {
-      text.append(line).append(",\n");
-      line = std::string(indent, ' ');
-    }
-    line.append(line.size() > indent ? ", " : "").append(pass);
-  }
-  return text.append(line).append("\n");
+// What stands before a setting's passes.
+std::string labelOf(const Measurement& measured) {
+  return fmt::format(" {:<32}{:>3}  ", settingOf(measured), measured.report.samples);
 }
 
 // What has to be known of a measurement beside its numbers.
@@ -142,30 +120,30 @@ std::string sceneTable(const SceneMeasurement& scene) {
   table += fmt::format(kRow, "method", "AA", "cost", "IQR", "x", "frame", "x", "M/s", "floor", "bw", "memory");
   for (const Measurement& measured : scene.measurements) table += rowOf(measured);
   table += " passes\n";
-  for (const Measurement& measured : scene.measurements) table += passesOf(measured);
+  for (const Measurement& measured : scene.measurements) table += passesOf(labelOf(measured), measured);
   for (const Measurement& measured : scene.measurements) table += noteOn(measured);
   return table + skippedOf(scene);
 }
 
 // A setting's name beside the steps of a sweep. A sweep over samples has one name for all of them.
 std::string describeInSweep(const SceneMeasurement& step, const Measurement& measured) {
-  MethodOptions options = measured.options;
-  if (step.sweep->kind == SweepKind::Samples) options.samples = 1;
-  return describe(options);
+  return step.sweep->kind == SweepKind::Samples ? describeWithoutSamples(measured.options) : describe(measured.options);
 }
 
 // A number of each setting at each step of a sweep: settings down, steps across.
 std::string gridOf(const std::vector<const SceneMeasurement*>& steps, const std::vector<std::string>& settings,
                    const char* title, const std::function<std::string(const Measurement&)>& number) {
-  std::string table = fmt::format(" {:<35}", title);
-  for (const SceneMeasurement* step : steps) table += fmt::format("{:>11}", step->sweep->label);
+  std::size_t width = 35;
+  for (const std::string& setting : settings) width = std::max(width, setting.size());
+  std::string table = fmt::format(" {:<{}}", title, width);
+  for (const SceneMeasurement* step : steps) table += fmt::format("{:>10}", step->sweep->label);
   table += '\n';
   for (const std::string& setting : settings) {
-    table += fmt::format(" {:<35}", setting);
+    table += fmt::format(" {:<{}}", setting, width);
     for (const SceneMeasurement* step : steps) {
       const auto found = std::ranges::find(
           step->measurements, setting, [&](const Measurement& measured) { return describeInSweep(*step, measured); });
-      table += fmt::format("{:>11}", found != step->measurements.end() ? number(*found) : kNone);
+      table += fmt::format("{:>10}", found != step->measurements.end() ? number(*found) : kNone);
     }
     table += '\n';
   }
@@ -237,7 +215,8 @@ std::string toTable(const BenchReport& report) {
   std::string table =
       fmt::format("{} ({}), {}\nrounds: {}, warm-up frames: {}; a copy moves {:.1f} GB/s\n", report.device,
                   report.driver, report.api, report.repeats, report.warmups, report.bytesPerSecond * 1e-9);
-  if (report.isCpu) table += "This device is a CPU: only the ratios say something, its times are the machine's.\n";
+  table += describe(report.limits);
+  if (report.isCpu) table += kCpuNote;
   bool hasScenes = false;
   for (const std::optional<SweepKind> sweep : sweepsOf(report)) {
     if (sweep) {

@@ -18,7 +18,7 @@ struct FrameShape {
 //   heads    4 bytes a pixel cleared, and read by the resolve; 8 bytes a covered pixel read and written by the collect
 //            pass (more exchanges of one head can stay in a cache)
 //   nodes    each written once and read once
-//   colour   8 bytes a sample (R16G16B16A16_SFLOAT): one sample: read and written where a pixel is covered; several:
+//   colour   8 bytes a sample (R16G16B16A16_SFLOAT). One sample: read and written where a pixel is covered; several:
 //   all
 //            samples of every pixel read, one colour a pixel written
 // Geometry, textures, the depth test, sorting outside registers and counters come on top and are not counted.

@@ -56,6 +56,7 @@ BenchReport describeRun(const BenchArguments& arguments, const Gpu& gpu) {
   static_cast<Machine&>(report) = machineOf(gpu);
   report.repeats = roundsOn(report, arguments.repeats);
   report.warmups = warmupsOn(report, arguments.warmups);
+  report.limits = arguments.matrix.limits;
   return report;
 }
 
@@ -97,7 +98,7 @@ void measureScenes(Gpu& gpu, const BenchArguments& arguments, const std::vector<
   for (const Subject& subject : subjects) {
     std::vector<SkippedSetting> refused;
     BenchRun run = runOf(arguments, report, subject.scene, all, refused);
-    run.progress = [&](const std::string& step) { progress.show(fmt::format("{}: {}", subject.name, step)); };
+    run.progress = [&](const std::string& what) { progress.show(fmt::format("{}: {}", subject.name, what)); };
     addScene(report, measureScene(gpu, subject.scene, run), subject, refused);
   }
 }
@@ -126,9 +127,10 @@ void measureSweep(Gpu& gpu, const BenchArguments& arguments, SweepKind kind, con
     made.scene =
         steps[i].panes ? openNamed(base.name, steps[i].panes).scene : splitTriangles(base.scene, steps[i].splits);
     made.run = runOf(arguments, report, made.scene, steps[i], refused[i]);
-    made.run.progress = [&progress, kind, i, count = steps.size()](const std::string& step) {
-      progress.show(fmt::format("{}, step {} of {}: {}", nameOf(kind), i + 1, count, step));
+    made.run.progress = [&progress, kind](const std::string& what) {
+      progress.show(fmt::format("{}: {}", nameOf(kind), what));
     };
+    made.place = fmt::format("step {} of {}", i + 1, steps.size());
     return made;
   });
   for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -163,6 +165,9 @@ void runBench(const CLI::App& command, BenchArguments arguments) {
     throw UsageError("--json and --csv name one file: give each its own");
   }
   if (!arguments.folder.empty()) folder.emplace(arguments.folder);
+  const std::vector<std::string> names{"report.json", "report.csv", "index.html"};
+  if (folder && jsonFile) checkApart(*folder, names, "--json", *jsonFile);
+  if (folder && csvFile) checkApart(*folder, names, "--csv", *csvFile);
 
   const BenchReport report = measure(arguments);
 

@@ -24,13 +24,13 @@ Json toJson(const Measurement& measured) {
   const FrameReport& frame = measured.report;
   Json passes = Json::object();
   for (const auto& [name, spread] : measured.passes) passes[name] = toJson(spread);
-  MethodOptions withoutSamples = measured.options;
-  withoutSamples.samples = 1;
   Json json = {{"method", measured.options.name},
-               {"setting", describe(withoutSamples)},
+               {"setting", describeWithoutSamples(measured.options)},
                {"nodes", orNull(frame.nodes)},
                {"samples", frame.samples},
                {"resolve", orNull(frame.resolve)},
+               {"max_layers", limitOrNull(measured.options.maxLayers)},
+               {"passes", limitOrNull(measured.options.passes)},
                {"exact", frame.exact},
                {"fragments", nullptr},
                {"layers", nullptr},
@@ -58,11 +58,15 @@ Json toJson(const Measurement& measured) {
 
 Json toJson(const SkippedSetting& skipped) {
   const MethodOptions& options = skipped.options;
+  const bool hasNodes = traitsOf(options.name).nodes;
   const bool chosen = options.resolve != VITRAIL_RESOLVE_DEFAULT;
   return {{"method", options.name},
-          {"nodes", nameOf(options.nodes)},
+          {"setting", describeWithoutSamples(options)},
+          {"nodes", hasNodes ? Json(nameOf(options.nodes)) : Json(nullptr)},
           {"samples", options.samples},
           {"resolve", chosen ? Json(nameOf(options.resolve)) : Json(nullptr)},
+          {"max_layers", limitOrNull(options.maxLayers)},
+          {"passes", limitOrNull(options.passes)},
           {"reason", skipped.reason}};
 }
 
@@ -94,6 +98,8 @@ std::optional<VkExtent2D> commonSize(const BenchReport& report) {
 }
 
 } // namespace
+
+nlohmann::ordered_json limitOrNull(std::uint32_t limit) { return limit > 0 ? Json(limit) : Json(nullptr); }
 
 nlohmann::ordered_json toJson(const Spread& spread) {
   return {{"median", spread.median},

@@ -43,6 +43,9 @@ What to compare with method unsorted, which is always measured:
                         (default standard)
   --samples N,...       1, 2, 4, 8 (default 1)
   --resolve R,...       resolves of such methods: compute, fragment (default: the library's choice)
+  --layers N, --passes N
+                        as of vitrail render, of the methods that have them; the others stay as they
+                        are
 
 How often:
   --repeat N            rounds, each of which draws one frame of every setting, and of every step of
@@ -123,9 +126,11 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
                              nodeFormatNamed);
   addList<std::uint32_t>(command, "--samples", matrix.samples, "1, 2, 4 or 8", sampleCount);
   addList<VitrailResolve>(command, "--resolve", matrix.resolves, "a resolve: compute or fragment", resolveNamed);
+  addLimits(command, matrix.limits);
 }
 
 void checkBenchArguments(const CLI::App& command, BenchArguments& arguments) {
+  checkLimitsOf(arguments.matrix.methods, arguments.matrix.limits);
   if (!arguments.model.empty()) {
     if (!arguments.scenes.empty()) throw UsageError("a model file and --scene exclude each other: name one of them");
     if (!arguments.counts.empty()) throw UsageError("--count is for built-in scenes: add --scene NAME");

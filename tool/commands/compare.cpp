@@ -4,6 +4,8 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -30,6 +32,7 @@ Comparison measure(const CompareArguments& arguments) {
   ComparisonRun run;
   run.methods = arguments.methods;
   run.samples = arguments.samples;
+  run.limits = arguments.limits;
   run.picture = pictureOf(arguments, scene);
   run.opacity = arguments.opacity;
   run.repeats = roundsOn(machine, arguments.repeats);
@@ -41,6 +44,16 @@ Comparison measure(const CompareArguments& arguments) {
   comparison.count = arguments.count;
   closeValidated(gpu);
   return comparison;
+}
+
+// The files of a folder, of whatever methods.
+std::vector<std::string> namesInFolder() {
+  std::vector<std::string> names{"report.json", "index.html", "exact.png", "layers.png"};
+  for (const std::string_view method : methodNames()) {
+    names.push_back(fmt::format("{}.png", method));
+    names.push_back(fmt::format("{}-error.png", method));
+  }
+  return names;
 }
 
 void writeFolder(OutputFolder& folder, const Comparison& comparison, const std::string& json) {
@@ -62,6 +75,7 @@ void compareOnDevice(const CompareArguments& arguments) {
   std::optional<OutputFolder> folder;
   if (!arguments.json.empty()) report.emplace(arguments.json);
   if (!arguments.folder.empty()) folder.emplace(arguments.folder);
+  if (folder && report) checkApart(*folder, namesInFolder(), "--json", *report);
 
   const Comparison comparison = measure(arguments);
 

@@ -27,6 +27,9 @@ What to compare:
   --methods NAME,...    methods of vitrail render (default: all); unsorted is always there. What
                         the device or the options do not allow is listed with the reason
   --samples N           1 (default), 2, 4 or 8 samples a pixel
+  --layers N, --passes N
+                        as of vitrail render, of the methods that have them; the others, and the
+                        exact picture, stay as they are
   --repeat N            rounds, each of which draws one frame with every method (default 31, on a
                         CPU 3)
   --warmup N            frames of every method before the first round (default 3, on a CPU 1)
@@ -55,8 +58,9 @@ bool isPng(const std::string& file) { return std::filesystem::path(file).extensi
 
 // Options that only drawing has.
 void checkPictureOptions(const CLI::App& command) {
-  for (const char* name : {"--scene", "--count", "--seed", "--size", "--camera", "--orbit", "--opacity", "--background",
-                           "--methods", "--samples", "--repeat", "--warmup", "--output", "--device", "--validate"}) {
+  for (const char* name :
+       {"--scene", "--count", "--seed", "--size", "--camera", "--orbit", "--opacity", "--background", "--methods",
+        "--samples", "--layers", "--passes", "--repeat", "--warmup", "--output", "--device", "--validate"}) {
     if (command.count(name) > 0) {
       throw UsageError(fmt::format("{} is for comparing methods: two pictures are compared as they are", name));
     }
@@ -70,6 +74,7 @@ void addCompareOptions(CLI::App& command, CompareArguments& arguments) {
   addSceneOptions(command, arguments);
   addMethods(command, arguments.methods);
   addPositive(command, "--samples", arguments.samples);
+  addLimits(command, arguments.limits);
   addFrames(command, "--repeat", arguments.repeats);
   addFrames(command, "--warmup", arguments.warmups);
   command.add_option("-o,--output", arguments.folder);
@@ -90,6 +95,7 @@ void checkCompareArguments(const CLI::App& command, CompareArguments& arguments)
   if (arguments.samples != 1 && arguments.samples != 2 && arguments.samples != 4 && arguments.samples != 8) {
     throw UsageError(fmt::format("a pixel has 1, 2, 4 or 8 samples, not {}", arguments.samples));
   }
+  checkLimitsOf(arguments.methods, arguments.limits);
   if (!arguments.heatmap.empty()) {
     throw UsageError("--heatmap is for two pictures: -o DIR has a heatmap of every method");
   }

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "../bench/matrix.h"
 #include "scene_options.h"
 
 namespace vitrail::tool {
@@ -16,6 +17,7 @@ struct CompareArguments : SceneArguments {
   std::vector<std::string> files;   // two pictures, one model, or none: a built-in scene
   std::vector<std::string> methods; // none: all
   std::uint32_t samples = 1;
+  MethodLimits limits;
   std::optional<std::uint32_t> repeats; // default: by the kind of device
   std::optional<std::uint32_t> warmups;
   std::string folder;  // empty: no page and no pictures

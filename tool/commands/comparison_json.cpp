@@ -14,6 +14,8 @@ Json toJson(const ComparedMethod& method) {
   Json passes = Json::object();
   for (const auto& [name, spread] : measured.passes) passes[name] = toJson(spread);
   return {{"method", measured.options.name},
+          {"max_layers", limitOrNull(measured.options.maxLayers)},
+          {"passes", limitOrNull(measured.options.passes)},
           {"exact", measured.report.exact},
           {"metrics", toJson(method.difference.metrics)},
           {"passes_ms", std::move(passes)},

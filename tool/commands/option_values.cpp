@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "../methods/method_options.h"
+#include "errors.h"
 
 namespace vitrail::tool {
 
@@ -72,6 +73,19 @@ void addFrames(CLI::App& command, const std::string& name, std::optional<std::ui
 void addMethods(CLI::App& command, std::vector<std::string>& methods) {
   addList<std::string>(command, "--methods", methods,
                        fmt::format("a method; there are {}", fmt::join(methodNames(), ", ")), methodNamed);
+}
+
+void addLimits(CLI::App& command, MethodLimits& limits) {
+  addPositive(command, "--layers", limits.layers);
+  addPositive(command, "--passes", limits.passes);
+}
+
+void checkLimitsOf(const std::vector<std::string>& methods, const MethodLimits& limits) {
+  try {
+    checkLimits(methods, limits);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
 }
 
 } // namespace vitrail::tool

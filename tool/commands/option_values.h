@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "../bench/matrix.h"
+
 namespace vitrail::tool {
 
 // The whole text as a number, or nothing.
@@ -38,6 +40,11 @@ void addCount(CLI::App& command, const std::string& name, std::optional<std::uin
 void addFrames(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& target);
 // --methods NAME,...
 void addMethods(CLI::App& command, std::vector<std::string>& methods);
+
+// --layers N and --passes N of methods that are compared
+void addLimits(CLI::App& command, MethodLimits& limits);
+// checkLimits() of what was asked for. Throws UsageError.
+void checkLimitsOf(const std::vector<std::string>& methods, const MethodLimits& limits);
 
 // A whole number from 1.
 template <typename Target>

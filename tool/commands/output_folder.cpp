@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "errors.h"
+
 namespace vitrail::tool {
 
 namespace {
@@ -39,6 +41,11 @@ OutputFolder::~OutputFolder() {
   if (made_) ::rmdir(path_.c_str());
 }
 
+bool OutputFolder::has(const std::string& name, const OutputFile& file) const {
+  std::error_code error;
+  return fs::is_directory(path_, error) && OutputFile(path_ / name).isSameAs(file);
+}
+
 void OutputFolder::write(const std::string& name, std::span<const std::byte> content) {
   if (!made_ && ::mkdir(path_.c_str(), 0777) == 0) {
     made_ = true;
@@ -54,6 +61,15 @@ void OutputFolder::commit() {
   for (const std::unique_ptr<OutputFile>& file : files_) file->commit();
   if (made_) unwatchFolder(path_);
   made_ = false;
+}
+
+void checkApart(const OutputFolder& folder, const std::vector<std::string>& names, const std::string& option,
+                const OutputFile& file) {
+  for (const std::string& name : names) {
+    if (!folder.has(name, file)) continue;
+    throw UsageError(
+        fmt::format("-o writes {} itself: leave {} out or name another file", (folder.path() / name).string(), option));
+  }
 }
 
 } // namespace vitrail::tool

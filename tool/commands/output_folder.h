@@ -23,16 +23,25 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
+  // Whether the file is the one of that name in the folder, under whatever name.
+  [[nodiscard]] bool has(const std::string& name, const OutputFile& file) const;
+
   // Writes a whole file under a temporary name; the folder is made where there is none. Throws std::runtime_error.
   void write(const std::string& name, std::span<const std::byte> content);
 
   // Gives all files their names. Throws std::runtime_error.
   void commit();
 
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
  private:
   std::filesystem::path path_;
   bool made_ = false; // and not committed yet
   std::vector<std::unique_ptr<OutputFile>> files_;
 };
+
+// Throws UsageError where the file of an option is one of those that will be written to the folder.
+void checkApart(const OutputFolder& folder, const std::vector<std::string>& names, const std::string& option,
+                const OutputFile& file);
 
 } // namespace vitrail::tool

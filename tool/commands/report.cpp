@@ -4,16 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "../bench/cells.h"
+
 namespace vitrail::tool {
 
 namespace {
-
-std::string countText(std::uint64_t count) {
-  const auto value = static_cast<double>(count);
-  if (count >= 1'000'000) return fmt::format("{:.1f} M", value / 1e6);
-  if (count >= 10'000) return fmt::format("{:.0f} k", value / 1e3);
-  return fmt::format("{}", count);
-}
 
 // A text, or null where there is none.
 nlohmann::ordered_json textOrNull(const std::string& text) {
@@ -64,7 +59,7 @@ std::string toSummary(const FrameReport& report) {
   std::string text = fmt::format("{}x{}, ", report.width, report.height);
   if (report.samples > 1) text += fmt::format("{} samples, ", report.samples);
   if (report.counted) {
-    text += fmt::format("{} transparent fragments, {} deep, {}, ", countText(report.fragmentsStored), report.layersMax,
+    text += fmt::format("{} transparent fragments, {} deep, {}, ", shortCount(report.fragmentsStored), report.layersMax,
                         report.exact ? "exact" : "not exact");
   } else {
     text += fmt::format("{}, not exact, ", report.method);

@@ -51,6 +51,7 @@ std::vector<MethodOptions> settingsOf(const ComparisonRun& run, std::vector<Refu
     MethodOptions options;
     options.name = name;
     options.samples = run.samples;
+    options = withLimits(options, run.limits);
     try {
       checkMethodOptions(options);
       settings.push_back(options);
@@ -80,12 +81,14 @@ Comparison compareMethods(Gpu& gpu, const Scene& scene, const ComparisonRun& run
   result.width = run.picture.width;
   result.height = run.picture.height;
   result.samples = run.samples;
+  result.limits = run.limits;
   result.repeats = run.repeats;
   result.warmups = run.warmups;
   tell(run, "the exact picture");
   RenderResult exact = drawExact(gpu, scene, run);
   result.exact = std::move(exact.picture);
   result.exactFrame = std::move(exact.report);
+  requireFragments(result.exactFrame.fragmentsRequested);
   tell(run, "depth complexity");
   countLayers(gpu, scene, run, result);
 

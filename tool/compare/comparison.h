@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../bench/machine.h"
+#include "../bench/matrix.h"
 #include "../bench/measurement.h"
 #include "../draw/renderer.h"
 #include "../image/metrics.h"
@@ -30,6 +31,7 @@ struct Comparison : Machine {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t samples = 1;
+  MethodLimits limits;
   std::uint32_t repeats = 0;
   std::uint32_t warmups = 0;
   std::string scene;                  // what the picture is of, in words
@@ -47,6 +49,7 @@ struct Comparison : Machine {
 struct ComparisonRun {
   std::vector<std::string> methods; // of methodNames(); none: all of them
   std::uint32_t samples = 1;
+  MethodLimits limits;
   RenderOptions picture;
   std::optional<float> opacity; // of every material
   std::uint32_t repeats = 1;    // as BenchRun's

@@ -1,9 +1,8 @@
 #include "table.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
+#include "../bench/cells.h"
 #include "../image/metrics_text.h"
 
 namespace vitrail::tool {
@@ -19,12 +18,6 @@ worst: the largest difference of a channel, and its pixel. off: pixels that diff
 cost: milliseconds of GPU time for the transparent surfaces, x: times unsorted's; frame: the opaque ones too. Medians.
 )";
 
-std::string milliseconds(double value) { return fmt::format("{:.{}f}", value, value < 1000.0 ? 3 : 1); }
-std::string ratio(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; }
-std::string mebibytes(std::uint64_t bytes) {
-  return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1024.0 * 1024.0));
-}
-
 std::string worstText(const Metrics& metrics) {
   return metrics.worst == 0 ? "0" : fmt::format("{} at {},{}", metrics.worst, metrics.worstX, metrics.worstY);
 }
@@ -38,16 +31,6 @@ std::string rowOf(const ComparedMethod& method) {
                      milliseconds(measured.frameMs.median), mebibytes(measured.report.totalBytes));
 }
 
-std::string passesOf(const ComparedMethod& method) {
-  std::string text = fmt::format(" {:<22}", method.measurement.options.name);
-  const char* separator = "";
-  for (const auto& [name, spread] : method.measurement.passes) {
-    text += fmt::format("{}{} {}", separator, name, milliseconds(spread.median));
-    separator = ", ";
-  }
-  return text + "\n";
-}
-
 } // namespace
 
 std::string toTable(const Comparison& comparison) {
@@ -57,12 +40,16 @@ std::string toTable(const Comparison& comparison) {
   table += fmt::format(", {}x{}, {} {} a pixel; {} transparent fragments, {} deep\n", comparison.width,
                        comparison.height, comparison.samples, comparison.samples > 1 ? "samples" : "sample",
                        comparison.exactFrame.fragmentsRequested, comparison.layersMax);
-  if (comparison.isCpu) table += "This device is a CPU: only the ratios say something, its times are the machine's.\n";
+  table += describe(comparison.limits);
+  if (comparison.isCpu) table += kCpuNote;
+  if (!comparison.exactFrame.exact) table += "The picture that all are compared with is itself not exact.\n";
   table += '\n';
   table += fmt::format(kRow, "method", "PSNR", "SSIM", "FLIP", "worst", "off", "cost", "x", "frame", "memory");
   for (const ComparedMethod& method : comparison.methods) table += rowOf(method);
   table += "\n passes, ms\n";
-  for (const ComparedMethod& method : comparison.methods) table += passesOf(method);
+  for (const ComparedMethod& method : comparison.methods) {
+    table += passesOf(fmt::format(" {:<22}", method.measurement.options.name), method.measurement);
+  }
   for (const RefusedMethod& refused : comparison.refused) {
     table += fmt::format(" left out {}: {}\n", refused.name, refused.reason);
   }

@@ -9,6 +9,8 @@
 
 #include <glm/glm.hpp>
 
+#include "../scene/srgb.h"
+
 namespace vitrail::tool {
 
 namespace {
@@ -21,11 +23,6 @@ const glm::dmat3 kXyzFromRgb{{10135552.0 / 24577794.0, 2613072.0 / 12288897.0, 1
                              {4435075.0 / 24577794.0, 887015.0 / 12288897.0, 70074185.0 / 73733382.0}};
 const glm::dmat3 kRgbFromXyz = glm::inverse(kXyzFromRgb);
 const Vec kWhite = kXyzFromRgb * Vec(1.0);
-
-double linearOf(int code) {
-  const double encoded = code / 255.0;
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
 
 // YCxCz, which is linear in light, so that filters may run over it.
 Vec ycxczOf(const Vec& rgb) {
@@ -166,7 +163,7 @@ constexpr double kFeatureExponent = 0.5;
 
 FlipPicture flipPicture(const Picture& picture) {
   std::array<double, 256> linear{};
-  for (int code = 0; code < 256; ++code) linear[static_cast<std::size_t>(code)] = linearOf(code);
+  for (int code = 0; code < 256; ++code) linear[static_cast<std::size_t>(code)] = linearFromSrgb(code / 255.0);
   Plane y(picture.width, picture.height);
   Plane cx = y;
   Plane cz = y;

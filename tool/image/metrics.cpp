@@ -26,9 +26,7 @@ std::uint8_t encoded(double linear) {
 // The picture over a grey of that code.
 Picture overBackdrop(const Picture& picture, int code) {
   std::array<double, 256> linear{};
-  for (std::size_t i = 0; i < linear.size(); ++i) {
-    linear[i] = static_cast<double>(linearFromSrgb(glm::vec3(static_cast<float>(i) / 255.0F)).r);
-  }
+  for (std::size_t i = 0; i < linear.size(); ++i) linear[i] = linearFromSrgb(static_cast<double>(i) / 255.0);
   Picture result = picture;
   result.hasAlpha = false;
   const double behind = linear[static_cast<std::size_t>(code)];

@@ -1,7 +1,5 @@
 #include "png_decode.h"
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
 #include "../scene/image_decode.h"
@@ -10,11 +8,7 @@
 namespace vitrail::tool {
 
 Picture decodePng(std::span<const std::byte> file) {
-  constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  const bool isPng =
-      file.size() >= kSignature.size() && std::equal(kSignature.begin(), kSignature.end(), file.begin(),
-                                                     [](std::uint8_t a, std::byte b) { return std::byte{a} == b; });
-  if (!isPng) throw LoadError("is not a PNG");
+  if (!isPng(file)) throw LoadError("is not a PNG");
   Image image = decodeImage(file);
   Picture picture;
   picture.width = image.width;

@@ -53,7 +53,7 @@ bool startsWith(std::span<const std::byte> file, const std::array<std::uint8_t, 
 // packs more than this: PNG's deflate reaches 1032 bytes for one, and a byte holds up to 8 pixels; in JPEG a block of
 // 64 pixels takes a bit at least.
 bool plausible(std::uint64_t pixels, std::span<const std::byte> file) {
-  const std::uint64_t pixelsPerByte = startsWith(file, pngSignature) ? 1032 * 8 : 1024;
+  const std::uint64_t pixelsPerByte = isPng(file) ? 1032 * 8 : 1024;
   return pixels / pixelsPerByte <= file.size();
 }
 
@@ -108,9 +108,9 @@ std::uint8_t roundedTo8Bits(std::uint16_t value) {
 
 } // namespace
 
-bool isPngOrJpeg(std::span<const std::byte> file) {
-  return startsWith(file, pngSignature) || startsWith(file, jpegSignature);
-}
+bool isPng(std::span<const std::byte> file) { return startsWith(file, pngSignature); }
+
+bool isPngOrJpeg(std::span<const std::byte> file) { return isPng(file) || startsWith(file, jpegSignature); }
 
 Image decodeImage(std::span<const std::byte> file) {
   if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
@@ -128,7 +128,7 @@ Image decodeImage(std::span<const std::byte> file) {
     throw LoadError(
         fmt::format("the image has {} x {} pixels, but a side may have 1 to {}", width, height, longestSide));
   const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  if (!plausible(pixels, file) || (startsWith(file, pngSignature) && !plausiblePng(file, pixels)))
+  if (!plausible(pixels, file) || (isPng(file) && !plausiblePng(file, pixels)))
     throw LoadError(
         fmt::format("the image states {} x {} pixels, but its file has only {} bytes", width, height, size));
 

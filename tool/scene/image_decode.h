@@ -8,6 +8,8 @@
 
 namespace vitrail::tool {
 
+bool isPng(std::span<const std::byte> file);
+
 // True for the two formats that glTF allows.
 bool isPngOrJpeg(std::span<const std::byte> file);
 

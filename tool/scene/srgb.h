@@ -5,7 +5,8 @@
 
 namespace vitrail::tool {
 
-// Channels outside [0, 1] are clamped; a NaN becomes 0.
+// What lies outside [0, 1] is clamped; a NaN becomes 0.
+double linearFromSrgb(double encoded);
 glm::vec3 linearFromSrgb(const glm::vec3& srgb);
 
 } // namespace vitrail::tool

@@ -111,7 +111,7 @@
       // Without the baseline nothing is measured.
       const all = scene.measurements.length === 0 ? scene.skipped.filter((s) => s.method === "unsorted") : scene.skipped;
       for (const skipped of all) {
-        const name = scene.measurements.length === 0 ? "every method" : skipped.method;
+        const name = scene.measurements.length === 0 ? "every method" : skipped.setting;
         const text = `${name}${skipped.samples > 1 && scene.sweep !== "samples" ? `, ${skipped.samples} samples` : ""}: ${skipped.reason}`;
         reasons.set(text, [...(reasons.get(text) ?? []), scene.label ?? nameOf(scene)]);
       }

@@ -10,6 +10,15 @@
   const share = (value) => (value === 0 ? "0" : value < 0.0005 ? "<0.1 %" : (100 * value).toFixed(1) + " %");
   const worst = (w) => (w.difference === 0 ? "0" : `${w.difference} at ${w.x},${w.y}`);
 
+  // What --layers and --passes said of the methods that have them.
+  function limitsText() {
+    const limits = [["--layers", "max_layers"], ["--passes", "passes"]].flatMap(([option, name]) => {
+      const method = report.methods.find((m) => m[name] !== null);
+      return method ? [`${option} ${method[name]}`] : [];
+    });
+    return limits.length > 0 ? ` Of the methods that have the option: ${limits.join(" ")}.` : "";
+  }
+
   function fillHeader() {
     const name = report.scene + (report.count === null ? "" : ` × ${report.count}`);
     byId("title").textContent = `Transparency methods compared: ${name}`;
@@ -17,7 +26,8 @@
     const samples = report.samples > 1 ? `, ${report.samples} samples a pixel` : "";
     byId("subject").textContent =
       `${report.width} × ${report.height} pixels${samples}; ${whole(report.triangles)} triangles, ` +
-      `${whole(report.exact_picture.fragments)} transparent fragments, up to ${report.layers_max} in one pixel.`;
+      `${whole(report.exact_picture.fragments)} transparent fragments, up to ${report.layers_max} in one pixel.` +
+      limitsText() + (report.exact_picture.exact ? "" : " The picture that all are compared with is itself not exact.");
     byId("machine").textContent = machineText(report);
   }
 
