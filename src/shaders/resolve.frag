@@ -62,8 +62,12 @@ void main() {
   if (head == VITRAIL_END && !overflowed()) discard;
 #endif
   if (overflowed()) {
-    if (parameters.keepSums == 0u) discard;
-    r = vitrailResolveSums(head, nodesInUse(), readMissing(pixelIndex));
+    // Mesa's CPU driver lets discarded invocations run on, and they read zeros: a list of those does not end.
+    if (parameters.keepSums == 0u) {
+      discard;
+    } else {
+      r = vitrailResolveSums(head, nodesInUse(), readMissing(pixelIndex));
+    }
   } else if (head != VITRAIL_END) {
     r = resolveList(head);
   }
