@@ -327,13 +327,12 @@ TEST(Bench, WrongUsageIsOneLineAndExitCode2) {
     Words words{"bench"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     words.insert(words.end(), {"--json", "a.json"});
-    expectRefusal(kTool, words, 2, reason);
-    expectRefusal(kSanitizedTool, words, 2, reason);
+    for (const std::string& tool : kTools) expectRefusal(tool, words, 2, reason);
   }
 }
 
 TEST(Bench, WhatCannotBeDoneIsOneLineAndExitCode1) {
-  for (const std::string& tool : {kTool, kSanitizedTool}) {
+  for (const std::string& tool : kTools) {
     expectRefusal(tool, {"bench", "no-such-file.glb", "--json", "a.json"}, 1, "no-such-file.glb");
     expectRefusal(tool, {"bench", "--json", "nowhere/a.json"}, 1, "nowhere");
     expectRefusal(tool, {"bench", "--csv", "nowhere/a.csv"}, 1, "nowhere");

@@ -119,13 +119,12 @@ TEST(Cli, WrongUsageIsOneLineAndExitCode2) {
       {with({"--size"}), "--size"},
   };
   for (const auto& [arguments, reason] : cases) {
-    expectRefusal(kTool, arguments, 2, reason);
-    expectRefusal(kSanitizedTool, arguments, 2, reason);
+    for (const std::string& tool : kTools) expectRefusal(tool, arguments, 2, reason);
   }
 }
 
 TEST(Cli, WhatCannotBeDoneIsOneLineAndExitCode1) {
-  for (const std::string& tool : {kTool, kSanitizedTool}) {
+  for (const std::string& tool : kTools) {
     expectRefusal(tool, {"render", "no-such-file.glb", "-o", "a.png"}, 1, "no-such-file.glb");
     expectRefusal(tool, {"render", "/", "-o", "a.png"}, 1, "/");
     expectRefusal(tool, {"render", "/etc/passwd", "-o", "a.png"}, 1, ".gltf");

@@ -112,7 +112,7 @@ TEST(ComparePictures, WhatCannotBeComparedIsOneLine) {
       {{"--scene", "spheres", "--passes", "many"}, 2, "--passes"},
       {{"--scene", "spheres", "--methods", "unsorted,loop", "--passes", "9"}, 2, "unsorted has no choice"},
   };
-  for (const std::string& tool : {kTool, kSanitizedTool}) {
+  for (const std::string& tool : kTools) {
     for (auto [arguments, exitCode, reason] : cases) {
       arguments.insert(arguments.begin(), "compare");
       expectRefusal(folder, tool, arguments, exitCode, reason);

@@ -14,7 +14,10 @@ using Json = nlohmann::json;
 using Words = std::vector<std::string>;
 
 inline const std::string kTool = VITRAIL_TEST_TOOL;
-inline const std::string kSanitizedTool = VITRAIL_TEST_SANITIZED_TOOL; // takes bad files and bad options
+inline const std::string kSanitizedTool = VITRAIL_TEST_SANITIZED_TOOL; // takes bad files; kTool where it was not built
+// What takes bad options: both, each once.
+inline const std::vector<std::string> kTools =
+    kTool == kSanitizedTool ? std::vector{kTool} : std::vector{kTool, kSanitizedTool};
 
 // Runs the program in a folder, or as the options say.
 ProcessResult vitrail(const TemporaryFolder& folder, Words words, const std::string& tool = kTool);
