@@ -45,13 +45,16 @@ struct VitrailNodeHdr {
   uvec4 words;
 };
 
+// Counters of one thing, to be added up: work groups that add to one word at once wait for each other.
+#define VITRAIL_PARTS 16
+
 // What a frame counts. All zero when the collect pass starts.
 struct VitrailControl {
   uint requested; // fragments that asked for a node: the index of the next one's, which may be beyond the pool
   uint wraps;     // VITRAIL_WRAP_STEP of them each are not in `requested`
   uint misfits;   // fragments of shaders that were specialized for another target: they are missing too
   uint layersMax; // this and the next three are written by the resolve
-  uint coveredPixels;
+  uint coveredPixels[VITRAIL_PARTS];
   uint cutPixels; // lists that the driver did not let it finish
   uint approximatePixels;
   uint mediumLists;   // lists that are left to the second dispatch
@@ -88,7 +91,7 @@ struct VitrailParameters {
 static_assert(sizeof(VitrailNodeStandard) == 8);
 static_assert(sizeof(VitrailNodeCompact) == 8);
 static_assert(sizeof(VitrailNodeHdr) == 16);
-static_assert(sizeof(VitrailControl) == 72);
+static_assert(sizeof(VitrailControl) == 132);
 static_assert(sizeof(VitrailParameters) == 48);
 #define VITRAIL_CONSTANT constexpr uint
 #else

@@ -1,4 +1,4 @@
-// Counts pixels for the statistics, one atomic a work group.
+// Counts pixels for the statistics, one atomic a work group and, where it is deeper than those before, another.
 #ifndef VITRAIL_GROUP_COUNTS_GLSL
 #define VITRAIL_GROUP_COUNTS_GLSL
 
@@ -27,8 +27,8 @@ void countPixel(uint layers) {
 void endCounts() {
   barrier();
   if (gl_LocalInvocationIndex != 0u || groupCovered == 0u) return;
-  atomicMax(control.layersMax, groupLayersMax);
-  atomicAdd(control.coveredPixels, groupCovered);
+  countLayers(groupLayersMax);
+  atomicAdd(control.coveredPixels[(gl_WorkGroupID.x + gl_WorkGroupID.y) % VITRAIL_PARTS], groupCovered);
   if (groupApproximate > 0u) atomicAdd(control.approximatePixels, groupApproximate);
 }
 

@@ -34,7 +34,7 @@ void writePixel(uvec2 pixel, VitrailResolved r) {
 
 void writeDeepPixel(uint pixelIndex, VitrailResolved r) {
   writePixel(imagePixel(pixelIndex), r);
-  atomicMax(control.layersMax, r.layers);
+  countLayers(r.layers);
   if (!r.complete) atomicAdd(control.cutPixels, 1u);
   if (kMaxLayers != 0u && r.layers > kMaxLayers) atomicAdd(control.approximatePixels, 1u);
 }

@@ -3,16 +3,17 @@
 // branch; elsewhere resolve.comp does the same.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "group_counts.glsl"
 #include "picture.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 void main() {
+  beginCounts();
   uvec2 local = gl_GlobalInvocationID.xy;
-  if (local.x >= parameters.width || local.y >= parameters.height) return;
-  uint layers = writeSums(local);
-  if (layers == 0u) return;
-  atomicAdd(control.coveredPixels, 1u);
-  if (layers > control.layersMax) atomicMax(control.layersMax, layers);
-  if (kMaxLayers != 0u && layers > kMaxLayers) atomicAdd(control.approximatePixels, 1u);
+  if (local.x < parameters.width && local.y < parameters.height) {
+    uint layers = writeSums(local);
+    if (layers > 0u) countPixel(layers);
+  }
+  endCounts();
 }

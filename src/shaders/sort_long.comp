@@ -15,7 +15,7 @@ void main() {
   uint pixelIndex = longPixels[slot];
   VitrailSorted sorted = vitrailSortLong(heads[pixelIndex], nodesInUse());
   heads[pixelIndex] = sorted.head;
-  atomicMax(control.layersMax, sorted.count);
+  countLayers(sorted.count);
   if (kMaxLayers != 0u && sorted.count > kMaxLayers) atomicAdd(control.approximatePixels, 1u);
   if (!sorted.complete) atomicAdd(control.cutPixels, 1u);
 }

@@ -36,6 +36,11 @@ uvec2 vitrailPoolAddress() { return uvec2(parameters.nodesLow, parameters.nodesH
 VitrailLayout vitrailNodes() { return VitrailLayout(kFormat, kSamples, kNearestIsOne); }
 uint vitrailMaxLayers() { return kMaxLayers; }
 
+// The most fragments of a pixel. Atomics on one word wait for each other; most pixels are not the deepest and need none.
+void countLayers(uint layers) {
+  if (layers > control.layersMax) atomicMax(control.layersMax, layers);
+}
+
 uint nodesInUse() { return min(control.requested, parameters.capacity); }
 bool overflowed() { return control.requested > parameters.capacity || control.misfits != 0u; }
 

@@ -91,6 +91,6 @@ extern "C" VkResult vitrailReadStats(VitrailTarget target, uint64_t frame, Vitra
   stats->approximatePixels = control.approximatePixels;
   stats->exact = stats->fragmentsMissing == 0 && stats->cutPixels == 0 && stats->approximatePixels == 0 ? 1 : 0;
   stats->layersMax = control.layersMax;
-  stats->coveredPixels = control.coveredPixels;
+  for (const std::uint32_t part : control.coveredPixels) stats->coveredPixels += part;
   return VK_SUCCESS;
 }

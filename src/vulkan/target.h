@@ -23,7 +23,7 @@ struct StatsSlot {
   std::uint32_t sumsCleared;  // VitrailTarget_T::sumsCleared of the frame; read without the tag
   std::uint64_t tag;          // frame + 1, so that a slot never written names no frame
 };
-static_assert(sizeof(StatsSlot) == 88);
+static_assert(sizeof(StatsSlot) == 152);
 
 // The pipelines of a target's resolve; null where its kind does not need one.
 struct ResolvePipelines {

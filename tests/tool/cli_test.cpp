@@ -209,7 +209,7 @@ TEST(Cli, APictureAndItsReport) {
   EXPECT_EQ(json.at("memory").at("heads_bytes"), 96 * 64 * 4);
   EXPECT_GT(json.at("memory").at("total_bytes"), json.at("memory").at("nodes_bytes"));
   EXPECT_GE(json.at("memory").at("peak_bytes"), json.at("memory").at("total_bytes"));
-  for (const char* pass : {"opaque", "clear", "collect", "resolve", "encode"}) {
+  for (const char* pass : {"opaque", "clear", "collect", "resolve", "statistics", "encode"}) {
     EXPECT_GE(json.at("passes_ms").at(pass).get<double>(), 0.0) << pass;
   }
   EXPECT_GT(json.at("frame_ms"), 0.0);

@@ -232,8 +232,9 @@ void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
     images.cmdToComputeResolve(commands);
     target_.resolve(commands);
   }
-  target_.end(commands);
   frame.endPass("resolve");
+  target_.end(commands);
+  frame.endPass("statistics");
 }
 
 void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
