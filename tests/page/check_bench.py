@@ -117,12 +117,15 @@ def leave(browser, path):
 def main():
     tool, picture = sys.argv[1], sys.argv[2:3]
     with tempfile.TemporaryDirectory(dir=os.getcwd()) as folder:  # not /tmp: a snap does not see it
-        small = ["--size", "32x24", "--methods", "linked-list,insertion"]
+        small = ["--size", "32x24"]
+        two = ["--methods", "linked-list,insertion", *small]
+        # More settings than the palette has colours.
+        many = ["--nodes", "standard,compact,hdr", "--samples", "1,8", *small]
         browser = Browser()
         try:
             for name, arguments in {
-                "sweeps": ["--sweep", "layers,triangles,samples", "--count", "1", *small],
-                "scenes": ["--scene", "planes,interlocked", "--nodes", "standard,hdr", "--samples", "1,8", *small],
+                "sweeps": ["--sweep", "layers,triangles,samples", "--count", "1", *two],
+                "scenes": ["--scene", "planes,interlocked", *many],
             }.items():
                 page = os.path.join(folder, name)
                 report = make_page(tool, page, arguments)

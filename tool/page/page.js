@@ -28,6 +28,9 @@ function chartColors() {
 const PALETTE = ["#5b8def", "#e2884a", "#3fa77a", "#c069c4", "#c9a227", "#d0605e", "#6aa9b8", "#8a8f99", "#7a6fd6",
   "#a3703f", "#7fae2e", "#e07ab0", "#2f8f9f", "#b5544a", "#9a9a3c", "#5f7f9f"];
 
+// A colour of its own for every number: those of the palette, then hues a golden angle apart.
+const colorAt = (i) => PALETTE[i] ?? `hsl(${Math.round((i * 137.508) % 360)}, 45%, ${i % 2 === 0 ? 42 : 62}%)`;
+
 // Draws all charts of the page; again where light turns to dark.
 let charts = [];
 function keepDrawing(draw) {

@@ -21,7 +21,7 @@
   const unique = (values) => [...new Set(values)];
   const settingsOf = (scenes) => unique(scenes.flatMap((scene) => scene.measurements.map((m) => settingOf(scene, m))));
   const settings = settingsOf(report.scenes);
-  const colorOf = (setting) => PALETTE[settings.indexOf(setting) % PALETTE.length];
+  const colorOf = (setting) => colorAt(settings.indexOf(setting));
   const markOf = (setting) => MARKS[settings.indexOf(setting) % MARKS.length];
   const measurementOf = (scene, setting) => scene.measurements.find((m) => settingOf(scene, m) === setting);
   const nameOf = (scene) => scene.scene + (scene.count === null ? "" : ` × ${whole(scene.count)}`);

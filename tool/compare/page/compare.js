@@ -167,7 +167,7 @@
     const ofPass = (method, pass) => (pass in method.passes_ms && unit > 0 ? method.passes_ms[pass].median / unit : 0);
     drawChart("cost", passes.map((pass, i) => ({
       label: pass.replaceAll("_", " "), data: methods.map((method) => ofPass(method, pass)),
-      backgroundColor: PALETTE[i % PALETTE.length],
+      backgroundColor: colorAt(i),
     })), true, "×");
     const plain = (label, data, color) => [{ label, data, backgroundColor: color }];
     drawChart("error", plain("FLIP", methods.map((method) => method.metrics.flip), PALETTE[5]), false, "");
