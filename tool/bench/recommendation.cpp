@@ -181,6 +181,12 @@ std::vector<Candidates> each(const Scenes& scenes, Candidates (*best)(const Scen
   return steps;
 }
 
+// What a method that was exact in these frames gets wrong in others; nothing of one that always is exact.
+std::string elsewhere(const Scenes& scenes, const Run& run) {
+  const std::string_view wrong = traitsOf(measurementOf(*scenes[run.first], run.setting).options.name).wrong;
+  return wrong.empty() ? "" : fmt::format(" It was exact in these frames; in others {}.", wrong);
+}
+
 std::string exactText(const Scenes& scenes, bool isCpu) {
   std::vector<std::string> sentences;
   const std::vector<Candidates> steps = each(scenes, cheapestOf, isExact);
@@ -188,8 +194,8 @@ std::string exactText(const Scenes& scenes, bool isCpu) {
     const std::string where = capitalized(placesOf(scenes, run.first, run.last));
     sentences.push_back(run.setting.empty()
                             ? fmt::format("{} no method that was measured is exact.", where)
-                            : fmt::format("{} {} is the cheapest exact method: {}{}.", where, run.setting,
-                                          numbersOf(scenes, run, isCpu), othersOf(steps, run)));
+                            : fmt::format("{} {} is the cheapest exact method: {}{}.{}", where, run.setting,
+                                          numbersOf(scenes, run, isCpu), othersOf(steps, run), elsewhere(scenes, run)));
   }
   return fmt::format("{}", fmt::join(sentences, " "));
 }
@@ -257,9 +263,9 @@ std::string memoryText(const Scenes& scenes, bool isCpu) {
   const std::vector<Run> cheapest = runsOf(each(scenes, cheapestOf, isExact));
   for (const Run& run : runsOf(each(scenes, smallestOf, isExact))) {
     if (run.setting.empty() || !savesMemory(scenes, run, cheapest)) continue;
-    sentences.push_back(fmt::format("{} the exact method that keeps the least memory is {}: {}.",
+    sentences.push_back(fmt::format("{} the exact method that keeps the least memory is {}: {}.{}",
                                     capitalized(placesOf(scenes, run.first, run.last)), run.setting,
-                                    numbersOf(scenes, run, isCpu)));
+                                    numbersOf(scenes, run, isCpu), elsewhere(scenes, run)));
   }
   return fmt::format("{}", fmt::join(sentences, " "));
 }
