@@ -36,7 +36,8 @@ uvec2 vitrailPoolAddress() { return uvec2(parameters.nodesLow, parameters.nodesH
 VitrailLayout vitrailNodes() { return VitrailLayout(kFormat, kSamples, kNearestIsOne); }
 uint vitrailMaxLayers() { return kMaxLayers; }
 
-// The most fragments of a pixel. Atomics on one word wait for each other; most pixels are not deeper and need none.
+// The most fragments of a pixel. Atomics on one word wait for each other; most pixels are not deeper and need none. One
+// that sees an earlier maximum makes one atomic too many.
 void countLayers(uint layers) {
   if (layers > control.layersMax) atomicMax(control.layersMax, layers);
 }

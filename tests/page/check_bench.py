@@ -2,27 +2,12 @@
 there with every method in its colour, and so are the advice, the tables and what was skipped.
 
 Usage: check_bench.py VITRAIL [NAME]     NAME: what files begin with in which to leave screenshots of the pages"""
-import base64
-import json
 import os
-import subprocess
 import sys
 import tempfile
 
 from browser import Browser
-
-failures = []
-
-
-def expect(condition, what):
-    if not condition:
-        failures.append(what)
-
-
-def make_page(tool, folder, arguments):
-    subprocess.run([tool, "bench", *arguments, "--repeat", "1", "--quiet", "-o", folder], check=True)
-    with open(os.path.join(folder, "report.json"), encoding="utf-8") as file:
-        return json.load(file)
+from checks import expect, finish, leave_screenshot, make_page
 
 
 def setting_of(scene, measured):
@@ -109,11 +94,6 @@ def check_dark(browser):
     expect(browser.value(ink) != light, "the charts stay light on a dark page")
 
 
-def leave(browser, path):
-    with open(path, "wb") as file:
-        file.write(base64.b64decode(browser.screenshot(whole=True)))
-
-
 def main():
     tool, picture = sys.argv[1], sys.argv[2:3]
     with tempfile.TemporaryDirectory(dir=os.getcwd()) as folder:  # not /tmp: a snap does not see it
@@ -128,23 +108,20 @@ def main():
                 "scenes": ["--scene", "planes,interlocked", *many],
             }.items():
                 page = os.path.join(folder, name)
-                report = make_page(tool, page, arguments)
+                report = make_page([tool, "bench", *arguments], page)
                 browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
                 browser.events.clear()
                 browser.open(os.path.join(page, "index.html"))
                 check_content(browser, report)
                 check_hiding(browser)
                 if picture:
-                    leave(browser, f"{picture[0]}-{name}-light.png")
+                    leave_screenshot(browser, f"{picture[0]}-{name}-light.png")
                 check_dark(browser)
                 if picture:
-                    leave(browser, f"{picture[0]}-{name}-dark.png")
+                    leave_screenshot(browser, f"{picture[0]}-{name}-dark.png")
         finally:
             browser.close()
-    failures.extend(browser.errors)
-    for failure in failures:
-        print(failure)
-    sys.exit(1 if failures else 0)
+    finish(browser)
 
 
 main()

@@ -2,30 +2,16 @@
 shows is there, and the slider moves.
 
 Usage: check_compare.py VITRAIL [PICTURE]     PICTURE: where to leave a screenshot of the whole page"""
-import base64
-import json
 import os
-import subprocess
 import sys
 import tempfile
 
 from browser import Browser
+from checks import expect, finish, leave_screenshot, make_page
 
 WIDTH, HEIGHT = 96, 64
 NOT_EXACT = "The picture that all are compared with is itself not exact."
-failures = []
-
-
-def expect(condition, what):
-    if not condition:
-        failures.append(what)
-
-
-def make_page(tool, folder):
-    subprocess.run([tool, "compare", "--scene", "interlocked", "--count", "3", "--size", f"{WIDTH}x{HEIGHT}",
-                    "--repeat", "1", "--passes", "3", "--quiet", "-o", folder], check=True)
-    with open(os.path.join(folder, "report.json"), encoding="utf-8") as file:
-        return json.load(file)
+SMALL = ["--scene", "interlocked", "--count", "3", "--size", f"{WIDTH}x{HEIGHT}", "--passes", "3"]
 
 
 def check_content(browser, report):
@@ -98,22 +84,18 @@ def main():
     tool, picture = sys.argv[1], sys.argv[2:3]
     with tempfile.TemporaryDirectory(dir=os.getcwd()) as folder: # not /tmp: a snap does not see it
         page = os.path.join(folder, "page")
-        report = make_page(tool, page)
+        report = make_page([tool, "compare", *SMALL], page)
         browser = Browser()
         try:
             browser.open(os.path.join(page, "index.html"))
             check_content(browser, report)
             if picture:
-                with open(picture[0], "wb") as file:
-                    file.write(base64.b64decode(browser.screenshot(whole=True)))
+                leave_screenshot(browser, picture[0])
             check_slider(browser)
             check_inexact(browser, page)
         finally:
             browser.close()
-    failures.extend(browser.errors)
-    for failure in failures:
-        print(failure)
-    sys.exit(1 if failures else 0)
+    finish(browser)
 
 
 main()

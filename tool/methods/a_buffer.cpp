@@ -184,7 +184,7 @@ MethodStats ABuffer::stats() const {
   }
   stats.fragmentsRequested = stats.fragmentsStored;
   stats.exact = stats.cutPixels == 0;
-  if (covered > 0) stats.layersMean = static_cast<double>(stats.fragmentsStored) / static_cast<double>(covered);
+  stats.layersMean = meanLayers(stats.fragmentsStored, covered);
   stats.nodesBytes = fragments_.bytes();
   stats.headsBytes = offsets_.size() + filled_.size();
   stats.totalBytes = stats.nodesBytes + stats.headsBytes + control_.bytes();

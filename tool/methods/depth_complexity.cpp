@@ -167,9 +167,7 @@ MethodStats DepthComplexity::stats() const {
   stats.exact = stats.fragmentsMissing == 0;
   stats.approximatePixels = measured_.deeperPixels;
   stats.layersMax = measured_.deepest;
-  if (measured_.coveredPixels > 0) {
-    stats.layersMean = static_cast<double>(stats.fragmentsStored) / measured_.coveredPixels;
-  }
+  stats.layersMean = meanLayers(stats.fragmentsStored, measured_.coveredPixels);
   const VkExtent2D counts = counts_.get().info().extent;
   stats.totalBytes = parts_.bytes() + std::uint64_t{counts.width} * counts.height * sizeof(std::uint32_t);
   return stats;

@@ -113,7 +113,7 @@ MethodStats Insertion::stats() const {
   stats.fragmentsStored = inLists - dropped;
   stats.fragmentsMissing = stats.fragmentsRequested - stats.fragmentsStored;
   stats.exact = stats.fragmentsMissing == 0;
-  stats.layersMean = covered > 0 ? static_cast<double>(inLists) / static_cast<double>(covered) : 0.0;
+  stats.layersMean = meanLayers(inLists, covered);
   stats.nodesBytes = nodes_.bytes();
   stats.headsBytes = std::uint64_t{extent_.width} * extent_.height * sizeof(std::uint32_t);
   stats.totalBytes = stats.nodesBytes + stats.headsBytes + control_.bytes();

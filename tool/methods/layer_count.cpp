@@ -74,7 +74,7 @@ MethodStats LayerCount::stats() const {
     stats.layersMax = std::max(stats.layersMax, layers);
     if (layers > 0) ++covered;
   }
-  if (covered > 0) stats.layersMean = static_cast<double>(stats.fragmentsRequested) / static_cast<double>(covered);
+  stats.layersMean = meanLayers(stats.fragmentsRequested, covered);
   stats.totalBytes = readback_.size() * 2;
   return stats;
 }

@@ -296,9 +296,7 @@ void LinkedList::add(const VitrailStats& stats) {
 
 MethodStats LinkedList::stats() const {
   MethodStats result = stats_;
-  if (coveredPixels_ > 0) {
-    result.layersMean = static_cast<double>(stats_.fragmentsStored) / static_cast<double>(coveredPixels_);
-  }
+  result.layersMean = meanLayers(stats_.fragmentsStored, coveredPixels_);
   if (!target_) return result; // nothing was drawn
   const VitrailMemory memory = target_.memory();
   result.nodesBytes = memory.nodeBytes;

@@ -65,6 +65,11 @@ struct MethodStats {
   std::vector<std::uint32_t> pixelLayers{}; // of layer-count: the fragments of each pixel, rows top to bottom
 };
 
+// MethodStats::layersMean of so many pixels that have fragments.
+inline double meanLayers(std::uint64_t fragments, std::uint64_t coveredPixels) {
+  return coveredPixels > 0 ? static_cast<double>(fragments) / static_cast<double>(coveredPixels) : 0.0;
+}
+
 class Method {
  public:
   Method() = default;

@@ -108,7 +108,7 @@ MethodStats NearestLayers::stats() const {
   }
   stats.fragmentsStored = stats.fragmentsRequested; // those of the tails as sums
   stats.exact = stats.approximatePixels == 0;
-  if (covered > 0) stats.layersMean = static_cast<double>(stats.fragmentsStored) / static_cast<double>(covered);
+  stats.layersMean = meanLayers(stats.fragmentsStored, covered);
   stats.nodesBytes = entries_.size();
   stats.totalBytes = entries_.size() + tails_.size() + control_.bytes();
   return stats;
