@@ -65,6 +65,10 @@ struct VitrailControl {
   uint longGroupsX;
   uint longGroupsY;
   uint longGroupsZ;
+  uint longestLists; // lists that are left to the fourth dispatch
+  uint longestGroupsX;
+  uint longestGroupsY;
+  uint longestGroupsZ;
   // The dispatch that blends a frame that overflowed; written by the first fragment without a node.
   uint overflowGroupsX;
   uint overflowGroupsY;
@@ -91,7 +95,7 @@ struct VitrailParameters {
 static_assert(sizeof(VitrailNodeStandard) == 8);
 static_assert(sizeof(VitrailNodeCompact) == 8);
 static_assert(sizeof(VitrailNodeHdr) == 16);
-static_assert(sizeof(VitrailControl) == 132);
+static_assert(sizeof(VitrailControl) == 148);
 static_assert(sizeof(VitrailParameters) == 48);
 #define VITRAIL_CONSTANT constexpr uint
 #else
@@ -121,6 +125,7 @@ VITRAIL_CONSTANT VITRAIL_MULTIPLY = 3u;
 
 VITRAIL_CONSTANT VITRAIL_SHORT_LIST = 16u;  // fragments that the first dispatch sorts
 VITRAIL_CONSTANT VITRAIL_MEDIUM_LIST = 32u; // fragments that the second dispatch sorts
+VITRAIL_CONSTANT VITRAIL_LONG_LIST = 64u;   // fragments that the third dispatch sorts, by networks
 
 // Words of a pixel's sums: colour (3), opacity, -log2 of the transmittance.
 VITRAIL_CONSTANT VITRAIL_SUM_WORDS = 5u;

@@ -111,26 +111,29 @@ bool vitrailIsOpaque(VitrailResolved result) {
 #define VITRAIL_TAKE(i) e[i] = vitrailTake(walk);
 #define VITRAIL_BLEND(i) if (walk.count > i) vitrailBlendSorted(result, e[i].key, i);
 
+// The next 16 fragments of a list.
+#define VITRAIL_TAKE_16 \
+  VITRAIL_TAKE(0) VITRAIL_TAKE(1) VITRAIL_TAKE(2) VITRAIL_TAKE(3) \
+  if (vitrailMore(walk)) { \
+    VITRAIL_TAKE(4) VITRAIL_TAKE(5) VITRAIL_TAKE(6) VITRAIL_TAKE(7) \
+  } \
+  if (vitrailMore(walk)) { \
+    VITRAIL_TAKE(8) VITRAIL_TAKE(9) VITRAIL_TAKE(10) VITRAIL_TAKE(11) \
+    VITRAIL_TAKE(12) VITRAIL_TAKE(13) VITRAIL_TAKE(14) VITRAIL_TAKE(15) \
+  }
+
 // The first 16 fragments of a list, sorted.
 void vitrailSortFirst(inout VitrailWalk walk, inout VitrailEntry e[16]) {
 #if VITRAIL_NETWORKS
-  VITRAIL_TAKE(0) VITRAIL_TAKE(1) VITRAIL_TAKE(2) VITRAIL_TAKE(3)
-  if (vitrailMore(walk)) {
-    VITRAIL_TAKE(4) VITRAIL_TAKE(5) VITRAIL_TAKE(6) VITRAIL_TAKE(7)
-  }
-  if (vitrailMore(walk)) {
-    VITRAIL_TAKE(8) VITRAIL_TAKE(9) VITRAIL_TAKE(10) VITRAIL_TAKE(11)
-    VITRAIL_TAKE(12) VITRAIL_TAKE(13) VITRAIL_TAKE(14) VITRAIL_TAKE(15)
-  }
+  VITRAIL_TAKE_16
   vitrailSort(e, walk.count);
 #else
   while (vitrailMore(walk) && walk.count < VITRAIL_SHORT_LIST) vitrailInsert(e, vitrailTake(walk));
 #endif
 }
 
-// A list of at most 16 fragments; a longer one is not complete.
-VitrailResolved vitrailResolveShort(uint head, uint nodeCount) {
-  VitrailWalk walk = VitrailWalk(head, 0u, nodeCount);
+// A list of at most 16 fragments, from its head; a longer one is not complete, and `walk` stands at what is left.
+VitrailResolved vitrailResolveShort(inout VitrailWalk walk) {
   VitrailEntry e[16] = VitrailEntry[16](VITRAIL_LAST_16);
   vitrailSortFirst(walk, e);
   VitrailResolved result = vitrailNothing();

@@ -55,6 +55,13 @@ constexpr std::uint64_t listBytes(std::uint32_t areaPixels, std::uint32_t capaci
   return std::max<std::uint64_t>(std::min(areaPixels, capacity / (shorter + 1)), 1) * sizeof(layout::uint);
 }
 
+// Bytes of an array of the lists that groups of invocations take, four words each, and eight where the list has more
+// than VITRAIL_LONG_LIST fragments.
+constexpr std::uint64_t groupListBytes(std::uint32_t areaPixels, std::uint32_t capacity) {
+  const std::uint64_t most = std::uint64_t{2} * capacity / (layout::VITRAIL_LONG_LIST + 1); // shorter lists: no more
+  return std::max<std::uint64_t>(std::min(std::uint64_t{2} * areaPixels, most), 1) * sizeof(layout::uvec4);
+}
+
 // Bytes of the sums that a frame is blended from when it overflows.
 constexpr std::uint64_t sumBytes(std::uint32_t areaPixels) {
   return std::uint64_t{areaPixels} * layout::VITRAIL_SUM_WORDS * sizeof(layout::uint);
@@ -72,7 +79,7 @@ struct StorageLayout {
   StoragePart control;     // VitrailControl
   StoragePart heads;       // a node index a pixel of the area
   StoragePart mediumLists; // pixels left to the second dispatch
-  StoragePart longLists;   // pixels left to the third dispatch
+  StoragePart longLists;   // lists left to the third dispatch and the fourth
   StoragePart sums;        // VITRAIL_SUM_WORDS a pixel of the area; 16 unused bytes where none are kept
   StoragePart nodes;       // the pool
   std::uint64_t total = 0; // bytes of the buffer
@@ -92,8 +99,9 @@ constexpr StorageLayout layoutStorage(std::uint32_t areaPixels, std::uint32_t no
   storage.control = place(sizeof(layout::VitrailControl));
   storage.heads = place(headBytes(areaPixels));
   storage.mediumLists = place(listBytes(areaPixels, nodeCapacity, layout::VITRAIL_SHORT_LIST));
-  // Where there is no second dispatch the third takes its lists.
-  storage.longLists = place(listBytes(areaPixels, nodeCapacity, layout::VITRAIL_SHORT_LIST));
+  // Where lists are not left to groups of invocations, it holds the pixels of all that are not short.
+  storage.longLists = place(std::max(groupListBytes(areaPixels, nodeCapacity),
+                                     listBytes(areaPixels, nodeCapacity, layout::VITRAIL_SHORT_LIST)));
   storage.sums = place(keepSums ? std::max(sumBytes(areaPixels), kEmpty) : kEmpty);
   storage.nodes = place(nodePoolBytes(format, nodeCapacity));
   return storage;

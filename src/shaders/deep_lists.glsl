@@ -1,55 +1,80 @@
-// The lists of pixels that a dispatch leaves to the next one, which is dispatched indirectly. Compute shaders only.
+// The lists that a dispatch leaves to later ones, which are dispatched indirectly. Compute shaders only. With
+// VITRAIL_GROUPS there are later dispatches for several lengths, else one for all.
 #ifndef VITRAIL_DEEP_LISTS_GLSL
 #define VITRAIL_DEEP_LISTS_GLSL
 
 #include "target.glsl"
 
 layout(set = 0, binding = 5, std430) buffer MediumListsBlock { uint mediumPixels[]; }; // control.mediumLists of them
-layout(set = 0, binding = 6, std430) buffer LongListsBlock { uint longPixels[]; };     // control.longLists of them
+
+#ifdef VITRAIL_GROUPS
+// Lists that groups of invocations take: the pixel, and where parts begin (vitrail/parts.glsl). From the front
+// control.longLists for groups of 4, one element each; from the end control.longestLists for groups of 8, or of any
+// length, two elements each. A pool has not the nodes for so many that they meet.
+layout(set = 0, binding = 6, std430) buffer LongListsBlock { uvec4 longLists[]; };
+#else
+layout(set = 0, binding = 6, std430) buffer LongListsBlock { uint longPixels[]; }; // control.longLists of them
+#endif
 
 // The work groups of those dispatches in a row: the least that maxComputeWorkGroupCount may be, rounded down.
 const uint GROUPS_IN_ROW = 32768u;
-const uint DEEP_GROUP_SIZE = 128u;
+// Lists of one work group of each dispatch.
+const uint MEDIUM_GROUP_LISTS = 128u;
+const uint LONG_GROUP_LISTS = 32u;
+const uint LONGEST_GROUP_LISTS = 16u;
 
-// The number of this invocation in a dispatch over a list of pixels.
-uint deepSlot() {
-  return (gl_WorkGroupID.y * GROUPS_IN_ROW + gl_WorkGroupID.x) * DEEP_GROUP_SIZE + gl_LocalInvocationIndex;
-}
+// The number of this work group in a dispatch over lists.
+uint deepGroup() { return gl_WorkGroupID.y * GROUPS_IN_ROW + gl_WorkGroupID.x; }
 
-// Whether the slot is the first of a work group, which then makes the dispatch large enough.
-bool opensGroup(uint slot, out uvec3 groups) {
-  uint group = slot / DEEP_GROUP_SIZE;
-  groups = uvec3(min(group + 1u, GROUPS_IN_ROW), group / GROUPS_IN_ROW + 1u, 1u);
-  return slot % DEEP_GROUP_SIZE == 0u;
-}
-
-// Defines a function that leaves a pixel to a later dispatch. A macro, because memory that atomics change cannot be a
-// parameter. More pixels than `pixels` holds are more than the pool's nodes can make lists for: those are corrupt.
-#define LEAVE(name, pixels, lists, groupsX, groupsY, groupsZ) \
-  void name(uint pixelIndex) { \
+// Defines a function that takes a number for a list that is left to a later dispatch, and makes that one large enough.
+// A macro, because memory that atomics change cannot be a parameter.
+#define LEAVE(name, groupLists, lists, groupsX, groupsY, groupsZ) \
+  uint name() { \
     uint slot = atomicAdd(control.lists, 1u); \
-    if (slot >= uint(pixels.length())) { \
-      atomicAdd(control.cutPixels, 1u); \
-      return; \
+    if (slot % groupLists == 0u) { \
+      uint group = slot / groupLists; \
+      atomicMax(control.groupsX, min(group + 1u, GROUPS_IN_ROW)); \
+      atomicMax(control.groupsY, group / GROUPS_IN_ROW + 1u); \
+      atomicMax(control.groupsZ, 1u); \
     } \
-    pixels[slot] = pixelIndex; \
-    uvec3 groups; \
-    if (!opensGroup(slot, groups)) return; \
-    atomicMax(control.groupsX, groups.x); \
-    atomicMax(control.groupsY, groups.y); \
-    atomicMax(control.groupsZ, groups.z); \
+    return slot; \
   }
-LEAVE(leaveMedium, mediumPixels, mediumLists, mediumGroupsX, mediumGroupsY, mediumGroupsZ)
-LEAVE(leaveLong, longPixels, longLists, longGroupsX, longGroupsY, longGroupsZ)
+LEAVE(mediumSlot, MEDIUM_GROUP_LISTS, mediumLists, mediumGroupsX, mediumGroupsY, mediumGroupsZ)
+LEAVE(longSlot, LONG_GROUP_LISTS, longLists, longGroupsX, longGroupsY, longGroupsZ)
+LEAVE(longestSlot, LONGEST_GROUP_LISTS, longestLists, longestGroupsX, longestGroupsY, longestGroupsZ)
 #undef LEAVE
 
-// After the short lists: by networks the next class, else the last one.
-void leaveForLater(uint pixelIndex) {
-#if VITRAIL_NETWORKS
-  leaveMedium(pixelIndex);
-#else
-  leaveLong(pixelIndex);
-#endif
+// Whether there is room for a list. Where there is none, lists are corrupt: the pool has not the nodes for so many.
+bool hasRoom(uint end, uint length) {
+  if (end > length) atomicAdd(control.cutPixels, 1u);
+  return end <= length;
 }
+
+#ifdef VITRAIL_GROUPS
+void leaveMedium(uint pixelIndex) {
+  uint slot = mediumSlot();
+  if (hasRoom(slot + 1u, mediumPixels.length())) mediumPixels[slot] = pixelIndex;
+}
+
+void leaveLong(uint pixelIndex, uvec3 near) {
+  uint slot = longSlot();
+  if (hasRoom(slot + 1u, longLists.length())) longLists[slot] = uvec4(pixelIndex, near);
+}
+
+// The first element of a list for groups of 8.
+uint longestElement(uint slot) { return longLists.length() - 2u * (slot + 1u); }
+
+void leaveLongest(uint pixelIndex, uvec3 near, uvec4 far) {
+  uint slot = longestSlot();
+  if (!hasRoom(2u * (slot + 1u), longLists.length())) return;
+  longLists[longestElement(slot)] = uvec4(pixelIndex, near);
+  longLists[longestElement(slot) + 1u] = far;
+}
+#else
+void leaveLong(uint pixelIndex) {
+  uint slot = longSlot();
+  if (hasRoom(slot + 1u, longPixels.length())) longPixels[slot] = pixelIndex;
+}
+#endif
 
 #endif

@@ -1,15 +1,31 @@
-// The first dispatch of the compute resolve: one thread a pixel. Short lists are done here, longer ones are left to the
-// next dispatch.
+// The first dispatch of the compute resolve: one thread a pixel. Short lists are done here, longer ones are left to
+// the dispatch for their length.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#if VITRAIL_NETWORKS
+#define VITRAIL_GROUPS
+#endif
 #include "group_counts.glsl"
 #include "picture.glsl"
+#include "vitrail/parts.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-VitrailResolved resolveList(uint head) {
-  if (kCapped) return vitrailResolveCapped(head, nodesInUse());
-  return vitrailResolveShort(head, nodesInUse());
+// Leaves what `walk` has begun to follow to a later dispatch. Returns the fragments of the list, as far as it walks.
+uint leaveForLater(uint pixelIndex, VitrailWalk walk) {
+#ifdef VITRAIL_GROUPS
+  VitrailParts parts = vitrailFindParts(walk);
+  if (walk.count <= VITRAIL_MEDIUM_LIST) {
+    leaveMedium(pixelIndex);
+  } else if (walk.count <= VITRAIL_LONG_LIST) {
+    leaveLong(pixelIndex, parts.near);
+  } else {
+    leaveLongest(pixelIndex, parts.near, parts.far);
+  }
+#else
+  leaveLong(pixelIndex);
+#endif
+  return walk.count;
 }
 
 void resolvePixel(uvec2 local) {
@@ -23,11 +39,17 @@ void resolvePixel(uvec2 local) {
 #endif
     return;
   }
-  VitrailResolved r = resolveList(head);
+  VitrailWalk walk = VitrailWalk(head, 0u, nodesInUse());
+  VitrailResolved r;
+  if (kCapped) {
+    r = vitrailResolveCapped(head, nodesInUse());
+  } else {
+    r = vitrailResolveShort(walk);
+  }
   if (r.complete) {
     writePixel(pixel, r);
   } else {
-    leaveForLater(pixelIndex);
+    r.layers = leaveForLater(pixelIndex, walk);
   }
   countPixel(r.layers);
 }

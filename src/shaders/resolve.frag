@@ -21,7 +21,8 @@ layout(location = 0) out vec4 outColor;
 
 VitrailResolved resolveList(uint head) {
   if (kCapped) return vitrailResolveCapped(head, nodesInUse());
-  VitrailResolved r = vitrailResolveShort(head, nodesInUse());
+  VitrailWalk walk = VitrailWalk(head, 0u, nodesInUse());
+  VitrailResolved r = vitrailResolveShort(walk);
   if (r.complete) return r;
   r = vitrailBlendList(head, nodesInUse());
   if (!r.complete) atomicAdd(control.cutPixels, 1u);

@@ -1,19 +1,15 @@
-// The third dispatch of the compute resolve: one thread a list of any length.
+// The second dispatch of the compute resolve where it does not sort by networks: one thread a list of any length.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "picture.glsl"
-#include "vitrail/resolve_runs.glsl"
+#include "vitrail/resolve_long.glsl"
 
-layout(local_size_x = 128) in; // DEEP_GROUP_SIZE
+layout(local_size_x = 32) in; // LONG_GROUP_LISTS
 
 void main() {
-  uint slot = deepSlot();
-  if (slot >= min(control.longLists, uint(longPixels.length()))) return;
+  uint slot = deepGroup() * LONG_GROUP_LISTS + gl_LocalInvocationIndex;
+  if (slot >= min(control.longLists, longPixels.length())) return;
   uint pixelIndex = longPixels[slot];
   beginPixel(imagePixel(pixelIndex));
-#if VITRAIL_NETWORKS
-  writeDeepPixel(pixelIndex, vitrailResolveRuns(heads[pixelIndex], nodesInUse()));
-#else
   writeDeepPixel(pixelIndex, vitrailResolveLong(heads[pixelIndex], nodesInUse()));
-#endif
 }

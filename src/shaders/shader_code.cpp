@@ -48,6 +48,14 @@
 #include "shaders/resolve_long_rgba32f_multisampled_networks_binding.h"
 #include "shaders/resolve_long_rgba32f_networks_address.h"
 #include "shaders/resolve_long_rgba32f_networks_binding.h"
+#include "shaders/resolve_longest_rgba16f_multisampled_networks_address.h"
+#include "shaders/resolve_longest_rgba16f_multisampled_networks_binding.h"
+#include "shaders/resolve_longest_rgba16f_networks_address.h"
+#include "shaders/resolve_longest_rgba16f_networks_binding.h"
+#include "shaders/resolve_longest_rgba32f_multisampled_networks_address.h"
+#include "shaders/resolve_longest_rgba32f_multisampled_networks_binding.h"
+#include "shaders/resolve_longest_rgba32f_networks_address.h"
+#include "shaders/resolve_longest_rgba32f_networks_binding.h"
 #include "shaders/resolve_medium_rgba16f_multisampled_networks_address.h"
 #include "shaders/resolve_medium_rgba16f_multisampled_networks_binding.h"
 #include "shaders/resolve_medium_rgba16f_networks_address.h"
@@ -160,6 +168,23 @@ constexpr PictureCode kResolveLong = {
                      shaders::resolve_long_rgba32f_multisampled_networks_address},
               Access{shaders::resolve_long_rgba32f_multisampled_insertion_binding,
                      shaders::resolve_long_rgba32f_multisampled_insertion_address}}}}};
+constexpr PictureCode kResolveLongest = {
+    PictureCode::value_type{Code{{Access{shaders::resolve_longest_rgba16f_networks_binding,
+                                         shaders::resolve_longest_rgba16f_networks_address},
+                                  Access{shaders::resolve_longest_rgba16f_networks_binding,
+                                         shaders::resolve_longest_rgba16f_networks_address}}},
+                            Code{{Access{shaders::resolve_longest_rgba16f_multisampled_networks_binding,
+                                         shaders::resolve_longest_rgba16f_multisampled_networks_address},
+                                  Access{shaders::resolve_longest_rgba16f_multisampled_networks_binding,
+                                         shaders::resolve_longest_rgba16f_multisampled_networks_address}}}},
+    PictureCode::value_type{Code{{Access{shaders::resolve_longest_rgba32f_networks_binding,
+                                         shaders::resolve_longest_rgba32f_networks_address},
+                                  Access{shaders::resolve_longest_rgba32f_networks_binding,
+                                         shaders::resolve_longest_rgba32f_networks_address}}},
+                            Code{{Access{shaders::resolve_longest_rgba32f_multisampled_networks_binding,
+                                         shaders::resolve_longest_rgba32f_multisampled_networks_address},
+                                  Access{shaders::resolve_longest_rgba32f_multisampled_networks_binding,
+                                         shaders::resolve_longest_rgba32f_multisampled_networks_address}}}}};
 constexpr PictureCode kResolveOverflow = {
     PictureCode::value_type{Code{{Access{shaders::resolve_overflow_rgba16f_insertion_binding,
                                          shaders::resolve_overflow_rgba16f_insertion_address},
@@ -219,6 +244,8 @@ const Code& kernelPermutation(Kernel kernel, ColorImage color, bool multisampled
       return of(kResolveMedium);
     case Kernel::ResolveLong:
       return of(kResolveLong);
+    case Kernel::ResolveLongest:
+      return of(kResolveLongest);
     case Kernel::ResolveOverflow:
       return of(kResolveOverflow);
     case Kernel::SortFind:

@@ -12,6 +12,7 @@ enum class Kernel : std::uint32_t {
   Resolve,
   ResolveMedium,
   ResolveLong,
+  ResolveLongest,
   ResolveOverflow,
   SortFind,
   SortLong,

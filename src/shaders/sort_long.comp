@@ -7,10 +7,10 @@
 uint vitrailVisible(uvec4 key) { return 1u; }
 #include "vitrail/resolve_long.glsl"
 
-layout(local_size_x = 128) in; // DEEP_GROUP_SIZE
+layout(local_size_x = 32) in; // LONG_GROUP_LISTS
 
 void main() {
-  uint slot = deepSlot();
+  uint slot = deepGroup() * LONG_GROUP_LISTS + gl_LocalInvocationIndex;
   if (slot >= min(control.longLists, uint(longPixels.length()))) return;
   uint pixelIndex = longPixels[slot];
   VitrailSorted sorted = vitrailSortLong(heads[pixelIndex], nodesInUse());

@@ -54,9 +54,18 @@ void readLimits(VitrailContext_T& context, const VkPhysicalDeviceProperties& dev
   }
 }
 
+// What src/shaders/resolve_group.comp asks for.
+bool exchangesInGroups(const VkPhysicalDeviceSubgroupProperties& subgroups) {
+  return (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0 &&
+         (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT) != 0 && subgroups.subgroupSize >= 8;
+}
+
 VkResult checkDevice(VitrailContext_T& context) {
+  VkPhysicalDeviceSubgroupProperties subgroups{};
+  subgroups.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
   VkPhysicalDeviceMaintenance3Properties maintenance3{};
   maintenance3.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
+  maintenance3.pNext = &subgroups;
   VkPhysicalDeviceProperties2 properties{};
   properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
   properties.pNext = &maintenance3;
@@ -68,6 +77,7 @@ VkResult checkDevice(VitrailContext_T& context) {
                             VK_API_VERSION_MINOR(device.apiVersion));
   }
   readLimits(context, device, maintenance3.maxMemoryAllocationSize);
+  context.limits.exchangesInGroups = exchangesInGroups(subgroups);
   return checkFeatures(context, device.deviceName);
 }
 

@@ -36,6 +36,7 @@ struct Limits {
   std::uint64_t alignment = 1;         // of every part of a target's buffer
   VkSampleCountFlags sampleCounts = 0; // that colour and depth attachments and sampled images share
   bool isCpu = false;                  // a driver that runs on the CPU
+  bool exchangesInGroups = false;      // compute shaders exchange values within at least 8 invocations
 };
 
 } // namespace vitrail

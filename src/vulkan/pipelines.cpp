@@ -29,6 +29,8 @@ const char* kernelName(Kernel kernel) {
       return "vitrail resolve medium";
     case Kernel::ResolveLong:
       return "vitrail resolve long";
+    case Kernel::ResolveLongest:
+      return "vitrail resolve longest";
     case Kernel::ResolveOverflow:
       return "vitrail resolve overflow";
     case Kernel::SortFind:

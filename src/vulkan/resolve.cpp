@@ -20,6 +20,7 @@ void resolveByCompute(VkCommandBuffer commandBuffer, VitrailTarget_T& target, st
   };
   next(pipelines.mediumLists, offsetof(layout::VitrailControl, mediumGroupsX));
   next(pipelines.longLists, offsetof(layout::VitrailControl, longGroupsX));
+  next(pipelines.longestLists, offsetof(layout::VitrailControl, longestGroupsX));
   next(pipelines.overflow, offsetof(layout::VitrailControl, overflowGroupsX));
   target.storage.sumsAreClear = true;
 }

@@ -42,7 +42,7 @@ bool usesNetworks(const VitrailContext_T& context) {
   static_cast<void>(context);
   return true;
 #else
-  return !context.limits.isCpu;
+  return !context.limits.isCpu && context.limits.exchangesInGroups;
 #endif
 }
 
@@ -64,6 +64,9 @@ VkResult findComputePipelines(VitrailTarget_T& target) {
     result = find(Kernel::ResolveMedium, &target.pipelines.mediumLists);
   }
   if (result == VK_SUCCESS && !capped) result = find(Kernel::ResolveLong, &target.pipelines.longLists);
+  if (result == VK_SUCCESS && !capped && key.networks) {
+    result = find(Kernel::ResolveLongest, &target.pipelines.longestLists);
+  }
   const bool apart = target.keepSums && !key.networks; // else the first kernel does it
   if (result == VK_SUCCESS && apart) result = find(Kernel::ResolveOverflow, &target.pipelines.overflow);
   return result;

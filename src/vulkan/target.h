@@ -23,13 +23,14 @@ struct StatsSlot {
   std::uint32_t sumsCleared;  // VitrailTarget_T::sumsCleared of the frame; read without the tag
   std::uint64_t tag;          // frame + 1, so that a slot never written names no frame
 };
-static_assert(sizeof(StatsSlot) == 152);
+static_assert(sizeof(StatsSlot) == 168);
 
 // The pipelines of a target's resolve; null where its kind does not need one.
 struct ResolvePipelines {
   VkPipeline shortLists = VK_NULL_HANDLE;
   VkPipeline mediumLists = VK_NULL_HANDLE;
   VkPipeline longLists = VK_NULL_HANDLE;
+  VkPipeline longestLists = VK_NULL_HANDLE;
   VkPipeline overflow = VK_NULL_HANDLE;
   VkPipeline sortFind = VK_NULL_HANDLE;
   VkPipeline sortLong = VK_NULL_HANDLE;

@@ -40,6 +40,10 @@ TEST(Pool, SizesDoNotOverflow) {
   EXPECT_EQ(listBytes(100, 33 * 50 + 32, VITRAIL_MEDIUM_LIST), 50U * 4U);
   EXPECT_EQ(listBytes(40, 33 * 50 + 32, VITRAIL_MEDIUM_LIST), 40U * 4U);
   EXPECT_EQ(listBytes(40, 0, VITRAIL_MEDIUM_LIST), 4U);
+  EXPECT_EQ(groupListBytes(0xffffffffU, 0xffffffffU), 0x1fffffffeULL / 65U * 16U);
+  EXPECT_EQ(groupListBytes(1000, 33 * 10 + 65 * 50), (10U + 2U * 50U) * 16U);
+  EXPECT_EQ(groupListBytes(40, 65 * 50), 80U * 16U);
+  EXPECT_EQ(groupListBytes(40, 0), 16U);
 }
 
 TEST(Pool, PartsAreAlignedAndDoNotOverlap) {

@@ -117,7 +117,9 @@ const Offsets& controlOffsets() {
       offsetof(VitrailControl, mediumGroupsX),     offsetof(VitrailControl, mediumGroupsY),
       offsetof(VitrailControl, mediumGroupsZ),     offsetof(VitrailControl, longLists),
       offsetof(VitrailControl, longGroupsX),       offsetof(VitrailControl, longGroupsY),
-      offsetof(VitrailControl, longGroupsZ),       offsetof(VitrailControl, overflowGroupsX),
+      offsetof(VitrailControl, longGroupsZ),       offsetof(VitrailControl, longestLists),
+      offsetof(VitrailControl, longestGroupsX),    offsetof(VitrailControl, longestGroupsY),
+      offsetof(VitrailControl, longestGroupsZ),    offsetof(VitrailControl, overflowGroupsX),
       offsetof(VitrailControl, overflowGroupsY),   offsetof(VitrailControl, overflowGroupsZ)};
   return offsets;
 }
@@ -158,21 +160,24 @@ void expectNodes(const Module& module, const std::set<std::uint32_t>& arrays) {
   EXPECT_EQ(strides.size(), nodeOffsets().size());
 }
 
-void expectShared(const Module& module) {
+// `groups`: lists are left to groups of invocations, four words at once.
+void expectShared(const Module& module, bool groups = false) {
   for (const std::uint32_t type : blockMembers(module, 0)) EXPECT_EQ(offsetsOf(module, type), parameterOffsets());
   for (const std::uint32_t type : blockMembers(module, 1)) EXPECT_EQ(offsetsOf(module, type), controlOffsets());
   for (const std::uint32_t binding : {2U, 4U, 5U, 6U}) { // head pointers, sums, lists
     for (const std::uint32_t array : blockMembers(module, binding)) {
-      EXPECT_EQ(module.strides.at(array), sizeof(layout::uint)) << "binding " << binding;
+      const bool words = binding != 6U || !groups;
+      EXPECT_EQ(module.strides.at(array), words ? sizeof(layout::uint) : sizeof(layout::uvec4))
+          << "binding " << binding;
     }
   }
   EXPECT_EQ(blockMembers(module, 0).size(), 1U);
   EXPECT_EQ(blockMembers(module, 1).size(), 1U);
 }
 
-void expectLayout(Words code, bool byAddress) {
+void expectLayout(Words code, bool byAddress, bool groups = false) {
   const Module module = parse(code);
-  expectShared(module);
+  expectShared(module, groups);
   expectNodes(module, byAddress ? addressedMembers(module) : blockMembers(module, 3));
 }
 
@@ -186,10 +191,12 @@ TEST(SpirvLayout, CollectEqualsTheStructs) {
 void expectKernels(bool byAddress, bool networks) {
   for (const ColorImage color : {ColorImage::Rgba16f, ColorImage::Rgba32f}) {
     for (const bool multisampled : {false, true}) {
-      for (const Kernel kernel :
-           {Kernel::Resolve, Kernel::ResolveMedium, Kernel::ResolveLong, Kernel::ResolveOverflow}) {
+      for (const Kernel kernel : {Kernel::Resolve, Kernel::ResolveMedium, Kernel::ResolveLong, Kernel::ResolveLongest,
+                                  Kernel::ResolveOverflow}) {
         SCOPED_TRACE(static_cast<int>(kernel));
-        expectLayout(kernelCode(kernel, color, multisampled, byAddress, networks), byAddress);
+        const bool groups = kernel == Kernel::ResolveMedium || kernel == Kernel::ResolveLongest ||
+                            (networks && (kernel == Kernel::Resolve || kernel == Kernel::ResolveLong));
+        expectLayout(kernelCode(kernel, color, multisampled, byAddress, networks), byAddress, groups);
       }
     }
   }
