@@ -49,6 +49,14 @@ layout(set = VITRAIL_SET, binding = 0, std140) uniform VitrailParametersBlock { 
 layout(set = VITRAIL_SET, binding = 1, std430) buffer VitrailControlBlock { VitrailControl vitrailControl; };
 layout(set = VITRAIL_SET, binding = 2, std430) buffer VitrailHeadsBlock { uint vitrailHeads[]; };
 layout(set = VITRAIL_SET, binding = 4, std430) buffer VitrailSumsBlock { uint vitrailPixelSums[]; };
+#ifndef VITRAIL_BUFFER_REFERENCE
+// The same memory again. Mesa's lavapipe waits before every draw until the draws before it are done where it sees that
+// the draw's shader writes a buffer; where a binding is declared more than once, as the pool's is, it does not look.
+// Draws need not wait: what they share is changed by atomics, and a node has one writer.
+layout(set = VITRAIL_SET, binding = 1, std430) buffer VitrailControlAgain { uint vitrailControlAgain[]; };
+layout(set = VITRAIL_SET, binding = 2, std430) buffer VitrailHeadsAgain { uint vitrailHeadsAgain[]; };
+layout(set = VITRAIL_SET, binding = 4, std430) buffer VitrailSumsAgain { uint vitrailPixelSumsAgain[]; };
+#endif
 
 uint vitrailPoolCapacity() { return vitrailParameters.capacity; }
 #ifdef VITRAIL_BUFFER_REFERENCE
@@ -94,11 +102,20 @@ void vitrailCallForSums() {
   vitrailControl.overflowGroupsZ = 1u;
 }
 
+// Names the declarations that are there twice, so that compilers keep them, in code that no pipeline has.
+void vitrailKeepDeclarations() {
+#ifndef VITRAIL_BUFFER_REFERENCE
+  if (VITRAIL_SAMPLES != 0xffffffffu) return; // a specialization constant, never so
+  vitrailControlAgain[0] = vitrailHeadsAgain[0] = vitrailPixelSumsAgain[0] = 0u;
+#endif
+}
+
 // Pushes a fragment at this pixel's depth and coverage on the list of its pixel. `color` is linear; `blend` is one of
 // VITRAIL_OVER (straight alpha), VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY. A fragment outside the
 // frame's area, or one that would change nothing, is ignored. When the pool is full the list is left as it is, and the
 // fragment is counted, by the same counter that hands out nodes.
 void vitrailCollect(vec4 color, uint blend) {
+  vitrailKeepDeclarations();
   uvec2 pixel = uvec2(gl_FragCoord.xy) - uvec2(vitrailParameters.x, vitrailParameters.y);
   if (pixel.x >= vitrailParameters.width || pixel.y >= vitrailParameters.height) return; // also those left and above
   VitrailLayout nodes = vitrailTargetLayout();
