@@ -49,6 +49,14 @@ layout(set = VITRAIL_SET, binding = 0, std140) uniform VitrailParametersBlock { 
 layout(set = VITRAIL_SET, binding = 1, std430) buffer VitrailControlBlock { VitrailControl vitrailControl; };
 layout(set = VITRAIL_SET, binding = 2, std430) buffer VitrailHeadsBlock { uint vitrailHeads[]; };
 layout(set = VITRAIL_SET, binding = 4, std430) buffer VitrailSumsBlock { uint vitrailPixelSums[]; };
+#ifndef VITRAIL_BUFFER_REFERENCE
+// The same memory again. Mesa's lavapipe waits before every draw until the draws before it are done where it sees that
+// the draw's shader writes a buffer; where a binding is declared more than once, as the pool's is, it does not look.
+// Draws need not wait: what they share is changed by atomics, and a node has one writer.
+layout(set = VITRAIL_SET, binding = 1, std430) buffer VitrailControlAgain { uint vitrailControlAgain[]; };
+layout(set = VITRAIL_SET, binding = 2, std430) buffer VitrailHeadsAgain { uint vitrailHeadsAgain[]; };
+layout(set = VITRAIL_SET, binding = 4, std430) buffer VitrailSumsAgain { uint vitrailPixelSumsAgain[]; };
+#endif
 
 uint vitrailPoolCapacity() { return vitrailParameters.capacity; }
 #ifdef VITRAIL_BUFFER_REFERENCE
@@ -75,6 +83,22 @@ bool vitrailSuitsTarget() {
   return VITRAIL_LAYOUT_WORD(nodes.format, nodes.samples, vitrailKeepsSums() ? 1u : 0u) == vitrailParameters.layoutWord;
 }
 
+// Counts a fragment that was given this index, and so no node.
+void vitrailCountMissing(uint index) {
+#ifdef VITRAIL_BUFFER_REFERENCE
+  if (index == VITRAIL_WRAP_AT) atomicAdd(vitrailControl.requested, 0u - VITRAIL_WRAP_STEP);
+  if (index == VITRAIL_WRAP_AT) atomicAdd(vitrailControl.wraps, 1u);
+  if (index == VITRAIL_END) atomicAdd(vitrailControl.misfits, 1u);
+#else
+  // The same in a loop: lavapipe executes the body of a branch for no fragment, too, and an atomic is long there.
+  uint updates = index == VITRAIL_WRAP_AT ? 2u : index == VITRAIL_END ? 1u : 0u;
+  for (uint i = 0u; i < updates; ++i) {
+    uint word = index == VITRAIL_END ? 2u : i; // misfits, or requested and wraps
+    atomicAdd(vitrailControlAgain[word], word == 0u ? 0u - VITRAIL_WRAP_STEP : 1u);
+  }
+#endif
+}
+
 // Adds a fragment that found no node to the sums of its pixel.
 void vitrailAddMissing(uint pixelIndex, uvec4 node, uint coverage, VitrailLayout nodes) {
   float weight = float(bitCount(coverage)) / float(nodes.samples);
@@ -94,11 +118,24 @@ void vitrailCallForSums() {
   vitrailControl.overflowGroupsZ = 1u;
 }
 
+// Names the declarations that are there twice, so that compilers keep them, in code that no pipeline has. They are
+// written and changed as the first ones are: the validation layer takes an atomic for a read, and a read of one by the
+// side of a write of the other for a hazard between draws.
+void vitrailKeepDeclarations() {
+#ifndef VITRAIL_BUFFER_REFERENCE
+  if (VITRAIL_SAMPLES != 0xffffffffu) return; // a specialization constant, never so
+  vitrailControlAgain[0] = 0u;
+  atomicAdd(vitrailHeadsAgain[0], 0u);
+  atomicAdd(vitrailPixelSumsAgain[0], 0u);
+#endif
+}
+
 // Pushes a fragment at this pixel's depth and coverage on the list of its pixel. `color` is linear; `blend` is one of
 // VITRAIL_OVER (straight alpha), VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY. A fragment outside the
 // frame's area, or one that would change nothing, is ignored. When the pool is full the list is left as it is, and the
 // fragment is counted, by the same counter that hands out nodes.
 void vitrailCollect(vec4 color, uint blend) {
+  vitrailKeepDeclarations();
   uvec2 pixel = uvec2(gl_FragCoord.xy) - uvec2(vitrailParameters.x, vitrailParameters.y);
   if (pixel.x >= vitrailParameters.width || pixel.y >= vitrailParameters.height) return; // also those left and above
   VitrailLayout nodes = vitrailTargetLayout();
@@ -110,9 +147,7 @@ void vitrailCollect(vec4 color, uint blend) {
   uint index = VITRAIL_END;
   if (vitrailSuitsTarget()) index = atomicAdd(vitrailControl.requested, 1u);
   if (index >= vitrailParameters.capacity) {
-    if (index == VITRAIL_WRAP_AT) atomicAdd(vitrailControl.requested, 0u - VITRAIL_WRAP_STEP);
-    if (index == VITRAIL_WRAP_AT) atomicAdd(vitrailControl.wraps, 1u);
-    if (index == VITRAIL_END) atomicAdd(vitrailControl.misfits, 1u);
+    vitrailCountMissing(index);
     if (vitrailKeepsSums() && vitrailParameters.keepSums != 0u) { // a shader for another target looks at both
       if (index == vitrailParameters.capacity || index == VITRAIL_END) vitrailCallForSums();
       vitrailAddMissing(pixelIndex, node, coverage, nodes);

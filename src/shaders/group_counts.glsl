@@ -1,9 +1,12 @@
-// Counts pixels for the statistics, one atomic a work group and, where it is deeper than those before, another.
+// Counts pixels for the statistics. With networks (target.glsl) that is one atomic a work group and, where it is deeper
+// than those before, another. Without, it is one a pixel: a CPU that waits for a work group puts all that its threads
+// hold aside, which takes longer.
 #ifndef VITRAIL_GROUP_COUNTS_GLSL
 #define VITRAIL_GROUP_COUNTS_GLSL
 
 #include "target.glsl"
 
+#if VITRAIL_NETWORKS
 shared uint groupLayersMax;
 shared uint groupCovered;
 shared uint groupApproximate;
@@ -31,5 +34,16 @@ void endCounts() {
   atomicAdd(control.coveredPixels[(gl_WorkGroupID.x + gl_WorkGroupID.y) % VITRAIL_PARTS], groupCovered);
   if (groupApproximate > 0u) atomicAdd(control.approximatePixels, groupApproximate);
 }
+#else
+void beginCounts() {}
+
+void countPixel(uint layers) {
+  countLayers(layers);
+  atomicAdd(control.coveredPixels[(gl_WorkGroupID.x + gl_WorkGroupID.y) % VITRAIL_PARTS], 1u);
+  if (kMaxLayers != 0u && layers > kMaxLayers) atomicAdd(control.approximatePixels, 1u);
+}
+
+void endCounts() {}
+#endif
 
 #endif
