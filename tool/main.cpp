@@ -8,6 +8,7 @@
 
 #include "commands/commands.h"
 #include "commands/errors.h"
+#include "scene/message.h"
 
 namespace {
 
@@ -34,7 +35,7 @@ Exit codes: 0 done, 1 could not be done, 2 wrong usage.
 )";
 
 int report(int code, const char* reason) {
-  fmt::print(stderr, "vitrail: error: {}\n", reason);
+  fmt::print(stderr, "vitrail: error: {}\n", vitrail::tool::printable(reason)); // it may quote a file's bytes
   return code;
 }
 

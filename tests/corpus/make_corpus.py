@@ -619,6 +619,9 @@ def write_bad():
     (BAD / "json_nan.gltf").write_text(text.replace('"count": 3', '"count": NaN'))
     (BAD / "json_nested.gltf").write_text('{"extras":' + "[" * 20000 + "]" * 20000 + "}")
     (BAD / "json_array.gltf").write_text("[1, 2, 3]")
+    (BAD / "json_control_bytes.gltf").write_bytes(b'{"asset": \x1b[31m\x9b31m\xff}')
+    (BAD / "not_json.gltf").write_bytes(b"\x1b[31mred\x1b[0m")
+    (BAD / "not_glb.glb").write_bytes(b"\x07\x1b]0;glTF\x9c" + bytes(range(128, 256)))
     (BAD / "empty.gltf").write_bytes(b"")
     (BAD / "no_asset.gltf").write_text("{}")
 

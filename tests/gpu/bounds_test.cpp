@@ -14,8 +14,6 @@
 namespace vitrail::tests {
 namespace {
 
-constexpr double kTolerance = 2e-5;
-
 // Averages are sums of integers in 1/65536, and transmittances sums of logarithms in 1/4096.
 constexpr double kSumTolerance = 2e-3;
 

@@ -1,6 +1,9 @@
 // The shared device lives until the test program ends its environments, before static objects go.
 #include "gpu_fixture.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
 #include <memory>
 
 #include "point_host.h"
@@ -84,6 +87,12 @@ RenderOptions usualOptions(const Scene& scene, std::uint32_t width, std::uint32_
   options.view = scene.cameras.empty() ? frameScene(scene, Orbit{}, aspect) : viewOf(scene.cameras.front());
   options.background = scene.background.value_or(Background{});
   return options;
+}
+
+int largestDifference(const Picture& a, const Picture& b) {
+  int largest = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) largest = std::max(largest, std::abs(int{a.rgba[i]} - b.rgba[i]));
+  return largest;
 }
 
 } // namespace vitrail::tool::test

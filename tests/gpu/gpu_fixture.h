@@ -37,4 +37,7 @@ std::string describe(const MethodOptions& method);
 // from the three-quarter view; the scene's background where it has one, else white.
 RenderOptions usualOptions(const Scene& scene, std::uint32_t width, std::uint32_t height);
 
+// The largest difference of a channel, of 255.
+int largestDifference(const Picture& a, const Picture& b);
+
 } // namespace vitrail::tool::test

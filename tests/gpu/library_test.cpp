@@ -21,7 +21,7 @@ class LibraryTest : public tool::test::GpuTest {};
 
 // What single-precision blending and a device's pow() may add up to. A fragment at rank n of a list of 1/255 layers
 // weighs 1/255 * (254/255)^n: a wrong one is seen down to rank 1,500.
-constexpr double kTolerance = 1e-5;
+constexpr double kBlendTolerance = 1e-5;
 
 // 0 to 67: every remainder of the sorting blocks, twice and more; and some beyond.
 std::vector<std::uint32_t> manyLengths(std::initializer_list<std::uint32_t> longer) {
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> manyLengths(std::initializer_list<std::uint32_t> long
   return lengths;
 }
 
-void expectLikeReference(const PointResult& result, const Expected& expected, double tolerance = kTolerance) {
+void expectLikeReference(const PointResult& result, const Expected& expected, double tolerance = kBlendTolerance) {
   EXPECT_LT(largestError(result.pixels, expected.pixels), tolerance);
   EXPECT_EQ(result.stats.exact, 1U);
   EXPECT_EQ(result.stats.fragmentsRequested, expected.fragments);
@@ -241,7 +241,7 @@ TEST_F(LibraryTest, EqualDepthsAreOrderedByTheNodeAndNotByArrival) {
       desc.capacity = static_cast<std::uint32_t>(points.size());
       PointHost host(gpu(), desc);
       const PointResult forward = host.draw(points);
-      EXPECT_LT(largestError(forward.pixels, expectedFrame(desc, points).pixels), kTolerance);
+      EXPECT_LT(largestError(forward.pixels, expectedFrame(desc, points).pixels), kBlendTolerance);
       EXPECT_TRUE(host.draw(ordered(points, Order::Reversed)).pixels == forward.pixels);
       EXPECT_TRUE(host.draw(ordered(points, Order::Shuffled)).pixels == forward.pixels);
     }
@@ -258,7 +258,7 @@ TEST_F(LibraryTest, AListThatTheDriverCutsIsReported) {
   EXPECT_EQ(result.stats.fragmentsMissing, 0U);
   EXPECT_EQ(result.stats.exact == 1U, result.stats.cutPixels == 0U);
   if (result.stats.exact == 1U) {
-    EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kTolerance);
+    EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kBlendTolerance);
   } else {
     EXPECT_EQ(result.stats.cutPixels, 1U);
   }
@@ -310,7 +310,8 @@ TEST_F(LibraryTest, HostileDepthsStayInTheirPixel) {
     desc.capacity = static_cast<std::uint32_t>(points.size());
     const PointResult result = PointHost(gpu(), desc).draw(ordered(points, Order::Shuffled));
     EXPECT_EQ(result.stats.exact, 1U);
-    EXPECT_LT(largestError(std::span(result.pixels).subspan(1), std::span(expected.pixels).subspan(1)), kTolerance);
+    EXPECT_LT(largestError(std::span(result.pixels).subspan(1), std::span(expected.pixels).subspan(1)),
+              kBlendTolerance);
     for (const float channel : result.pixels[0]) EXPECT_TRUE(channel >= 0.0F && channel <= 1.0F);
   }
 }
@@ -406,7 +407,7 @@ TEST_F(LibraryTest, CompactDepthsAreToldApartAsStated) {
     }
     desc.capacity = static_cast<std::uint32_t>(points.size());
     const PointResult result = PointHost(gpu(), desc).draw(points);
-    EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kTolerance);
+    EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kBlendTolerance);
   }
 }
 
@@ -470,8 +471,8 @@ TEST_F(LibraryTest, FramesInOneCommandBufferDoNotMeet) {
       PointHost host(gpu(), desc);
       for (int repetition = 0; repetition < 2; ++repetition) {
         const std::vector<PointResult> results = host.drawTogether({first, second});
-        EXPECT_LT(largestError(results[0].pixels, expectedFrame(desc, first).pixels), kTolerance);
-        EXPECT_LT(largestError(results[1].pixels, expectedFrame(desc, second).pixels), kTolerance);
+        EXPECT_LT(largestError(results[0].pixels, expectedFrame(desc, first).pixels), kBlendTolerance);
+        EXPECT_LT(largestError(results[1].pixels, expectedFrame(desc, second).pixels), kBlendTolerance);
         EXPECT_EQ(results[0].stats.fragmentsStored, first.size());
         EXPECT_EQ(results[1].stats.fragmentsStored, second.size());
         EXPECT_EQ(results[0].stats.layersMax, 100U);

@@ -15,7 +15,6 @@
 namespace vitrail::tests {
 namespace {
 
-constexpr double kTolerance = 2e-5;
 constexpr VkDeviceSize kMebibyte = 1 << 20;
 
 class MemoryTest : public tool::test::GpuTest {};

@@ -290,12 +290,6 @@ TestScene withoutTransparent(const TestScene& scene) {
   return result;
 }
 
-int largestDifference(const Picture& a, const Picture& b) {
-  int largest = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i) largest = std::max(largest, std::abs(int{a.rgba[i]} - b.rgba[i]));
-  return largest;
-}
-
 // Pixels of which a channel differs by more than `bound`, as a share of all.
 double shareBeyond(const Picture& a, const Picture& b, int bound) {
   std::size_t beyond = 0;

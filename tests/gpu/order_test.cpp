@@ -9,8 +9,8 @@
 namespace vitrail::tool::test {
 namespace {
 
-constexpr std::uint32_t kWidth = 320;
-constexpr std::uint32_t kHeight = 180;
+constexpr std::uint32_t kOrderWidth = 320;
+constexpr std::uint32_t kOrderHeight = 180;
 
 // Fewer tubes than usual keep the hairball quick; its lists are still deep.
 Scene sceneOf(const std::string& name) {
@@ -29,7 +29,7 @@ class OrderTest : public GpuTest, public ::testing::WithParamInterface<std::stri
 
 TEST_P(OrderTest, SubmissionOrderDoesNotMatter) {
   const Scene scene = sceneOf(GetParam());
-  const RenderOptions options = usualOptions(scene, kWidth, kHeight);
+  const RenderOptions options = usualOptions(scene, kOrderWidth, kOrderHeight);
   const RenderResult forward = renderOnce(gpu(), scene, options, {}, DrawOrder::Forward);
   EXPECT_TRUE(forward.report.exact);
   EXPECT_GT(forward.report.layersMax, 2U); // else there is nothing to sort
@@ -41,7 +41,7 @@ TEST_P(OrderTest, SubmissionOrderDoesNotMatter) {
 
 TEST_P(OrderTest, RunsAreOne) {
   const Scene scene = sceneOf(GetParam());
-  const RenderOptions options = usualOptions(scene, kWidth, kHeight);
+  const RenderOptions options = usualOptions(scene, kOrderWidth, kOrderHeight);
   Renderer renderer(gpu(), scene);
   const RenderResult first = renderer.render(options);
   for (int run = 1; run < 5; ++run) {
@@ -58,7 +58,7 @@ class DrawnTest : public GpuTest, public ::testing::WithParamInterface<std::stri
 // The other node formats, resolves and sample counts.
 TEST_P(DrawnTest, SubmissionOrderDoesNotMatter) {
   const Scene scene = sceneOf(GetParam());
-  const RenderOptions options = usualOptions(scene, kWidth / 2, kHeight / 2);
+  const RenderOptions options = usualOptions(scene, kOrderWidth / 2, kOrderHeight / 2);
   for (const MethodOptions& method : methodVariety(gpu())) {
     SCOPED_TRACE(describe(method));
     const RenderResult forward = renderOnce(gpu(), scene, options, {}, DrawOrder::Forward, method);
@@ -79,7 +79,7 @@ TEST_F(GpuTest, ManyFramesOfTheHairballAreOne) {
   const int frames = wanted != nullptr ? std::atoi(wanted) : 3;
   ASSERT_GT(frames, 1) << "VITRAIL_TEST_FRAMES is a number of frames, at least 2";
   const Scene scene = makeBuiltinScene("hairball", {});
-  const RenderOptions options = usualOptions(scene, kWidth, kHeight);
+  const RenderOptions options = usualOptions(scene, kOrderWidth, kOrderHeight);
   Renderer renderer(gpu(), scene);
   const RenderResult first = renderer.render(options);
   EXPECT_TRUE(first.report.exact);

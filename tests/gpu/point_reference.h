@@ -27,6 +27,9 @@ Expected expectedFrame(const PointHostDesc& desc, std::span<const Point> points,
 // The largest difference of a channel, relative where the expected value is above 1. A NaN is infinitely far.
 double largestError(std::span<const FloatColor> got, std::span<const Color> expected);
 
+// What single-precision blending and a device's pow() may add up to.
+inline constexpr double kTolerance = 2e-5;
+
 enum class Order { Forward, Reversed, Shuffled };
 std::vector<Point> ordered(std::vector<Point> points, Order order);
 

@@ -14,8 +14,6 @@
 namespace vitrail::tests {
 namespace {
 
-constexpr double kTolerance = 2e-5;
-
 // Opaque colours that differ from sample to sample, so that no two samples can change places unseen.
 std::vector<FloatColor> colorsBySample(std::uint32_t samples) {
   std::vector<FloatColor> colors;

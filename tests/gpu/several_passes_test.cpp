@@ -74,12 +74,6 @@ MethodOptions exactLists(const std::string& method = {}) {
   return lists;
 }
 
-int largestDifference(const Picture& a, const Picture& b) {
-  int largest = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i) largest = std::max(largest, std::abs(int{a.rgba[i]} - b.rgba[i]));
-  return largest;
-}
-
 class SeveralPasses : public GpuTest, public ::testing::WithParamInterface<std::string> {
  protected:
   static RenderResult draw(const Scene& scene, const RenderOptions& picture, const MethodOptions& method) {

@@ -347,6 +347,16 @@ TEST(Bench, WhatCannotBeDoneIsOneLineAndExitCode1) {
   }
 }
 
+// The device that there is not would be the next thing to be refused: nothing is measured before.
+TEST(Bench, AFolderWhoseFilesCannotBeWrittenIsRefusedBeforeMeasuring) {
+  for (const std::string name : {"report.json", "report.csv", "index.html"}) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder.path() / "out" / name);
+    expectRefusal(folder, kTool, {"bench", "-o", "out", "--device", "abacus"}, 1,
+                  "cannot write out/" + name + ": it is a folder");
+  }
+}
+
 // What -o writes cannot be another output too: said before anything is measured.
 TEST(Bench, AnOutputThatTheFolderHasIsRefused) {
   const TemporaryFolder folder;

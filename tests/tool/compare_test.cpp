@@ -179,6 +179,25 @@ TEST(Compare, LayersAndPasses) {
   EXPECT_EQ(report.at("exact_picture").at("exact"), true);
 }
 
+// The device that there is not would be the next thing to be refused: nothing is drawn before.
+TEST(Compare, AFolderWhoseFilesCannotBeWrittenIsRefusedBeforeDrawing) {
+  for (const std::string name :
+       {"report.json", "index.html", "exact.png", "layers.png", "weighted.png", "weighted-error.png", "unsorted.png"}) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder.path() / "out" / name);
+    const Words words{"compare", "--scene", "planes", "-o", "out", "--device", "abacus", "--methods"};
+    const auto with = [&words](const std::string& methods) {
+      Words all = words;
+      all.push_back(methods);
+      return all;
+    };
+    const std::string refusal = "cannot write out/" + name + ": it is a folder";
+    expectRefusal(folder, kTool, with("weighted"), 1, refusal);
+    const bool isOfWeighted = name.starts_with("weighted"); // which is not written where it is not compared
+    expectRefusal(folder, kTool, with("linked-list"), 1, isOfWeighted ? "abacus" : refusal);
+  }
+}
+
 // A folder that is there keeps what else lies in it, and gets the new files.
 TEST(Compare, AFolderThatIsThere) {
   const TemporaryFolder folder;

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/load.h"
+#include "scene/message.h"
 
 namespace vitrail::tool {
 namespace {
@@ -90,6 +91,7 @@ const std::map<std::string, std::string>& expectedMessages() {
       {"joint_matrices.gltf", "skin 0: has 2 joints, but 1 inverse bind matrices"},
       {"joint_range.gltf", "mesh 0 primitive 0: vertex 0 follows joint 2, but the skin has 2 joints"},
       {"json_1e999.gltf", "the JSON is not valid: "},
+      {"json_control_bytes.gltf", "the JSON is not valid: "},
       {"json_array.gltf", "the JSON is not an object, so it is not glTF"},
       {"json_length.glb", "GLB chunk 0 states 4294967280 bytes, but only 388 are left"},
       {"json_nan.gltf", "the JSON is not valid: "},
@@ -116,6 +118,11 @@ const std::map<std::string, std::string>& expectedMessages() {
       {"node_mesh_range.gltf", "node 0: mesh is 1, but meshes has 1 element"},
       {"node_rotation_zero.gltf", "node 0: rotation is zero, not a quaternion"},
       {"node_two_parents.gltf", "node 2 is a child of node 0 and of node 1, but may have one parent only"},
+      {"not_glb.glb",
+       "begins neither with \"glTF\", as a .glb file does, nor with {, as a .gltf file does: it is damaged or of "
+       "another "
+       "kind"},
+      {"not_json.gltf", "begins neither with \"glTF\", as a .glb file does, nor with {"},
       {"not_a_number.stl", "line 6: one is not a finite number"},
       {"not_finite.stl", "facet 0: a corner is not finite"},
       {"not_ply.ply", "the file does not begin with \"ply\""},
@@ -168,10 +175,27 @@ TEST(LoadBadFiles, EachIsRefusedWithOneLineThatSaysWhatIsWrong) {
     ASSERT_NE(expected, expectedMessages().end()) << "the file has no entry in this test; it says: " << message;
     EXPECT_NE(message.find(expected->second), std::string::npos) << "it says: " << message;
     EXPECT_FALSE(message.empty());
-    EXPECT_EQ(message.find('\n'), std::string::npos);
+    EXPECT_EQ(message, printable(message)) << "bytes that a terminal may take for orders";
     EXPECT_LT(message.size(), 300U);
   }
   EXPECT_EQ(seen.size(), expectedMessages().size()) << "a file of this test is gone";
+}
+
+// Whatever a file holds, a terminal is given characters alone.
+TEST(Message, PrintableTextIsUtf8WithoutControlCharacters) {
+  EXPECT_EQ(printable("a\x1b[31mred\x1b[0m"), "a [31mred [0m");
+  EXPECT_EQ(printable("two\r\nlines\n"), "two lines");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "31m, \xe2\x80\xae"
+                      "turned, \x7f"),
+            "31m, turned,")
+      << "C1, direction, DEL";
+  EXPECT_EQ(printable("\xc3\xa9, \xe2\x82\xac, \xf0\x9f\x98\x80"), "\xc3\xa9, \xe2\x82\xac, \xf0\x9f\x98\x80");
+  EXPECT_EQ(printable("\xff\xfe, \xc0\xaf, \xe0\x80\xaf, \xed\xa0\x80, \xf5"), "??, ??, ???, ???, ?") << "no UTF-8";
+  EXPECT_EQ(printable("cut \xe2\x82"), "cut ??") << "a character that is cut off";
+  EXPECT_EQ(printable(std::string_view("\0\0", 2)), "");
+  EXPECT_EQ(oneLine(std::string(159, 'a') + "\xe2\x82\xac\xe2\x82\xac"), std::string(159, 'a') + "...");
+  EXPECT_EQ(oneLine(std::string(158, 'a') + "\xc3\xa9"), std::string(158, 'a') + "\xc3\xa9");
 }
 
 TEST(LoadBadFiles, WhatIsNoFileIsRefused) {

@@ -1,11 +1,11 @@
 // The values that glTF files load to: one small file of the corpus a feature.
 #include <algorithm>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "load_good.h"
 #include "scene/load.h"
 #include "scene/mesh_build.h"
 
@@ -13,19 +13,6 @@ namespace vitrail::tool {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
-
-Scene loadGood(const std::string& name) {
-  return loadModel(std::filesystem::path(VITRAIL_TEST_CORPUS) / "good" / name);
-}
-
-void expectNear(const glm::vec3& actual, const glm::vec3& expected, float tolerance = 1e-5F) {
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(actual[c], expected[c], tolerance) << "component " << c;
-}
-
-void expectNear(const glm::vec4& actual, const glm::vec4& expected) {
-  expectNear(glm::vec3(actual), glm::vec3(expected));
-  EXPECT_NEAR(actual.w, expected.w, 1e-5F);
-}
 
 glm::vec3 placed(const Draw& draw, const glm::vec3& position) {
   return glm::vec3(draw.transform * glm::vec4(position, 1.0F));

@@ -1,24 +1,16 @@
 // The values that OBJ, PLY and STL files load to.
 #include <algorithm>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "load_good.h"
 #include "scene/load.h"
 #include "scene/polygon.h"
 
 namespace vitrail::tool {
 namespace {
-
-Scene loadGood(const std::string& name) {
-  return loadModel(std::filesystem::path(VITRAIL_TEST_CORPUS) / "good" / name);
-}
-
-void expectNear(const glm::vec3& actual, const glm::vec3& expected, float tolerance = 1e-5F) {
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(actual[c], expected[c], tolerance) << "component " << c;
-}
 
 glm::vec3 areaVector(const Mesh& mesh, std::size_t triangle) {
   const auto corner = [&](std::size_t c) { return mesh.vertices[mesh.indices[3 * triangle + c]].position; };

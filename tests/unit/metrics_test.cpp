@@ -16,30 +16,30 @@ namespace vitrail::tests {
 namespace {
 
 using namespace vitrail::tool;
-using Color = std::array<std::uint8_t, 3>;
+using Rgb = std::array<std::uint8_t, 3>;
 
 Picture pictureOf(std::uint32_t width, std::uint32_t height,
-                  const std::function<Color(std::uint32_t x, std::uint32_t y)>& color) {
+                  const std::function<Rgb(std::uint32_t x, std::uint32_t y)>& color) {
   Picture picture;
   picture.width = width;
   picture.height = height;
   for (std::uint32_t y = 0; y < height; ++y) {
     for (std::uint32_t x = 0; x < width; ++x) {
-      const Color c = color(x, y);
+      const Rgb c = color(x, y);
       picture.rgba.insert(picture.rgba.end(), {c[0], c[1], c[2], 255});
     }
   }
   return picture;
 }
 
-Picture filled(std::uint32_t width, std::uint32_t height, Color color) {
+Picture filled(std::uint32_t width, std::uint32_t height, Rgb color) {
   return pictureOf(width, height, [color](std::uint32_t, std::uint32_t) { return color; });
 }
 
 constexpr std::uint32_t kWidth = 48;
 constexpr std::uint32_t kHeight = 40;
 
-Color waveAt(std::uint32_t x, std::uint32_t y) {
+Rgb waveAt(std::uint32_t x, std::uint32_t y) {
   return {static_cast<std::uint8_t>(x * 5), static_cast<std::uint8_t>(y * 7), static_cast<std::uint8_t>((x + y) * 3)};
 }
 Picture waves() { return pictureOf(kWidth, kHeight, waveAt); }
@@ -47,7 +47,7 @@ Picture waves() { return pictureOf(kWidth, kHeight, waveAt); }
 // A step from dark to light grey at column `at`.
 Picture step(std::uint32_t at) {
   return pictureOf(kWidth, kHeight, [at](std::uint32_t x, std::uint32_t) {
-    return x < at ? Color{64, 64, 64} : Color{192, 192, 192};
+    return x < at ? Rgb{64, 64, 64} : Rgb{192, 192, 192};
   });
 }
 
@@ -60,7 +60,7 @@ std::uint32_t scrambled(std::uint32_t i) {
 
 Picture noise(std::uint32_t width, std::uint32_t height, std::uint32_t seed) {
   return pictureOf(width, height, [=](std::uint32_t x, std::uint32_t y) {
-    Color color{};
+    Rgb color{};
     for (std::uint32_t c = 0; c < 3; ++c) {
       color[c] = static_cast<std::uint8_t>(scrambled((y * width + x) * 3 + c + seed * 1000003U) >> 24U);
     }
@@ -110,9 +110,7 @@ TEST(Metrics, SsimOfConstantPicturesByHand) {
 
 // A 1x1 picture has no variance at all; in a 3x1 picture the window has weights w, 1 - 2w, w.
 TEST(Metrics, SsimOfThreePixelsByHand) {
-  const Picture a = pictureOf(3, 1, [](std::uint32_t x, std::uint32_t) {
-    return x == 1 ? Color{90, 90, 90} : Color{};
-  });
+  const Picture a = pictureOf(3, 1, [](std::uint32_t x, std::uint32_t) { return x == 1 ? Rgb{90, 90, 90} : Rgb{}; });
   const Picture b = filled(3, 1, {30, 30, 30});
   const double side = std::exp(-1.0 / 4.5);
   const double middle = 1.0 / (1.0 + 2.0 * side);
@@ -160,7 +158,7 @@ TEST(Metrics, AsOtherProgramsHaveIt) {
   const Picture shifted =
       pictureOf(kWidth, kHeight, [](std::uint32_t x, std::uint32_t y) { return waveAt((x + kWidth - 1) % kWidth, y); });
   const Picture dimmed = pictureOf(kWidth, kHeight, [](std::uint32_t x, std::uint32_t y) {
-    Color color = waveAt(x, y);
+    Rgb color = waveAt(x, y);
     for (std::uint8_t& c : color) c = static_cast<std::uint8_t>(c * 3 / 4);
     return color;
   });
@@ -202,7 +200,7 @@ TEST(Metrics, TheWorstPixelAndTheShareThatIsOff) {
   EXPECT_DOUBLE_EQ(metrics.offShare, 0.03);
 }
 
-Picture withAlpha(Color color, std::uint8_t alpha) {
+Picture withAlpha(Rgb color, std::uint8_t alpha) {
   Picture picture = filled(8, 8, color);
   picture.hasAlpha = true;
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = alpha;

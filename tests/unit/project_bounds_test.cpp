@@ -17,8 +17,8 @@
 namespace vitrail::tests {
 namespace {
 
-constexpr std::uint32_t kWidth = 200;
-constexpr std::uint32_t kHeight = 100;
+constexpr std::uint32_t kViewWidth = 200;
+constexpr std::uint32_t kViewHeight = 100;
 
 ClipBox box(const glm::vec3& min, const glm::vec3& max, const glm::mat4& clipFromBox) {
   ClipBox result;
@@ -30,11 +30,11 @@ ClipBox box(const glm::vec3& min, const glm::vec3& max, const glm::mat4& clipFro
   return result;
 }
 
-Rectangle project(const ClipBox& one) { return projectBounds(std::span(&one, 1), kWidth, kHeight); }
+Rectangle project(const ClipBox& one) { return projectBounds(std::span(&one, 1), kViewWidth, kViewHeight); }
 
 glm::mat4 perspective() { return glm::perspectiveZO(0.5F * std::numbers::pi_v<float>, 2.0F, 0.1F, 100.0F); }
 
-const Rectangle kEverything{0, 0, kWidth, kHeight};
+const Rectangle kEverything{0, 0, kViewWidth, kViewHeight};
 const Rectangle kNothing{};
 
 TEST(ProjectBounds, ABoxInClipSpaceByHand) {
@@ -73,9 +73,9 @@ TEST(ProjectBounds, SeveralBoxesAreJoinedAndEmptyOnesLeftOut) {
   const glm::mat4 one(1.0F);
   const std::array boxes = {box({-0.5F, -0.5F, 0}, {-0.4F, -0.4F, 1}, one), box({0.4F, 0.4F, 0}, {0.5F, 0.5F, 1}, one),
                             box({1, 1, 1}, {-1, -1, -1}, one)};
-  EXPECT_EQ(projectBounds(boxes, kWidth, kHeight), (Rectangle{48, 23, 104, 54}));
-  EXPECT_EQ(projectBounds(std::span(boxes).last(1), kWidth, kHeight), kNothing);
-  EXPECT_EQ(projectBounds({}, kWidth, kHeight), kNothing);
+  EXPECT_EQ(projectBounds(boxes, kViewWidth, kViewHeight), (Rectangle{48, 23, 104, 54}));
+  EXPECT_EQ(projectBounds(std::span(boxes).last(1), kViewWidth, kViewHeight), kNothing);
+  EXPECT_EQ(projectBounds({}, kViewWidth, kViewHeight), kNothing);
 }
 
 // Every visible point of random boxes lies inside, computed in single precision as a device would; and the rectangle of
@@ -102,7 +102,7 @@ TEST(ProjectBounds, ContainsEveryPointOfRandomBoxes) {
                            clip.z >= 0.0F && clip.z <= clip.w;
       inView = inView && visible;
       if (!visible) continue;
-      const glm::vec2 pixel = (glm::vec2(clip) / clip.w + 1.0F) * 0.5F * glm::vec2(kWidth, kHeight);
+      const glm::vec2 pixel = (glm::vec2(clip) / clip.w + 1.0F) * 0.5F * glm::vec2(kViewWidth, kViewHeight);
       ASSERT_TRUE(pixel.x >= static_cast<float>(r.x) && pixel.x <= static_cast<float>(r.x + r.width));
       ASSERT_TRUE(pixel.y >= static_cast<float>(r.y) && pixel.y <= static_cast<float>(r.y + r.height));
       least = glm::min(least, pixel);

@@ -20,6 +20,9 @@ namespace {
 // Few rounds can agree by chance: costs that lie closer than this are never told apart.
 constexpr double kLeastSpread = 0.05;
 
+// What weighs less than a promise.
+constexpr double kTrifle = 0.1;
+
 using Scenes = std::vector<const SceneMeasurement*>;
 using Candidates = std::vector<const Measurement*>; // the best first
 using Wanted = std::function<bool(const Measurement&)>;
@@ -35,6 +38,13 @@ struct Run {
 std::string nameOf(const Measurement& measured) { return describeWithoutSamples(measured.options); }
 
 bool isExact(const Measurement& measured) { return measured.report.exact; }
+
+// A promise rather than what the frames happened to hold: no frame has too many layers for it.
+bool isAlwaysExact(const Measurement& measured) {
+  return isExact(measured) && traitsOf(measured.options.name).wrong.empty();
+}
+
+bool isExactHereAlone(const Measurement& measured) { return isExact(measured) && !isAlwaysExact(measured); }
 
 bool isOrderIndependent(const Measurement& measured) {
   return isExact(measured) || traitsOf(measured.options.name).orderIndependent;
@@ -187,29 +197,68 @@ std::string elsewhere(const Scenes& scenes, const Run& run) {
   return wrong.empty() ? "" : fmt::format(" It was exact in these frames; in others {}.", wrong);
 }
 
+// The cheapest of the methods that are always exact; where none was measured, of those that were exact.
+std::vector<Candidates> cheapestExact(const Scenes& scenes) {
+  std::vector<Candidates> steps = each(scenes, cheapestOf, isAlwaysExact);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i].empty()) steps[i] = cheapestOf(*scenes[i], isExact);
+  }
+  return steps;
+}
+
+// Methods that cost less than the always exact one of a run by more than a trifle, or by that at most, and were exact
+// in these frames alone.
+std::string luckyText(const Scenes& scenes, const Run& exact, bool byATrifle, bool isCpu) {
+  const Scenes within(scenes.begin() + static_cast<std::ptrdiff_t>(exact.first),
+                      scenes.begin() + static_cast<std::ptrdiff_t>(exact.last) + 1);
+  std::vector<Candidates> steps = each(within, cheapestOf, isExactHereAlone);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const double cost = measurementOf(*within[i], exact.setting).costMs.median;
+    std::erase_if(steps[i], [&](const Measurement* each) {
+      const bool isTrifle = (1.0 + kTrifle) * each->costMs.median >= cost;
+      return each->costMs.median >= cost || isTrifle != byATrifle;
+    });
+  }
+  std::string text;
+  for (const Run& run : runsOf(steps)) {
+    if (run.setting.empty()) continue;
+    const bool isWhole = run.first == 0 && run.last + 1 == within.size();
+    const std::string where = isWhole ? "" : capitalized(placesOf(within, run.first, run.last)) + " ";
+    const std::string less = byATrifle ? "at most a tenth less" : "less: " + numbersOf(within, run, isCpu);
+    text += fmt::format(" {}{} costs {}.{}", where, run.setting, less, elsewhere(within, run));
+  }
+  return text;
+}
+
+std::string exactSentence(const Scenes& scenes, const std::vector<Candidates>& steps, const Run& run, bool isCpu) {
+  const std::string where = capitalized(placesOf(scenes, run.first, run.last));
+  if (run.setting.empty()) return fmt::format("{} no method that was measured is exact.", where);
+  const std::string numbers = numbersOf(scenes, run, isCpu) + othersOf(steps, run);
+  if (!isAlwaysExact(measurementOf(*scenes[run.first], run.setting))) {
+    return fmt::format("{} {} is the cheapest exact method: {}.{}", where, run.setting, numbers,
+                       elsewhere(scenes, run));
+  }
+  return fmt::format("{} {} is the cheapest method that is exact in every frame: {}.{}{}", where, run.setting, numbers,
+                     luckyText(scenes, run, false, isCpu), luckyText(scenes, run, true, isCpu));
+}
+
 std::string exactText(const Scenes& scenes, bool isCpu) {
   std::vector<std::string> sentences;
-  const std::vector<Candidates> steps = each(scenes, cheapestOf, isExact);
-  for (const Run& run : runsOf(steps)) {
-    const std::string where = capitalized(placesOf(scenes, run.first, run.last));
-    sentences.push_back(run.setting.empty()
-                            ? fmt::format("{} no method that was measured is exact.", where)
-                            : fmt::format("{} {} is the cheapest exact method: {}{}.{}", where, run.setting,
-                                          numbersOf(scenes, run, isCpu), othersOf(steps, run), elsewhere(scenes, run)));
-  }
+  const std::vector<Candidates> steps = cheapestExact(scenes);
+  for (const Run& run : runsOf(steps)) sentences.push_back(exactSentence(scenes, steps, run, isCpu));
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 // The runs of order-independent settings, of which those of exact ones are one where they follow each other.
 std::vector<Run> approximateRuns(const Scenes& scenes, std::vector<Candidates>& steps) {
   for (Candidates& step : steps) { // an approximate method has to be cheaper than every exact one
-    if (std::ranges::any_of(step, [](const Measurement* candidate) { return isExact(*candidate); })) {
-      std::erase_if(step, [](const Measurement* candidate) { return !isExact(*candidate); });
+    if (std::ranges::any_of(step, [](const Measurement* candidate) { return isAlwaysExact(*candidate); })) {
+      std::erase_if(step, [](const Measurement* candidate) { return !isAlwaysExact(*candidate); });
     }
   }
   std::vector<Run> runs;
   const auto hasExact = [&](const Run& run) {
-    return !run.setting.empty() && isExact(measurementOf(*scenes[run.first], run.setting));
+    return !run.setting.empty() && isAlwaysExact(measurementOf(*scenes[run.first], run.setting));
   };
   for (const Run& run : runsOf(steps)) {
     if (!runs.empty() && hasExact(runs.back()) && hasExact(run)) {
@@ -219,6 +268,13 @@ std::vector<Run> approximateRuns(const Scenes& scenes, std::vector<Candidates>& 
     }
   }
   return runs;
+}
+
+bool isExactThroughout(const Scenes& scenes, const Run& run) {
+  for (std::size_t i = run.first; i <= run.last; ++i) {
+    if (!isExact(measurementOf(*scenes[i], run.setting))) return false;
+  }
+  return true;
 }
 
 std::string approximateText(const Scenes& scenes, bool isCpu) {
@@ -231,22 +287,23 @@ std::string approximateText(const Scenes& scenes, bool isCpu) {
       continue;
     }
     const Measurement& measured = measurementOf(*scenes[run.first], run.setting);
-    if (isExact(measured)) {
+    if (isAlwaysExact(measured)) {
       sentences.push_back(
           fmt::format("{} no order-independent method that was measured is cheaper than the exact one.", where));
       continue;
     }
     const std::string_view wrong = traitsOf(measured.options.name).wrong;
-    sentences.push_back(fmt::format("{} {} is the cheapest order-independent method: {}{}. It is not exact{}{}.", where,
-                                    run.setting, numbersOf(scenes, run, isCpu), othersOf(steps, run),
-                                    wrong.empty() ? "" : ": ", wrong));
+    const bool wasExact = isExactThroughout(scenes, run);
+    sentences.push_back(fmt::format(
+        "{} {} is the cheapest order-independent method: {}{}.{}", where, run.setting, numbersOf(scenes, run, isCpu),
+        othersOf(steps, run),
+        wasExact ? elsewhere(scenes, run) : fmt::format(" It is not exact{}{}.", wrong.empty() ? "" : ": ", wrong)));
   }
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 // Whether the cheapest keep more than a setting by more than a trifle at a step.
 bool savesMemory(const Scenes& scenes, const Run& run, const std::vector<Run>& cheapest) {
-  constexpr double kTrifle = 0.1;
   for (const Run& other : cheapest) {
     for (std::size_t i = std::max(run.first, other.first); i <= std::min(run.last, other.last); ++i) {
       const auto most = static_cast<double>(measurementOf(*scenes[i], other.setting).report.totalBytes);
@@ -260,7 +317,7 @@ bool savesMemory(const Scenes& scenes, const Run& run, const std::vector<Run>& c
 // Nothing where the cheapest exact method keeps the least as well, or little more.
 std::string memoryText(const Scenes& scenes, bool isCpu) {
   std::vector<std::string> sentences;
-  const std::vector<Run> cheapest = runsOf(each(scenes, cheapestOf, isExact));
+  const std::vector<Run> cheapest = runsOf(cheapestExact(scenes));
   for (const Run& run : runsOf(each(scenes, smallestOf, isExact))) {
     if (run.setting.empty() || !savesMemory(scenes, run, cheapest)) continue;
     sentences.push_back(fmt::format("{} the exact method that keeps the least memory is {}: {}.{}",

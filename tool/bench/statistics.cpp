@@ -9,7 +9,7 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 // The value below which `fraction` of the sorted measurements lie.
 double quantile(const std::vector<double>& sorted, double fraction) {
@@ -19,7 +19,7 @@ double quantile(const std::vector<double>& sorted, double fraction) {
   return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
 }
 
-double quotient(double dividend, double divisor) { return divisor == 0.0 ? kNone : dividend / divisor; }
+double quotient(double dividend, double divisor) { return divisor == 0.0 ? kNotANumber : dividend / divisor; }
 
 } // namespace
 

@@ -21,9 +21,9 @@ namespace {
 constexpr const char* kNone = "-";
 
 // One row: the setting, samples, then numbers.
-constexpr char kRow[] = " {:<32}{:>3}{:>10}{:>7}{:>8}{:>10}{:>8}{:>9}{:>9}{:>7}{:>12}\n";
+constexpr char kBenchRow[] = " {:<32}{:>3}{:>10}{:>7}{:>8}{:>10}{:>8}{:>9}{:>9}{:>7}{:>12}\n";
 
-constexpr const char* kLegend =
+constexpr const char* kBenchLegend =
     R"(Milliseconds of GPU time, medians. cost: all passes but the opaque one, summed in each frame; IQR: its interquartile
 range over its median; x: times unsorted's; frame: all passes; M/s: million fragments a second of cost; floor: the least
 time that a frame with lists takes to move its bytes at the measured bandwidth; bw: floor over cost.
@@ -47,7 +47,7 @@ std::string settingOf(const Measurement& measured) {
 
 std::string rowOf(const Measurement& measured) {
   const FrameReport& frame = measured.report;
-  return fmt::format(kRow, settingOf(measured), frame.samples, milliseconds(measured.costMs.median),
+  return fmt::format(kBenchRow, settingOf(measured), frame.samples, milliseconds(measured.costMs.median),
                      percent(relativeRange(measured.costMs)), ratio(measured.costRatio),
                      milliseconds(measured.frameMs.median), ratio(measured.frameRatio),
                      measured.fragmentsPerSecond ? rate(*measured.fragmentsPerSecond) : kNone,
@@ -117,7 +117,7 @@ std::string skippedOf(const std::vector<const SceneMeasurement*>& steps) {
 
 std::string sceneTable(const SceneMeasurement& scene) {
   std::string table = sceneTitle(scene);
-  table += fmt::format(kRow, "method", "AA", "cost", "IQR", "x", "frame", "x", "M/s", "floor", "bw", "memory");
+  table += fmt::format(kBenchRow, "method", "AA", "cost", "IQR", "x", "frame", "x", "M/s", "floor", "bw", "memory");
   for (const Measurement& measured : scene.measurements) table += rowOf(measured);
   table += " passes\n";
   for (const Measurement& measured : scene.measurements) table += passesOf(labelOf(measured), measured);
@@ -226,7 +226,7 @@ std::string toTable(const BenchReport& report) {
     hasScenes = true;
     for (const SceneMeasurement* scene : scenesOf(report, {})) table += sceneTable(*scene);
   }
-  if (hasScenes) table.append("\n").append(kLegend);
+  if (hasScenes) table.append("\n").append(kBenchLegend);
   return table + adviceOf(report);
 }
 

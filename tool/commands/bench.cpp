@@ -166,6 +166,7 @@ void runBench(const CLI::App& command, BenchArguments arguments) {
   }
   if (!arguments.folder.empty()) folder.emplace(arguments.folder);
   const std::vector<std::string> names{"report.json", "report.csv", "index.html"};
+  if (folder) folder->check(names);
   if (folder && jsonFile) checkApart(*folder, names, "--json", *jsonFile);
   if (folder && csvFile) checkApart(*folder, names, "--csv", *csvFile);
 

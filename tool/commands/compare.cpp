@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "../bench/matrix.h"
 #include "../compare/comparison.h"
 #include "../compare/page.h"
 #include "../compare/table.h"
@@ -46,12 +47,17 @@ Comparison measure(const CompareArguments& arguments) {
   return comparison;
 }
 
-// The files of a folder, of whatever methods.
-std::vector<std::string> namesInFolder() {
+std::string pictureName(std::string_view method) { return fmt::format("{}.png", method); }
+std::string errorName(std::string_view method) { return fmt::format("{}-error.png", method); }
+
+// The files of a folder: those of some methods, or with none named of whatever methods.
+std::vector<std::string> namesInFolder(std::vector<std::string> methods) {
+  if (methods.empty()) methods.assign(methodNames().begin(), methodNames().end());
+  methods.emplace_back(kBaselineMethod);
   std::vector<std::string> names{"report.json", "index.html", "exact.png", "layers.png"};
-  for (const std::string_view method : methodNames()) {
-    names.push_back(fmt::format("{}.png", method));
-    names.push_back(fmt::format("{}-error.png", method));
+  for (const std::string& method : methods) {
+    names.push_back(pictureName(method));
+    names.push_back(errorName(method));
   }
   return names;
 }
@@ -62,8 +68,8 @@ void writeFolder(OutputFolder& folder, const Comparison& comparison, const std::
   folder.write("layers.png", pictures.layers);
   for (std::size_t i = 0; i < pictures.methods.size(); ++i) {
     const std::string& name = comparison.methods[i].measurement.options.name;
-    folder.write(name + ".png", pictures.methods[i].picture);
-    folder.write(name + "-error.png", pictures.methods[i].error);
+    folder.write(pictureName(name), pictures.methods[i].picture);
+    folder.write(errorName(name), pictures.methods[i].error);
   }
   folder.write("report.json", std::as_bytes(std::span(json)));
   const std::string page = toPage(comparison, pictures, json);
@@ -75,7 +81,8 @@ void compareOnDevice(const CompareArguments& arguments) {
   std::optional<OutputFolder> folder;
   if (!arguments.json.empty()) report.emplace(arguments.json);
   if (!arguments.folder.empty()) folder.emplace(arguments.folder);
-  if (folder && report) checkApart(*folder, namesInFolder(), "--json", *report);
+  if (folder) folder->check(namesInFolder(arguments.methods));
+  if (folder && report) checkApart(*folder, namesInFolder({}), "--json", *report);
 
   const Comparison comparison = measure(arguments);
 

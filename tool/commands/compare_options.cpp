@@ -56,8 +56,8 @@ namespace {
 
 bool isPng(const std::string& file) { return std::filesystem::path(file).extension() == ".png"; }
 
-// Options that only drawing has.
-void checkPictureOptions(const CLI::App& command) {
+// Refuses options that only drawing has.
+void checkFileOptions(const CLI::App& command) {
   for (const char* name :
        {"--scene", "--count", "--seed", "--size", "--camera", "--orbit", "--opacity", "--background", "--methods",
         "--samples", "--layers", "--passes", "--repeat", "--warmup", "--output", "--device", "--validate"}) {
@@ -86,7 +86,7 @@ void addCompareOptions(CLI::App& command, CompareArguments& arguments) {
 }
 
 void checkCompareArguments(const CLI::App& command, CompareArguments& arguments) {
-  if (arguments.pictures()) return checkPictureOptions(command);
+  if (arguments.pictures()) return checkFileOptions(command);
   if (!arguments.files.empty()) arguments.model = arguments.files[0];
   if (isPng(arguments.model)) {
     throw UsageError(fmt::format("{} is a picture: name the picture to compare it with as well", arguments.model));

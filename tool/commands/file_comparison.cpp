@@ -21,6 +21,8 @@ namespace vitrail::tool {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 Picture readPicture(const std::string& file) {
   try {
     return decodePng(readFile(file));
@@ -54,7 +56,6 @@ std::string toTable(const FileComparison& files, const Picture& picture, const M
 }
 
 std::string toReport(const FileComparison& files, const Picture& picture, const Metrics& metrics) {
-  using Json = nlohmann::ordered_json;
   Json json = {
       {"expected", files.expected}, {"test", files.test}, {"width", picture.width}, {"height", picture.height}};
   json.update(toJson(metrics));

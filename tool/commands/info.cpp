@@ -11,7 +11,7 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kInfoHelp =
     R"(Lists the Vulkan devices of this machine, their drivers, the limits that bound a picture,
 and what each device can and cannot do for Vitrail.
 
@@ -64,7 +64,7 @@ void runInfo() {
 
 void addInfoCommand(CLI::App& app, std::function<void()>& run) {
   CLI::App* command = app.add_subcommand("info");
-  setHelpPage(*command, kHelp);
+  setHelpPage(*command, kInfoHelp);
   command->callback([&run] { run = runInfo; });
 }
 

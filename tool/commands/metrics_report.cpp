@@ -4,8 +4,13 @@
 
 namespace vitrail::tool {
 
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+} // namespace
+
 nlohmann::ordered_json toJson(const Metrics& metrics) {
-  using Json = nlohmann::ordered_json;
   return {{"psnr_db", std::isinf(metrics.psnr) ? Json(nullptr) : Json(metrics.psnr)},
           {"ssim", metrics.ssim},
           {"flip", metrics.flip},

@@ -41,6 +41,12 @@ OutputFolder::~OutputFolder() {
   if (made_) ::rmdir(path_.c_str());
 }
 
+void OutputFolder::check(const std::vector<std::string>& names) const {
+  std::error_code error;
+  if (!fs::is_directory(path_, error)) return; // it is made, and holds nothing
+  for (const std::string& name : names) static_cast<void>(OutputFile(path_ / name));
+}
+
 bool OutputFolder::has(const std::string& name, const OutputFile& file) const {
   std::error_code error;
   return fs::is_directory(path_, error) && OutputFile(path_ / name).isSameAs(file);

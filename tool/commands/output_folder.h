@@ -23,6 +23,9 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
+  // Checks that files of these names can be written, as OutputFile does it: throws std::runtime_error.
+  void check(const std::vector<std::string>& names) const;
+
   // Whether the file is the one of that name in the folder, under whatever name.
   [[nodiscard]] bool has(const std::string& name, const OutputFile& file) const;
 

@@ -10,15 +10,14 @@ namespace vitrail::tool {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 // A text, or null where there is none.
-nlohmann::ordered_json textOrNull(const std::string& text) {
-  return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
-}
+Json textOrNull(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 } // namespace
 
 std::string toJson(const FrameReport& report) {
-  using Json = nlohmann::ordered_json;
   Json passes = Json::object();
   for (const auto& [name, milliseconds] : report.passesMs) passes[name] = milliseconds;
   Json fragments; // null: the method does not count them

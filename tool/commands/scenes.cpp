@@ -8,7 +8,7 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr const char* kHelp = R"(Lists the built-in scenes: what each shows, and what --count counts.
+constexpr const char* kScenesHelp = R"(Lists the built-in scenes: what each shows, and what --count counts.
 
 Usage:
   vitrail scenes
@@ -27,7 +27,7 @@ void runScenes() {
 
 void addScenesCommand(CLI::App& app, std::function<void()>& run) {
   CLI::App* command = app.add_subcommand("scenes");
-  setHelpPage(*command, kHelp);
+  setHelpPage(*command, kScenesHelp);
   command->callback([&run] { run = runScenes; });
 }
 

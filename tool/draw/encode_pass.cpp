@@ -23,7 +23,7 @@ constexpr std::uint32_t kGroupSide = 8;
 // A band's offset in the buffer is a multiple of 256 bytes, the largest alignment that a device may ask for.
 constexpr std::uint32_t kRowAlignment = 64;
 
-std::uint32_t groups(std::uint32_t pixels) { return (pixels + kGroupSide - 1) / kGroupSide; }
+std::uint32_t bandGroups(std::uint32_t pixels) { return (pixels + kGroupSide - 1) / kGroupSide; }
 
 } // namespace
 
@@ -60,7 +60,7 @@ void EncodePass::cmdEncode(VkCommandBuffer commands) const {
     const auto dynamicOffset = static_cast<std::uint32_t>(offset);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 1, &dynamicOffset);
     vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(band), &band);
-    vkCmdDispatch(commands, groups(band.width), groups(band.rows), 1);
+    vkCmdDispatch(commands, bandGroups(band.width), bandGroups(band.rows), 1);
   }
   // The encoding shader writes the pixels -> the host reads them after the fence.
   cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT},

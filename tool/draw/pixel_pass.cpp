@@ -6,7 +6,7 @@ namespace vitrail::tool {
 
 namespace {
 
-std::uint32_t groups(std::uint32_t pixels) {
+std::uint32_t pixelGroups(std::uint32_t pixels) {
   return (pixels + shaders::PIXEL_GROUP_SIDE - 1) / shaders::PIXEL_GROUP_SIDE;
 }
 
@@ -24,7 +24,7 @@ void PixelPass::cmdRun(VkCommandBuffer commands, VkExtent2D extent, const void* 
   if (constantBytes_ > 0) {
     vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, constantBytes_, constants);
   }
-  vkCmdDispatch(commands, groups(extent.width), groups(extent.height), 1);
+  vkCmdDispatch(commands, pixelGroups(extent.width), pixelGroups(extent.height), 1);
 }
 
 } // namespace vitrail::tool

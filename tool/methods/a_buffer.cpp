@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t kFragmentBytes = 8;
 constexpr std::uint32_t kScanned = 2 * shaders::A_BUFFER_SCAN_GROUP;
-constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+constexpr VkShaderStageFlags kABufferStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
 
 std::uint32_t scanGroups(std::uint32_t count) { return (count + kScanned - 1) / kScanned; }
 
@@ -51,11 +51,11 @@ SurfacePipelines makeGeometry(const MethodHost& host, VkDescriptorSetLayout set,
 ABuffer::ABuffer(const MethodHost& host)
     : gpu_(host.gpu),
       set_(gpu_,
-           {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages}, // offsets
-            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages}, // filled
-            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages}, // fragments
-            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages}, // control
-            {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kStages}}, // colour
+           {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kABufferStages}, // offsets
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kABufferStages}, // filled
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kABufferStages}, // fragments
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kABufferStages}, // control
+            {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kABufferStages}}, // colour
            "a-buffer"),
       count_(makeGeometry(host, set_.layout(), shaders::a_buffer_count_frag, "a-buffer count")),
       fill_(makeGeometry(host, set_.layout(), shaders::a_buffer_fill_frag, "a-buffer fill")),

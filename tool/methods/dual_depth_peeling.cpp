@@ -16,7 +16,7 @@ namespace {
 constexpr VkFormat kFoundFormat = VK_FORMAT_R32G32_SFLOAT;
 constexpr VkFormat kSumFormat = VK_FORMAT_R32G32B32A32_SFLOAT; // many layers would add up the rounding of 16 bits
 constexpr std::uint32_t kAttachments = 5;
-constexpr std::uint64_t kPixelBytes = 6 * 8 + 3 * 16;
+constexpr std::uint64_t kDualPixelBytes = 6 * 8 + 3 * 16;
 
 // Throws GpuError where the device cannot blend what a pass writes.
 Gpu& withBlending(Gpu& gpu) {
@@ -32,7 +32,7 @@ Gpu& withBlending(Gpu& gpu) {
                   gpu.properties().deviceName));
 }
 
-SurfacePipelines makePeel(const MethodHost& host, VkDescriptorSetLayout set) {
+SurfacePipelines makeDualPeel(const MethodHost& host, VkDescriptorSetLayout set) {
   const auto describe = [](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     const BlendFactors add{VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE};
     auto most = blendWith(add, add);
@@ -69,7 +69,7 @@ DualDepthPeeling::DualDepthPeeling(const MethodHost& host)
       complexity_(host, "dual-depth-peeling"),
       peelSets_{makePeelSet(gpu_), makePeelSet(gpu_)},
       blendSet_(gpu_, {8, {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}}, "dual-depth-peeling blend"),
-      surfaces_(makePeel(host, peelSets_[0].layout())),
+      surfaces_(makeDualPeel(host, peelSets_[0].layout())),
       blend_(gpu_, blendSet_,
              {.shader = shaders::dual_depth_peeling_blend_comp,
               .name = "dual-depth-peeling blend",
@@ -171,7 +171,7 @@ void DualDepthPeeling::blend(Frame& frame, std::uint32_t step) {
 
 MethodStats DualDepthPeeling::stats() const {
   MethodStats stats = complexity_.stats();
-  stats.totalBytes += kPixelBytes * extent_.width * extent_.height;
+  stats.totalBytes += kDualPixelBytes * extent_.width * extent_.height;
   return stats;
 }
 

@@ -10,7 +10,7 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+constexpr VkShaderStageFlags kInsertionStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
 
 SurfacePipelines makeCollect(const MethodHost& host, VkDescriptorSetLayout set) {
   return {host.surfaces,
@@ -27,10 +27,10 @@ SurfacePipelines makeCollect(const MethodHost& host, VkDescriptorSetLayout set) 
 Insertion::Insertion(const MethodHost& host)
     : gpu_(host.gpu),
       set_(gpu_,
-           {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages}, // control
-            {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kStages},  // heads
-            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages}, // nodes
-            {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kStages}}, // colour, of the resolve
+           {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kInsertionStages}, // control
+            {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kInsertionStages},  // heads
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kInsertionStages}, // nodes
+            {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kInsertionStages}}, // colour, of the resolve
            "insertion"),
       surfaces_(makeCollect(host, set_.layout())),
       resolve_(gpu_, set_, {.shader = shaders::insertion_resolve_comp, .name = "insertion resolve"}),

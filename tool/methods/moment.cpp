@@ -40,7 +40,7 @@ Depths depthsOf(const Surfaces& surfaces) {
   return {2.0F / span, -2.0F * low / span - 1.0F, logarithmic ? 1U : 0U};
 }
 
-std::vector<PlaneInfo> planeInfos(bool filters) {
+std::vector<PlaneInfo> momentPlanes(bool filters) {
   std::vector<PlaneInfo> infos{addingPlane(VK_FORMAT_R16G16B16A16_SFLOAT, 8),
                                addingPlane(VK_FORMAT_R32G32B32A32_SFLOAT, 16), addingPlane(VK_FORMAT_R32_SFLOAT, 4)};
   if (filters) infos.push_back(multiplyingPlane(VK_FORMAT_R16G16B16A16_SFLOAT, 8));
@@ -82,7 +82,7 @@ SurfacePipelines makeLight(const MethodHost& host, VkDescriptorSetLayout set, co
 Moment::Moment(const MethodHost& host)
     : gpu_(host.gpu),
       filters_(hasFilters(host)),
-      planes_(planeInfos(filters_), 1, "moment"),
+      planes_(momentPlanes(filters_), 1, "moment"),
       moments_(gpu_,
                {{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_FRAGMENT_BIT},
                 {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_FRAGMENT_BIT}},

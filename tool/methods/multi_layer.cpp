@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kLayers = 4;     // by default
 constexpr std::uint64_t kLayerWords = 5; // of multi_layer.glsl
-constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+constexpr VkShaderStageFlags kMultiLayerStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
 
 SurfacePipelines makeSurfaces(const MethodHost& host, VkDescriptorSetLayout set, std::uint32_t layers) {
   requireInterlock(host.gpu, "multi-layer");
@@ -31,7 +31,7 @@ MultiLayer::MultiLayer(const MethodHost& host, const MethodOptions& options)
     : gpu_(host.gpu),
       layers_(options.maxLayers > 0 ? options.maxLayers : kLayers),
       set_(gpu_,
-           {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages},                     // layers
+           {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMultiLayerStages},           // layers
             {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}}, // colour, of the resolve
            "multi-layer"),
       surfaces_(makeSurfaces(host, set_.layout(), layers_)),

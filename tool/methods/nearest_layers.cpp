@@ -11,7 +11,7 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+constexpr VkShaderStageFlags kNearestStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
 constexpr std::uint64_t kEntryWords = 2;
 
 } // namespace
@@ -21,9 +21,9 @@ NearestLayers::NearestLayers(const MethodHost& host, const MethodOptions& option
       method_(options.name),
       layers_(options.maxLayers > 0 ? options.maxLayers : kLayers),
       set_(gpu_,
-           {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages},                     // control
-            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages},                     // entries
-            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStages},                     // tails
+           {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kNearestStages},              // control
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kNearestStages},              // entries
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kNearestStages},              // tails
             {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}}, // colour, of the resolve
            method_),
       resolve_(gpu_, set_,

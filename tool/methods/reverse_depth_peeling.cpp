@@ -11,7 +11,7 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr VkFormat kLayerDepthFormat = VK_FORMAT_D32_SFLOAT;
+constexpr VkFormat kReverseDepthFormat = VK_FORMAT_D32_SFLOAT;
 
 SingleSet makeSet(Gpu& gpu) {
   return {gpu, {{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_FRAGMENT_BIT}}, "depth of the last layer"};
@@ -20,7 +20,7 @@ SingleSet makeSet(Gpu& gpu) {
 SurfacePipelines makeFind(const MethodHost& host, VkDescriptorSetLayout set) {
   const auto describe = [](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     info.fragmentShader = shaders::reverse_depth_peeling_find_frag;
-    info.depthFormat = kLayerDepthFormat;
+    info.depthFormat = kReverseDepthFormat;
     info.depthTest = VK_COMPARE_OP_LESS_OR_EQUAL;
     info.depthWrite = true;
   };
@@ -36,7 +36,7 @@ SurfacePipelines makeBlend(const MethodHost& host, const MethodOptions& options,
     if ((features & shaders::FEATURE_TRANSMISSION) != 0) {
       info.fragmentShader = shaders::reverse_depth_peeling_transmission_frag;
     }
-    info.depthFormat = kLayerDepthFormat;
+    info.depthFormat = kReverseDepthFormat;
     info.depthTest = VK_COMPARE_OP_EQUAL;
   };
   return makeBlendedSurfaces(host, options, {.set = set, .name = "reverse-depth-peeling"}, adjust);
@@ -57,7 +57,7 @@ void ReverseDepthPeeling::setTarget(const MethodTarget& target) {
   complexity_.setTarget(target);
   GpuImageInfo info;
   info.extent = extent_;
-  info.format = kLayerDepthFormat;
+  info.format = kReverseDepthFormat;
   info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   info.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
   constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;

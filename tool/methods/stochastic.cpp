@@ -20,16 +20,16 @@ namespace {
 
 constexpr std::uint32_t kPasses = 16;
 constexpr std::uint32_t kPassesTogether = 8; // in one submission
-constexpr std::size_t kLight = 0;            // planes
-constexpr std::size_t kThrough = 1;
-constexpr std::uint64_t kDepthBytes = 4;
+constexpr std::size_t kLightPlane = 0;       // planes
+constexpr std::size_t kThroughPlane = 1;
+constexpr std::uint64_t kSampleDepthBytes = 4;
 
 bool tints(const MethodHost& host) {
   return std::ranges::any_of(host.surfaces.scene().transparentDraws(),
                              [](const GpuDraw& draw) { return (draw.features & shaders::FEATURE_TRANSMISSION) != 0; });
 }
 
-std::vector<PlaneInfo> planeInfos(bool filters) {
+std::vector<PlaneInfo> stochasticPlanes(bool filters) {
   const PlaneInfo through =
       filters ? multiplyingPlane(VK_FORMAT_R16G16B16A16_SFLOAT, 8) : multiplyingPlane(VK_FORMAT_R16_SFLOAT, 2);
   return {addingPlane(VK_FORMAT_R32G32B32A32_SFLOAT, 16), through};
@@ -77,16 +77,16 @@ Stochastic::Stochastic(const MethodHost& host, const MethodOptions& options)
       passes_(options.passes > 0 ? options.passes : kPasses),
       filters_(hasFilters(host)),
       tints_(tints(host)),
-      planes_(planeInfos(filters_), samples_, "stochastic"),
+      planes_(stochasticPlanes(filters_), samples_, "stochastic"),
       total_(makeSurfaces(host, samples_,
-                          {"stochastic total", shaders::stochastic_total_frag, planes_.outputs(kThrough, 1)})),
+                          {"stochastic total", shaders::stochastic_total_frag, planes_.outputs(kThroughPlane, 1)})),
       cover_(makeSurfaces(
           host, samples_,
           {.name = "stochastic cover", .shader = shaders::stochastic_cover_frag, .colors = {}, .depthWrite = true})),
       light_(makeSurfaces(host, samples_,
                           {.name = "stochastic light",
                            .shader = shaders::stochastic_light_frag,
-                           .colors = planes_.outputs(kLight, 1),
+                           .colors = planes_.outputs(kLightPlane, 1),
                            .test = VK_COMPARE_OP_GREATER_OR_EQUAL})),
       composite_(gpu_, {.one = shaders::stochastic_composite_comp,
                         .several = shaders::stochastic_composite_samples_comp,
@@ -128,9 +128,9 @@ void Stochastic::draw(Frame& frame) {
 
 // What all surfaces let through; and no light yet.
 void Stochastic::drawTotal(Frame& frame) {
-  planes_.cmdBegin(frame, kLight, 1);
+  planes_.cmdBegin(frame, kLightPlane, 1);
   vkCmdEndRendering(frame.commands());
-  planes_.cmdBegin(frame, kThrough, 1);
+  planes_.cmdBegin(frame, kThroughPlane, 1);
   frame.drawSurfaces(total_);
   vkCmdEndRendering(frame.commands());
   frame.endPass("total");
@@ -162,7 +162,7 @@ void Stochastic::drawPass(Frame& frame, std::uint32_t number, std::uint32_t chan
   frame.endPass("cover");
 
   Scope light = frame.images().wholeScope();
-  light.colors.push_back({.image = &planes_.image(kLight)});
+  light.colors.push_back({.image = &planes_.image(kLightPlane)});
   light.depth = {.image = &depth_, .depth = AspectUse::Test};
   cmdBeginScope(commands, light);
   vkCmdPushConstants(commands, light_.layout(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(pass), &pass);
@@ -175,7 +175,7 @@ MethodStats Stochastic::stats() const {
   const VkExtent2D extent = depth_.get().info().extent;
   MethodStats stats;
   stats.counted = false;
-  stats.totalBytes = planes_.bytes() + kDepthBytes * samples_ * extent.width * extent.height;
+  stats.totalBytes = planes_.bytes() + kSampleDepthBytes * samples_ * extent.width * extent.height;
   return stats;
 }
 

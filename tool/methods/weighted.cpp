@@ -15,9 +15,9 @@ namespace vitrail::tool {
 namespace {
 
 constexpr VkFormat kHalves = VK_FORMAT_R16G16B16A16_SFLOAT;
-constexpr std::uint32_t kPlanes = 3;
+constexpr std::uint32_t kWeightedPlanes = 3;
 
-std::vector<PlaneInfo> planeInfos(bool filters) {
+std::vector<PlaneInfo> weightedPlanes(bool filters) {
   if (!filters) return {addingPlane(kHalves, 8), multiplyingPlane(VK_FORMAT_R16_SFLOAT, 2)};
   return {addingPlane(kHalves, 8), multiplyingPlane(kHalves, 8), addingPlane(kHalves, 8)};
 }
@@ -45,11 +45,11 @@ SurfacePipelines makeSurfaces(const MethodHost& host, std::uint32_t samples, boo
 Weighted::Weighted(const MethodHost& host, const MethodOptions& options)
     : gpu_(host.gpu),
       filters_(hasFilters(host)),
-      planes_(planeInfos(filters_), options.samples, "weighted"),
+      planes_(weightedPlanes(filters_), options.samples, "weighted"),
       surfaces_(makeSurfaces(host, options.samples, filters_, planes_)),
       composite_(gpu_, {.one = shaders::weighted_composite_comp,
                         .several = shaders::weighted_composite_samples_comp,
-                        .planes = kPlanes,
+                        .planes = kWeightedPlanes,
                         .samples = options.samples,
                         .filters = filters_,
                         .name = "weighted composite"}) {}
@@ -57,7 +57,7 @@ Weighted::Weighted(const MethodHost& host, const MethodOptions& options)
 void Weighted::setTarget(const MethodTarget& target) {
   composite_.setTarget(target);
   planes_.setTarget(gpu_, target.extent, composite_);
-  if (!filters_) composite_.setPlane(kPlanes - 1, planes_.image(0)); // is not read
+  if (!filters_) composite_.setPlane(kWeightedPlanes - 1, planes_.image(0)); // is not read
 }
 
 void Weighted::draw(Frame& frame) {

@@ -15,7 +15,7 @@ namespace vitrail::tool {
 namespace {
 
 constexpr std::uint32_t strandColors = 8;
-constexpr std::uint32_t points = 30; // of a tube's curve
+constexpr std::uint32_t curvePoints = 30; // of a tube's curve
 constexpr std::uint32_t sides = 5;
 constexpr float coreRadius = 0.26F;
 
@@ -29,9 +29,9 @@ void growStrand(Random& random, std::vector<glm::vec3>& curve, std::vector<float
   glm::vec3 axis = random.direction();
   const float curl = random.range(0.06F, 0.24F);
   const float length = step * random.range(0.7F, 1.15F);
-  for (std::uint32_t k = 0; k < points; ++k) {
+  for (std::uint32_t k = 0; k < curvePoints; ++k) {
     curve[k] = place;
-    const float along = static_cast<float>(k) / static_cast<float>(points - 1);
+    const float along = static_cast<float>(k) / static_cast<float>(curvePoints - 1);
     radii[k] = 0.0062F * (1.0F - 0.75F * along * along);
     axis = glm::normalize(axis + 0.25F * random.inBall());
     const glm::vec3 inward = -0.13F * glm::dot(place, place) * place;
@@ -54,8 +54,8 @@ Scene makeHairball(std::uint32_t count, std::uint32_t seed) {
   scene.draws.push_back({coreMesh, addMaterial(scene, std::move(coreMaterial)), glm::mat4(1.0F)});
 
   std::array<Mesh, strandColors> strands;
-  std::vector<glm::vec3> curve(points);
-  std::vector<float> radii(points);
+  std::vector<glm::vec3> curve(curvePoints);
+  std::vector<float> radii(curvePoints);
   for (std::uint32_t i = 0; i < count; ++i) {
     growStrand(random, curve, radii);
     append(strands[i % strandColors], tube(curve, radii, sides));

@@ -65,6 +65,12 @@ Container splitGlb(std::span<const std::byte> file) {
   return container;
 }
 
+// Whether the text begins with an object or an array.
+bool looksLikeJson(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  return begin != std::string_view::npos && (text[begin] == '{' || text[begin] == '[');
+}
+
 // The parsers behind this one call themselves for each level of nesting.
 void checkNesting(std::string_view json) {
   constexpr std::size_t deepest = 100;
@@ -172,12 +178,19 @@ tinygltf::Model parseModel(Json json) {
 
 GltfDocument openGltf(std::span<const std::byte> file, const std::filesystem::path& base) {
   Container container;
-  if (asText(file).starts_with(glbMagic))
+  const bool isGlb = asText(file).starts_with(glbMagic);
+  if (isGlb)
     container = splitGlb(file);
   else
     container.json = asText(file);
   // A byte order mark is not JSON, but some editors write it.
   if (container.json.starts_with("\xef\xbb\xbf")) container.json.remove_prefix(3);
+  if (!isGlb && !looksLikeJson(container.json)) {
+    throw LoadError(
+        "begins neither with \"glTF\", as a .glb file does, nor with {, as a .gltf file does: it is damaged or of "
+        "another "
+        "kind");
+  }
 
   Json json = parseJson(container.json);
   checkGltfJson(json);

@@ -20,7 +20,7 @@
 namespace vitrail::tool {
 namespace {
 
-using Attributes = std::map<std::string, int>;
+using AccessorIndices = std::map<std::string, int>;
 
 float finiteOr(float value, float otherwise) { return std::isfinite(value) ? value : otherwise; }
 
@@ -29,7 +29,7 @@ class VertexReader {
  public:
   VertexReader(const GltfDocument& document, std::string where) : document_(document), where_(std::move(where)) {}
 
-  std::vector<Vertex> read(const Attributes& attributes, const GltfMaterial& material) {
+  std::vector<Vertex> read(const AccessorIndices& attributes, const GltfMaterial& material) {
     const auto position = static_cast<std::size_t>(attributes.at("POSITION"));
     const std::vector<glm::vec4> positions = readVectors(document_, position, 3, 3, "POSITION");
     vertices_.resize(positions.size());
@@ -51,7 +51,7 @@ class VertexReader {
   }
 
   // Adds `weight` times the displacements of one morph target.
-  void morph(const Attributes& target, const GltfMaterial& material, float weight, std::vector<Vertex>& vertices) {
+  void morph(const AccessorIndices& target, const GltfMaterial& material, float weight, std::vector<Vertex>& vertices) {
     vertices_ = std::move(vertices);
     each(target, "POSITION", 3, 3,
          [=](Vertex& vertex, const glm::vec4& value) { vertex.position += weight * glm::vec3(value); });
@@ -71,7 +71,7 @@ class VertexReader {
 
  private:
   template <typename Set>
-  void each(const Attributes& attributes, const std::string& name, int least, int most, Set set,
+  void each(const AccessorIndices& attributes, const std::string& name, int least, int most, Set set,
             const glm::vec4& fill = glm::vec4(1.0F)) {
     const auto attribute = attributes.find(name);
     if (attribute == attributes.end()) return;
@@ -138,7 +138,7 @@ std::vector<std::uint32_t> readTriangles(const GltfDocument& document, const tin
   return triangleList(indices, topology);
 }
 
-void finish(Mesh& mesh, const Attributes& attributes, const Material& material) {
+void finish(Mesh& mesh, const AccessorIndices& attributes, const Material& material) {
   dropDegenerateTriangles(mesh);
   dropUnusedVertices(mesh);
   const bool hasNormals = attributes.contains("NORMAL");

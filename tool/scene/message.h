@@ -7,7 +7,11 @@
 
 namespace vitrail::tool {
 
-// The text with control characters and line breaks turned into spaces, cut after 160 bytes.
+// The text as a terminal may have it: UTF-8 on one line, with control characters turned into spaces and bytes that are
+// no UTF-8 into question marks.
+std::string printable(std::string_view text);
+
+// The same, cut after 160 bytes.
 std::string oneLine(std::string_view text);
 
 // How a message names one object of a file: `mesh 3`, or `mesh 3 "body"` where it has a name.

@@ -39,14 +39,14 @@ std::string joinedLines(std::string_view text) {
 }
 
 // What the faces refer to.
-struct Attributes {
+struct ObjAttributes {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec4> colors; // linear; as many as positions, or none at all
   std::vector<glm::vec2> texCoords;
   std::vector<glm::vec3> normals;
 };
 
-void readPosition(TextLines& lines, Attributes& attributes) {
+void readPosition(TextLines& lines, ObjAttributes& attributes) {
   glm::vec3 position;
   for (int c = 0; c < 3; ++c) position[c] = lines.number();
   std::vector<float> rest;
@@ -60,8 +60,8 @@ void readPosition(TextLines& lines, Attributes& attributes) {
   attributes.colors.back() = glm::vec4(linearFromSrgb({rest[0], rest[1], rest[2]}), alpha);
 }
 
-Attributes readAttributes(std::string_view text) {
-  Attributes attributes;
+ObjAttributes readAttributes(std::string_view text) {
+  ObjAttributes attributes;
   TextLines lines(text);
   while (lines.next()) {
     const std::string_view word = lines.word();
@@ -238,7 +238,7 @@ class ObjReader {
   }
 
   std::string_view text_;
-  Attributes attributes_;
+  ObjAttributes attributes_;
   std::filesystem::path base_;
   Materials materials_;
   std::map<std::string, Part, std::less<>> parts_; // by the name of their material

@@ -138,9 +138,9 @@ Header parseHeader(std::string_view text) {
 }
 
 // The values of the body, one after the other, whatever their encoding.
-class Body {
+class PlyBody {
  public:
-  Body(std::span<const std::byte> bytes, Encoding encoding) : bytes_(bytes), encoding_(encoding) {}
+  PlyBody(std::span<const std::byte> bytes, Encoding encoding) : bytes_(bytes), encoding_(encoding) {}
 
   // Throws LoadError where there is no room for `count` things of at least `bytes` bytes each in a binary file, before
   // memory is taken for them.
@@ -425,7 +425,7 @@ class PlyReader {
   }
 
   const Header& header_;
-  Body body_;
+  PlyBody body_;
   std::uint64_t vertexCount_ = 0;
   std::array<bool, slotCount> present_{};
   Mesh mesh_;

@@ -1,0 +1,26 @@
+// Good files of the corpus, and how their values are compared.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "scene/load.h"
+
+namespace vitrail::tool {
+
+inline Scene loadGood(const std::string& name) {
+  return loadModel(std::filesystem::path(VITRAIL_TEST_CORPUS) / "good" / name);
+}
+
+inline void expectNear(const glm::vec3& actual, const glm::vec3& expected, float tolerance = 1e-5F) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(actual[c], expected[c], tolerance) << "component " << c;
+}
+
+inline void expectNear(const glm::vec4& actual, const glm::vec4& expected) {
+  expectNear(glm::vec3(actual), glm::vec3(expected));
+  EXPECT_NEAR(actual.w, expected.w, 1e-5F);
+}
+
+} // namespace vitrail::tool
