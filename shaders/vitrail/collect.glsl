@@ -130,15 +130,23 @@ void vitrailKeepDeclarations() {
 #endif
 }
 
+// The pixel within the frame's area; beyond it, above what the area has, if it lies left of it or above.
+uvec2 vitrailAreaPixel(uint samples) {
+  uvec2 origin = uvec2(vitrailParameters.x, vitrailParameters.y);
+  if (samples != 1u) return uvec2(gl_FragCoord.xy) - origin; // which may be where a sample is
+  // Pixel centres end in .5. Adding 2^23 - 0.5 leaves the whole pixels in the low bits; a conversion is slow on GPUs.
+  return floatBitsToUint(gl_FragCoord.xy + 8388607.5) - (origin + 0x4b000000u);
+}
+
 // Pushes a fragment at this pixel's depth and coverage on the list of its pixel. `color` is linear; `blend` is one of
 // VITRAIL_OVER (straight alpha), VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY. A fragment outside the
 // frame's area, or one that would change nothing, is ignored. When the pool is full the list is left as it is, and the
 // fragment is counted, by the same counter that hands out nodes.
 void vitrailCollect(vec4 color, uint blend) {
   vitrailKeepDeclarations();
-  uvec2 pixel = uvec2(gl_FragCoord.xy) - uvec2(vitrailParameters.x, vitrailParameters.y);
-  if (pixel.x >= vitrailParameters.width || pixel.y >= vitrailParameters.height) return; // also those left and above
   VitrailLayout nodes = vitrailTargetLayout();
+  uvec2 pixel = vitrailAreaPixel(nodes.samples);
+  if (pixel.x >= vitrailParameters.width || pixel.y >= vitrailParameters.height) return; // also those left and above
   uint coverage = nodes.samples == 1u ? 1u : uint(gl_SampleMaskIn[0]) & ((1u << nodes.samples) - 1u);
   uvec4 node;
   if (!vitrailPack(color, blend, gl_FragCoord.z, coverage, nodes, node) || coverage == 0u) return;
