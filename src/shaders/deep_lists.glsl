@@ -5,12 +5,13 @@
 
 #include "target.glsl"
 
-layout(set = 0, binding = 5, std430) buffer MediumListsBlock { uint mediumPixels[]; }; // control.mediumLists of them
-
 #ifdef VITRAIL_GROUPS
-// Lists that groups of invocations take: the pixel, and where parts begin (vitrail/parts.glsl). From the front
-// control.longLists for groups of 4, one element each; from the end control.longestLists for groups of 8, or of any
-// length, two elements each. A pool has not the nodes for so many that they meet.
+// Lists that one invocation takes: control.mediumLists pixels.
+layout(set = 0, binding = 5, std430) buffer MediumListsBlock { uint mediumPixels[]; };
+// Lists that groups of invocations take: the pixel, and where the second part begins and those after it
+// (vitrail/parts.glsl). From the front control.longLists for groups of 4, one element each; from the end
+// control.longestLists for groups of 8, or of any length, two elements each. A pool has not the nodes for so many that
+// they meet.
 layout(set = 0, binding = 6, std430) buffer LongListsBlock { uvec4 longLists[]; };
 #else
 layout(set = 0, binding = 6, std430) buffer LongListsBlock { uint longPixels[]; }; // control.longLists of them

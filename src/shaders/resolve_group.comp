@@ -1,46 +1,47 @@
 // The third and the fourth dispatch of the compute resolve, by networks: groups of 4 invocations take lists of up to 64
-// fragments, groups of 8 those of up to 128 and longer ones.
+// fragments, groups of 8 those of up to 128, and one of them a longer one.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define VITRAIL_GROUPS
 #include "picture.glsl"
 #include "vitrail/resolve_group.glsl"
 #include "vitrail/resolve_long.glsl"
-#ifdef VITRAIL_LONGEST
-const uint LANES = 8u;
-#else
-const uint LANES = 4u;
-#endif
 
-layout(local_size_x = 128) in; // LANES * LONG_GROUP_LISTS, LANES * LONGEST_GROUP_LISTS
+layout(local_size_x = 128) in; // kGroup times LONG_GROUP_LISTS or LONGEST_GROUP_LISTS
 
 // Whether the invocations of a group can exchange what they have: implementations place them in subgroups at will.
 bool isGroup() {
   bool found = true;
-  for (uint mask = 1u; mask < LANES; mask *= 2u) {
+  for (uint mask = 1u; mask < kGroup; mask *= 2u) {
     uint other = subgroupShuffleXor(gl_LocalInvocationIndex, mask);
     found = found && other == (gl_LocalInvocationIndex ^ mask);
   }
   return found;
 }
 
+// Lists of this dispatch.
+uint groupLists() {
+  if (kGroup == 4u) return min(control.longLists, longLists.length());
+  return min(control.longestLists, longLists.length() / 2u);
+}
+
+// A word of a list: 0 is its pixel, the others are where its second part begins and those after it.
+uint listWord(uint slot, uint word) {
+  if (kGroup == 4u) return longLists[slot][word];
+  return longLists[longestElement(slot) + word / 4u][word % 4u];
+}
+
 void main() {
-  uint slot = deepGroup() * (gl_WorkGroupSize.x / LANES) + gl_LocalInvocationIndex / LANES;
-  uint lane = gl_LocalInvocationIndex % LANES;
-#ifdef VITRAIL_LONGEST
-  if (slot >= min(control.longestLists, longLists.length() / 2u)) return;
-  uint first = longestElement(slot);
-#else
-  if (slot >= min(control.longLists, longLists.length())) return;
-  uint first = slot;
-#endif
-  uint pixelIndex = longLists[first].x;
-  if (pixelIndex >= parameters.width * parameters.height) return; // a corrupt list's
+  uint slot = deepGroup() * (gl_WorkGroupSize.x / kGroup) + gl_LocalInvocationIndex / kGroup;
+  if (slot >= groupLists()) return;
+  uint lane = gl_LocalInvocationIndex % kGroup;
+  uint pixelIndex = listWord(slot, 0u);
+  if (pixelIndex >= parameters.width * parameters.height) return; // what a corrupt list left
   beginPixel(imagePixel(pixelIndex));
-  uint start = lane == 0u ? heads[pixelIndex] : longLists[first + lane / 4u][lane % 4u];
+  uint start = lane == 0u ? heads[pixelIndex] : listWord(slot, lane);
   VitrailResolved r;
   r.complete = false;
-  if (isGroup()) r = vitrailResolveGroup(lane, LANES, start, nodesInUse());
+  if (isGroup()) r = vitrailResolveGroup(lane, kGroup, start, nodesInUse());
   if (lane != 0u) return;
   if (!r.complete) r = vitrailResolveLong(start, nodesInUse());
   writeDeepPixel(pixelIndex, r);

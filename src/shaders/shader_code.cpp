@@ -32,30 +32,22 @@
 #include "shaders/resolve_frag_sample_insertion_binding.h"
 #include "shaders/resolve_frag_sample_networks_address.h"
 #include "shaders/resolve_frag_sample_networks_binding.h"
+#include "shaders/resolve_group_rgba16f_multisampled_networks_address.h"
+#include "shaders/resolve_group_rgba16f_multisampled_networks_binding.h"
+#include "shaders/resolve_group_rgba16f_networks_address.h"
+#include "shaders/resolve_group_rgba16f_networks_binding.h"
+#include "shaders/resolve_group_rgba32f_multisampled_networks_address.h"
+#include "shaders/resolve_group_rgba32f_multisampled_networks_binding.h"
+#include "shaders/resolve_group_rgba32f_networks_address.h"
+#include "shaders/resolve_group_rgba32f_networks_binding.h"
 #include "shaders/resolve_long_rgba16f_insertion_address.h"
 #include "shaders/resolve_long_rgba16f_insertion_binding.h"
 #include "shaders/resolve_long_rgba16f_multisampled_insertion_address.h"
 #include "shaders/resolve_long_rgba16f_multisampled_insertion_binding.h"
-#include "shaders/resolve_long_rgba16f_multisampled_networks_address.h"
-#include "shaders/resolve_long_rgba16f_multisampled_networks_binding.h"
-#include "shaders/resolve_long_rgba16f_networks_address.h"
-#include "shaders/resolve_long_rgba16f_networks_binding.h"
 #include "shaders/resolve_long_rgba32f_insertion_address.h"
 #include "shaders/resolve_long_rgba32f_insertion_binding.h"
 #include "shaders/resolve_long_rgba32f_multisampled_insertion_address.h"
 #include "shaders/resolve_long_rgba32f_multisampled_insertion_binding.h"
-#include "shaders/resolve_long_rgba32f_multisampled_networks_address.h"
-#include "shaders/resolve_long_rgba32f_multisampled_networks_binding.h"
-#include "shaders/resolve_long_rgba32f_networks_address.h"
-#include "shaders/resolve_long_rgba32f_networks_binding.h"
-#include "shaders/resolve_longest_rgba16f_multisampled_networks_address.h"
-#include "shaders/resolve_longest_rgba16f_multisampled_networks_binding.h"
-#include "shaders/resolve_longest_rgba16f_networks_address.h"
-#include "shaders/resolve_longest_rgba16f_networks_binding.h"
-#include "shaders/resolve_longest_rgba32f_multisampled_networks_address.h"
-#include "shaders/resolve_longest_rgba32f_multisampled_networks_binding.h"
-#include "shaders/resolve_longest_rgba32f_networks_address.h"
-#include "shaders/resolve_longest_rgba32f_networks_binding.h"
 #include "shaders/resolve_medium_rgba16f_multisampled_networks_address.h"
 #include "shaders/resolve_medium_rgba16f_multisampled_networks_binding.h"
 #include "shaders/resolve_medium_rgba16f_networks_address.h"
@@ -151,40 +143,40 @@ constexpr PictureCode kResolveMedium = {
                                          shaders::resolve_medium_rgba32f_multisampled_networks_address},
                                   Access{shaders::resolve_medium_rgba32f_multisampled_networks_binding,
                                          shaders::resolve_medium_rgba32f_multisampled_networks_address}}}}};
+constexpr PictureCode kResolveGroup = {
+    PictureCode::value_type{
+        Code{
+            {Access{shaders::resolve_group_rgba16f_networks_binding, shaders::resolve_group_rgba16f_networks_address},
+             Access{shaders::resolve_group_rgba16f_networks_binding, shaders::resolve_group_rgba16f_networks_address}}},
+        Code{{Access{shaders::resolve_group_rgba16f_multisampled_networks_binding,
+                     shaders::resolve_group_rgba16f_multisampled_networks_address},
+              Access{shaders::resolve_group_rgba16f_multisampled_networks_binding,
+                     shaders::resolve_group_rgba16f_multisampled_networks_address}}}},
+    PictureCode::value_type{
+        Code{
+            {Access{shaders::resolve_group_rgba32f_networks_binding, shaders::resolve_group_rgba32f_networks_address},
+             Access{shaders::resolve_group_rgba32f_networks_binding, shaders::resolve_group_rgba32f_networks_address}}},
+        Code{{Access{shaders::resolve_group_rgba32f_multisampled_networks_binding,
+                     shaders::resolve_group_rgba32f_multisampled_networks_address},
+              Access{shaders::resolve_group_rgba32f_multisampled_networks_binding,
+                     shaders::resolve_group_rgba32f_multisampled_networks_address}}}}};
 constexpr PictureCode kResolveLong = {
     PictureCode::value_type{
         Code{
-            {Access{shaders::resolve_long_rgba16f_networks_binding, shaders::resolve_long_rgba16f_networks_address},
+            {Access{shaders::resolve_long_rgba16f_insertion_binding, shaders::resolve_long_rgba16f_insertion_address},
              Access{shaders::resolve_long_rgba16f_insertion_binding, shaders::resolve_long_rgba16f_insertion_address}}},
-        Code{{Access{shaders::resolve_long_rgba16f_multisampled_networks_binding,
-                     shaders::resolve_long_rgba16f_multisampled_networks_address},
+        Code{{Access{shaders::resolve_long_rgba16f_multisampled_insertion_binding,
+                     shaders::resolve_long_rgba16f_multisampled_insertion_address},
               Access{shaders::resolve_long_rgba16f_multisampled_insertion_binding,
                      shaders::resolve_long_rgba16f_multisampled_insertion_address}}}},
     PictureCode::value_type{
         Code{
-            {Access{shaders::resolve_long_rgba32f_networks_binding, shaders::resolve_long_rgba32f_networks_address},
+            {Access{shaders::resolve_long_rgba32f_insertion_binding, shaders::resolve_long_rgba32f_insertion_address},
              Access{shaders::resolve_long_rgba32f_insertion_binding, shaders::resolve_long_rgba32f_insertion_address}}},
-        Code{{Access{shaders::resolve_long_rgba32f_multisampled_networks_binding,
-                     shaders::resolve_long_rgba32f_multisampled_networks_address},
+        Code{{Access{shaders::resolve_long_rgba32f_multisampled_insertion_binding,
+                     shaders::resolve_long_rgba32f_multisampled_insertion_address},
               Access{shaders::resolve_long_rgba32f_multisampled_insertion_binding,
                      shaders::resolve_long_rgba32f_multisampled_insertion_address}}}}};
-constexpr PictureCode kResolveLongest = {
-    PictureCode::value_type{Code{{Access{shaders::resolve_longest_rgba16f_networks_binding,
-                                         shaders::resolve_longest_rgba16f_networks_address},
-                                  Access{shaders::resolve_longest_rgba16f_networks_binding,
-                                         shaders::resolve_longest_rgba16f_networks_address}}},
-                            Code{{Access{shaders::resolve_longest_rgba16f_multisampled_networks_binding,
-                                         shaders::resolve_longest_rgba16f_multisampled_networks_address},
-                                  Access{shaders::resolve_longest_rgba16f_multisampled_networks_binding,
-                                         shaders::resolve_longest_rgba16f_multisampled_networks_address}}}},
-    PictureCode::value_type{Code{{Access{shaders::resolve_longest_rgba32f_networks_binding,
-                                         shaders::resolve_longest_rgba32f_networks_address},
-                                  Access{shaders::resolve_longest_rgba32f_networks_binding,
-                                         shaders::resolve_longest_rgba32f_networks_address}}},
-                            Code{{Access{shaders::resolve_longest_rgba32f_multisampled_networks_binding,
-                                         shaders::resolve_longest_rgba32f_multisampled_networks_address},
-                                  Access{shaders::resolve_longest_rgba32f_multisampled_networks_binding,
-                                         shaders::resolve_longest_rgba32f_multisampled_networks_address}}}}};
 constexpr PictureCode kResolveOverflow = {
     PictureCode::value_type{Code{{Access{shaders::resolve_overflow_rgba16f_insertion_binding,
                                          shaders::resolve_overflow_rgba16f_insertion_address},
@@ -242,10 +234,10 @@ const Code& kernelPermutation(Kernel kernel, ColorImage color, bool multisampled
       return of(kResolve);
     case Kernel::ResolveMedium:
       return of(kResolveMedium);
+    case Kernel::ResolveGroup:
+      return of(kResolveGroup);
     case Kernel::ResolveLong:
       return of(kResolveLong);
-    case Kernel::ResolveLongest:
-      return of(kResolveLongest);
     case Kernel::ResolveOverflow:
       return of(kResolveOverflow);
     case Kernel::SortFind:

@@ -10,9 +10,9 @@ namespace vitrail {
 
 enum class Kernel : std::uint32_t {
   Resolve,
-  ResolveMedium,
-  ResolveLong,
-  ResolveLongest,
+  ResolveMedium, // by networks, as the next one
+  ResolveGroup,
+  ResolveLong, // by insertion
   ResolveOverflow,
   SortFind,
   SortLong,

@@ -16,6 +16,7 @@ layout(constant_id = 1) const uint kSamples = 1u;
 layout(constant_id = 2) const bool kNearestIsOne = false;
 layout(constant_id = 3) const uint kMaxLayers = 0u;
 layout(constant_id = 4) const bool kTestDepth = false; // coverage has not passed the depth test
+layout(constant_id = 5) const uint kGroup = 4u;        // resolve_group.comp: invocations that share a list, 4 or 8
 
 // Lists need no sorting where only their nearest fragments are kept.
 const bool kCapped = kMaxLayers != 0u && kMaxLayers <= VITRAIL_SHORT_LIST;

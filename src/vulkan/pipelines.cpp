@@ -9,12 +9,13 @@ namespace vitrail {
 
 namespace {
 
-constexpr std::array<VkSpecializationMapEntry, 5> kConstants = {
+constexpr std::array<VkSpecializationMapEntry, 6> kConstants = {
     VkSpecializationMapEntry{0, offsetof(Specialization, format), sizeof(std::uint32_t)},
     VkSpecializationMapEntry{1, offsetof(Specialization, samples), sizeof(std::uint32_t)},
     VkSpecializationMapEntry{2, offsetof(Specialization, nearestIsOne), sizeof(VkBool32)},
     VkSpecializationMapEntry{3, offsetof(Specialization, maxLayers), sizeof(std::uint32_t)},
     VkSpecializationMapEntry{4, offsetof(Specialization, testDepth), sizeof(VkBool32)},
+    VkSpecializationMapEntry{5, offsetof(Specialization, group), sizeof(std::uint32_t)},
 };
 
 VkSpecializationInfo specializationInfo(const Specialization& constants) {
@@ -27,10 +28,10 @@ const char* kernelName(Kernel kernel) {
       return "vitrail resolve";
     case Kernel::ResolveMedium:
       return "vitrail resolve medium";
+    case Kernel::ResolveGroup:
+      return "vitrail resolve group";
     case Kernel::ResolveLong:
       return "vitrail resolve long";
-    case Kernel::ResolveLongest:
-      return "vitrail resolve longest";
     case Kernel::ResolveOverflow:
       return "vitrail resolve overflow";
     case Kernel::SortFind:

@@ -19,6 +19,7 @@ struct Specialization {
   VkBool32 nearestIsOne = VK_FALSE;
   std::uint32_t maxLayers = 0;
   VkBool32 testDepth = VK_FALSE;
+  std::uint32_t group = 4; // of Kernel::ResolveGroup: invocations that share a list
 
   auto operator<=>(const Specialization&) const = default;
 };

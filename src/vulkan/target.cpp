@@ -60,12 +60,18 @@ VkResult findComputePipelines(VitrailTarget_T& target) {
   };
   const bool capped = target.desc.maxLayers != 0 && target.desc.maxLayers <= layout::VITRAIL_SHORT_LIST;
   VkResult result = find(Kernel::Resolve, &target.pipelines.shortLists);
-  if (result == VK_SUCCESS && !capped && key.networks) {
-    result = find(Kernel::ResolveMedium, &target.pipelines.mediumLists);
-  }
-  if (result == VK_SUCCESS && !capped) result = find(Kernel::ResolveLong, &target.pipelines.longLists);
-  if (result == VK_SUCCESS && !capped && key.networks) {
-    result = find(Kernel::ResolveLongest, &target.pipelines.longestLists);
+  const auto findGroup = [&](std::uint32_t group, VkPipeline* pipeline) {
+    if (result != VK_SUCCESS) return;
+    key.constants.group = group;
+    result = find(Kernel::ResolveGroup, pipeline);
+    key.constants.group = target.constants.group;
+  };
+  if (!capped && key.networks) {
+    if (result == VK_SUCCESS) result = find(Kernel::ResolveMedium, &target.pipelines.mediumLists);
+    findGroup(4, &target.pipelines.longLists);
+    findGroup(8, &target.pipelines.longestLists);
+  } else if (!capped && result == VK_SUCCESS) {
+    result = find(Kernel::ResolveLong, &target.pipelines.longLists);
   }
   const bool apart = target.keepSums && !key.networks; // else the first kernel does it
   if (result == VK_SUCCESS && apart) result = find(Kernel::ResolveOverflow, &target.pipelines.overflow);

@@ -161,7 +161,7 @@ void expectNodes(const Module& module, const std::set<std::uint32_t>& arrays) {
   EXPECT_EQ(strides.size(), nodeOffsets().size());
 }
 
-// `groups`: lists are left to groups of invocations, four words at once.
+// `groups`: lists are left to groups of invocations, several words at once.
 void expectShared(const Module& module, bool groups = false) {
   for (const std::uint32_t type : blockMembers(module, 0)) EXPECT_EQ(offsetsOf(module, type), parameterOffsets());
   std::size_t structs = 0; // the counters, which collecting shaders declare as an array of words, too
@@ -217,11 +217,11 @@ TEST(SpirvLayout, CollectDeclaresTheBuffersThatItWritesTwice) {
 void expectKernels(bool byAddress, bool networks) {
   for (const ColorImage color : {ColorImage::Rgba16f, ColorImage::Rgba32f}) {
     for (const bool multisampled : {false, true}) {
-      for (const Kernel kernel : {Kernel::Resolve, Kernel::ResolveMedium, Kernel::ResolveLong, Kernel::ResolveLongest,
+      for (const Kernel kernel : {Kernel::Resolve, Kernel::ResolveMedium, Kernel::ResolveGroup, Kernel::ResolveLong,
                                   Kernel::ResolveOverflow}) {
         SCOPED_TRACE(static_cast<int>(kernel));
-        const bool groups = kernel == Kernel::ResolveMedium || kernel == Kernel::ResolveLongest ||
-                            (networks && (kernel == Kernel::Resolve || kernel == Kernel::ResolveLong));
+        const bool groups = kernel == Kernel::ResolveMedium || kernel == Kernel::ResolveGroup ||
+                            (networks && kernel == Kernel::Resolve);
         expectLayout(kernelCode(kernel, color, multisampled, byAddress, networks), byAddress, groups);
       }
     }
