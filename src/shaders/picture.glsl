@@ -32,11 +32,14 @@ void writePixel(uvec2 pixel, VitrailResolved r) {
 #endif
 }
 
+// A list that the first dispatch left, and counted, if it followed it to the end.
 void writeDeepPixel(uint pixelIndex, VitrailResolved r) {
   writePixel(imagePixel(pixelIndex), r);
-  countLayers(r.layers);
   if (!r.complete) atomicAdd(control.cutPixels, 1u);
+#ifndef VITRAIL_GROUPS
+  countLayers(r.layers);
   if (kMaxLayers != 0u && r.layers > kMaxLayers) atomicAdd(control.approximatePixels, 1u);
+#endif
 }
 
 // A pixel of a frame that overflowed: all fragments by their sums, which it clears. Returns how many are stored.

@@ -14,9 +14,6 @@
 namespace vitrail::tests {
 namespace {
 
-// Averages are sums of integers in 1/65536, and transmittances sums of logarithms in 1/4096.
-constexpr double kSumTolerance = 2e-3;
-
 class BoundsTest : public tool::test::GpuTest {};
 
 std::vector<std::uint32_t> withOne(std::vector<std::uint32_t> counts) {

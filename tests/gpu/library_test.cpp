@@ -169,6 +169,22 @@ TEST_F(LibraryTest, DeepPixelsOfAFrameThatOverflowsAreCounted) {
   }
 }
 
+TEST_F(LibraryTest, DeepPixelsAreCountedOnce) {
+  for (const Way& way : everyWay(gpu(), 1)) {
+    SCOPED_TRACE(way.name);
+    PointHostDesc desc;
+    desc.maxLayers = 20;
+    apply(way, desc);
+    const std::vector<Point> points = randomLists(desc, {0, 1, 16, 17, 20, 21, 32, 33, 64, 65, 128, 129}, 17);
+    desc.capacity = static_cast<std::uint32_t>(points.size());
+    const PointResult result = PointHost(gpu(), desc).draw(points);
+    EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kSumTolerance);
+    EXPECT_EQ(result.stats.approximatePixels, 7U);
+    EXPECT_EQ(result.stats.coveredPixels, 11U);
+    EXPECT_EQ(result.stats.layersMax, 129U);
+  }
+}
+
 TEST_F(LibraryTest, TheNearestFragmentIsOnTop) {
   PointHostDesc desc;
   desc.capacity = 2;

@@ -24,6 +24,9 @@ struct Expected {
 // `hasPostDepthCoverage`: whether the device has it; the host uses it where it may.
 Expected expectedFrame(const PointHostDesc& desc, std::span<const Point> points, bool hasPostDepthCoverage = true);
 
+// Averages are sums of integers in 1/65536, and transmittances sums of logarithms in 1/4096.
+inline constexpr double kSumTolerance = 2e-3;
+
 // The largest difference of a channel, relative where the expected value is above 1. A NaN is infinitely far.
 double largestError(std::span<const FloatColor> got, std::span<const Color> expected);
 
