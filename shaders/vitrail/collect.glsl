@@ -52,7 +52,7 @@ layout(set = VITRAIL_SET, binding = 4, std430) buffer VitrailSumsBlock { uint vi
 #ifndef VITRAIL_BUFFER_REFERENCE
 // The same memory again. Mesa's lavapipe waits before every draw until the draws before it are done where it sees that
 // the draw's shader writes a buffer; where a binding is declared more than once, as the pool's is, it does not look.
-// Draws need not wait: what they share is changed by atomics, and a node has one writer.
+// Draws need not wait: what they share is changed by atomics or set by all to one value, and a node has one writer.
 layout(set = VITRAIL_SET, binding = 1, std430) buffer VitrailControlAgain { uint vitrailControlAgain[]; };
 layout(set = VITRAIL_SET, binding = 2, std430) buffer VitrailHeadsAgain { uint vitrailHeadsAgain[]; };
 layout(set = VITRAIL_SET, binding = 4, std430) buffer VitrailSumsAgain { uint vitrailPixelSumsAgain[]; };

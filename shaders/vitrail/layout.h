@@ -61,7 +61,7 @@ struct VitrailControl {
   uint mediumGroupsX; // the work groups of that dispatch, as vkCmdDispatchIndirect reads them
   uint mediumGroupsY;
   uint mediumGroupsZ;
-  uint longLists; // lists that are left to the third dispatch
+  uint longLists; // lists that are left to the third dispatch; without networks to the second
   uint longGroupsX;
   uint longGroupsY;
   uint longGroupsZ;
@@ -96,6 +96,8 @@ static_assert(sizeof(VitrailNodeStandard) == 8);
 static_assert(sizeof(VitrailNodeCompact) == 8);
 static_assert(sizeof(VitrailNodeHdr) == 16);
 static_assert(sizeof(VitrailControl) == 148);
+static_assert(offsetof(VitrailControl, wraps) == 4); // collect.glsl reaches both as words
+static_assert(offsetof(VitrailControl, misfits) == 8);
 static_assert(sizeof(VitrailParameters) == 48);
 #define VITRAIL_CONSTANT constexpr uint
 #else

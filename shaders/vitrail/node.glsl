@@ -101,9 +101,9 @@ uint vitrailPackRgba8(vec4 color) {
   return q.r | q.g << 8 | q.b << 16 | q.a << 24;
 }
 
-// Two 16-bit floats in [0, 65504] in a word; a NaN is 0.
+// Two 16-bit floats in [0, 65504] in a word; a NaN and -0.0 are 0.
 uint vitrailPackHalves(vec2 v) {
-  return packHalf2x16(min(max(v, 0.0), 65504.0));
+  return packHalf2x16(min(max(v, 0.0), 65504.0)) & 0x7fff7fffu;
 }
 
 bool vitrailPackFull(vec4 color, uint blend, float depth, uint coverage, VitrailLayout nodes, out uvec4 node) {

@@ -62,6 +62,11 @@ constexpr std::uint64_t groupListBytes(std::uint32_t areaPixels, std::uint32_t c
   return std::max<std::uint64_t>(std::min(std::uint64_t{2} * areaPixels, most), 1) * sizeof(layout::uvec4);
 }
 
+// The most nodes for which that array takes no more than `range` bytes, whatever the area.
+constexpr std::uint64_t nodesForGroupLists(std::uint64_t range) {
+  return range / sizeof(layout::uvec4) * (layout::VITRAIL_LONG_LIST + 1) / 2;
+}
+
 // Bytes of the sums that a frame is blended from when it overflows.
 constexpr std::uint64_t sumBytes(std::uint32_t areaPixels) {
   return std::uint64_t{areaPixels} * layout::VITRAIL_SUM_WORDS * sizeof(layout::uint);
@@ -78,8 +83,8 @@ struct StorageLayout {
   StoragePart parameters;  // VitrailParameters
   StoragePart control;     // VitrailControl
   StoragePart heads;       // a node index a pixel of the area
-  StoragePart mediumLists; // pixels left to the second dispatch
-  StoragePart longLists;   // lists left to the third dispatch and the fourth
+  StoragePart mediumLists; // pixels whose lists one invocation takes
+  StoragePart longLists;   // lists that groups of invocations take, or pixels
   StoragePart sums;        // VITRAIL_SUM_WORDS a pixel of the area; 16 unused bytes where none are kept
   StoragePart nodes;       // the pool
   std::uint64_t total = 0; // bytes of the buffer
@@ -99,9 +104,8 @@ constexpr StorageLayout layoutStorage(std::uint32_t areaPixels, std::uint32_t no
   storage.control = place(sizeof(layout::VitrailControl));
   storage.heads = place(headBytes(areaPixels));
   storage.mediumLists = place(listBytes(areaPixels, nodeCapacity, layout::VITRAIL_SHORT_LIST));
-  // Where lists are not left to groups of invocations, it holds the pixels of all that are not short.
-  storage.longLists = place(std::max(groupListBytes(areaPixels, nodeCapacity),
-                                     listBytes(areaPixels, nodeCapacity, layout::VITRAIL_SHORT_LIST)));
+  // Where lists are not left to groups of invocations, it holds the pixels of all that are not short, which are fewer.
+  storage.longLists = place(groupListBytes(areaPixels, nodeCapacity));
   storage.sums = place(keepSums ? std::max(sumBytes(areaPixels), kEmpty) : kEmpty);
   storage.nodes = place(nodePoolBytes(format, nodeCapacity));
   return storage;

@@ -40,9 +40,11 @@ uint deepGroup() { return gl_WorkGroupID.y * GROUPS_IN_ROW + gl_WorkGroupID.x; }
     } \
     return slot; \
   }
-LEAVE(mediumSlot, MEDIUM_GROUP_LISTS, mediumLists, mediumGroupsX, mediumGroupsY, mediumGroupsZ)
 LEAVE(longSlot, LONG_GROUP_LISTS, longLists, longGroupsX, longGroupsY, longGroupsZ)
+#ifdef VITRAIL_GROUPS
+LEAVE(mediumSlot, MEDIUM_GROUP_LISTS, mediumLists, mediumGroupsX, mediumGroupsY, mediumGroupsZ)
 LEAVE(longestSlot, LONGEST_GROUP_LISTS, longestLists, longestGroupsX, longestGroupsY, longestGroupsZ)
+#endif
 #undef LEAVE
 
 // Whether there is room for a list. Where there is none, lists are corrupt: the pool has not the nodes for so many.

@@ -9,14 +9,16 @@
 
 layout(local_size_x = 128) in; // kGroup times LONG_GROUP_LISTS or LONGEST_GROUP_LISTS
 
-// Whether the invocations of a group can exchange what they have: implementations place them in subgroups at will.
+// Whether the invocations of a group can exchange what they have: implementations place them in subgroups at will. All
+// of the group, or none. No && round what all must execute.
 bool isGroup() {
-  bool found = true;
+  uint found = 1u;
   for (uint mask = 1u; mask < kGroup; mask *= 2u) {
     uint other = subgroupShuffleXor(gl_LocalInvocationIndex, mask);
-    found = found && other == (gl_LocalInvocationIndex ^ mask);
+    found &= uint(other == (gl_LocalInvocationIndex ^ mask));
   }
-  return found;
+  for (uint mask = 1u; mask < kGroup; mask *= 2u) found &= subgroupShuffleXor(found, mask);
+  return found != 0u;
 }
 
 // Lists of this dispatch.

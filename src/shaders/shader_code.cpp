@@ -83,6 +83,8 @@
 #include "shaders/resolve_vert.h"
 #include "shaders/sort_find_insertion_address.h"
 #include "shaders/sort_find_insertion_binding.h"
+#include "shaders/sort_find_networks_address.h"
+#include "shaders/sort_find_networks_binding.h"
 #include "shaders/sort_long_insertion_address.h"
 #include "shaders/sort_long_insertion_binding.h"
 #include "shaders/sort_long_networks_address.h"
@@ -194,7 +196,7 @@ constexpr PictureCode kResolveOverflow = {
                                          shaders::resolve_overflow_rgba32f_multisampled_insertion_address},
                                   Access{shaders::resolve_overflow_rgba32f_multisampled_insertion_binding,
                                          shaders::resolve_overflow_rgba32f_multisampled_insertion_address}}}}};
-constexpr Code kSortFind = Code{{Access{shaders::sort_find_insertion_binding, shaders::sort_find_insertion_address},
+constexpr Code kSortFind = Code{{Access{shaders::sort_find_networks_binding, shaders::sort_find_networks_address},
                                  Access{shaders::sort_find_insertion_binding, shaders::sort_find_insertion_address}}};
 constexpr Code kSortLong = Code{{Access{shaders::sort_long_networks_binding, shaders::sort_long_networks_address},
                                  Access{shaders::sort_long_insertion_binding, shaders::sort_long_insertion_address}}};

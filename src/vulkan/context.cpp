@@ -204,8 +204,9 @@ extern "C" uint32_t vitrailMaxNodeCapacity(VitrailContext context, VitrailNodeFo
   const vitrail::Limits& limits = context->limits;
   std::uint64_t most = std::min(limits.allocationSize, limits.heapSize);
   if (!context->has(VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS)) most = std::min(most, limits.storageBufferRange);
+  const std::uint64_t listed = vitrail::nodesForGroupLists(limits.storageBufferRange);
   const std::uint32_t indices = vitrail::maxNodeIndexCount(format, samples != 0 ? samples : 1);
-  return static_cast<std::uint32_t>(std::min<std::uint64_t>(most / bytes, indices));
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>({most / bytes, listed, indices}));
 }
 
 extern "C" VkDeviceSize vitrailNodePoolSize(VitrailNodeFormat format, uint32_t nodeCapacity) {

@@ -42,7 +42,7 @@ bool usesNetworks(const VitrailContext_T& context) {
   static_cast<void>(context);
   return true;
 #else
-  return !context.limits.isCpu && context.limits.exchangesInGroups;
+  return !context.limits.isCpu;
 #endif
 }
 
@@ -52,7 +52,7 @@ VkResult findComputePipelines(VitrailTarget_T& target) {
   key.color = target.desc.colorFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? ColorImage::Rgba32f : ColorImage::Rgba16f;
   key.multisampled = target.desc.samples > 1;
   key.byAddress = context.has(VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS);
-  key.networks = usesNetworks(context);
+  key.networks = usesNetworks(context) && context.limits.exchangesInGroups;
   key.constants = target.constants;
   const auto find = [&](Kernel kernel, VkPipeline* pipeline) {
     key.kernel = kernel;

@@ -185,6 +185,24 @@ TEST_F(LibraryTest, DeepPixelsAreCountedOnce) {
   }
 }
 
+// The shortest lists that take most room in the arrays of lists that are left to groups: both ends of it meet.
+TEST_F(LibraryTest, DeepPixelsFillTheirArrays) {
+  for (const std::uint32_t other : {33U, 65U}) {
+    PointHostDesc desc;
+    desc.width = 16;
+    desc.height = 8;
+    desc.behind = {0.25F, 0.5F, 1.0F, 1.0F};
+    std::vector<std::uint32_t> lengths(128, 65);
+    for (std::size_t i = 0; i < lengths.size(); i += 2) lengths[i] = other;
+    const std::vector<Point> points = randomLists(desc, lengths, 19);
+    desc.capacity = static_cast<std::uint32_t>(points.size());
+    desc.guarded = true;
+    PointHost host(gpu(), desc);
+    expectLikeReference(host.draw(points), expectedFrame(desc, points));
+    EXPECT_TRUE(host.guardsUntouched());
+  }
+}
+
 TEST_F(LibraryTest, TheNearestFragmentIsOnTop) {
   PointHostDesc desc;
   desc.capacity = 2;

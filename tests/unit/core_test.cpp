@@ -44,6 +44,11 @@ TEST(Pool, SizesDoNotOverflow) {
   EXPECT_EQ(groupListBytes(1000, 33 * 10 + 65 * 50), (10U + 2U * 50U) * 16U);
   EXPECT_EQ(groupListBytes(40, 65 * 50), 80U * 16U);
   EXPECT_EQ(groupListBytes(40, 0), 16U);
+  for (const std::uint32_t range : {16U, 1000U, 0x8000000U}) {
+    const auto most = static_cast<std::uint32_t>(nodesForGroupLists(range));
+    EXPECT_LE(groupListBytes(0xffffffffU, most), range);
+    EXPECT_GT(groupListBytes(0xffffffffU, most + 65), range);
+  }
 }
 
 TEST(Pool, PartsAreAlignedAndDoNotOverlap) {

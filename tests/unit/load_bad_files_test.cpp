@@ -120,8 +120,7 @@ const std::map<std::string, std::string>& expectedMessages() {
       {"node_two_parents.gltf", "node 2 is a child of node 0 and of node 1, but may have one parent only"},
       {"not_glb.glb",
        "begins neither with \"glTF\", as a .glb file does, nor with {, as a .gltf file does: it is damaged or of "
-       "another "
-       "kind"},
+       "another kind"},
       {"not_json.gltf", "begins neither with \"glTF\", as a .glb file does, nor with {"},
       {"not_a_number.stl", "line 6: one is not a finite number"},
       {"not_finite.stl", "facet 0: a corner is not finite"},

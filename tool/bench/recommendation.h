@@ -17,10 +17,9 @@ struct Advice {
 
 // The steps of each sweep, and the other scenes, are gone through in their order; of each counts what has the fewest
 // samples. By need:
-//   exact         the cheapest setting of the methods that are exact in every frame (MethodTraits has nothing wrong
-//   with
-//                 them); one that was exact in these frames alone is named after it, where it costs less, and in its
-//                 place only where no other was exact
+//   exact         the cheapest setting of the methods that are exact in every frame (with nothing wrong in
+//                 MethodTraits); one that was exact in these frames alone is named after it, where it costs less, and
+//                 in its place only where no other was exact
 //   approximate   the cheapest order-independent one (MethodTraits), exact or not; where that is one that is exact in
 //                 every frame, nothing approximate is worth its errors
 //   memory        the exact one that keeps the fewest bytes on the device, where the cheapest one keeps over a tenth

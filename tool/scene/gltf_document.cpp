@@ -188,8 +188,7 @@ GltfDocument openGltf(std::span<const std::byte> file, const std::filesystem::pa
   if (!isGlb && !looksLikeJson(container.json)) {
     throw LoadError(
         "begins neither with \"glTF\", as a .glb file does, nor with {, as a .gltf file does: it is damaged or of "
-        "another "
-        "kind");
+        "another kind");
   }
 
   Json json = parseJson(container.json);
