@@ -307,9 +307,9 @@ VITRAIL_API void vitrailDestroyTarget(VitrailTarget target);
 VITRAIL_API VkDeviceSize vitrailNodePoolSize(VitrailNodeFormat format, uint32_t nodeCapacity);
 
 /* The most nodes that one pool can have on this device at that sample count (the node's next index, the largest
- * allocation and heap and, without VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS, maxStorageBufferRange). An upper bound: head
- * pointers, sums and lists lie in the same allocation, so a target of many pixels holds fewer. A memoryBudget of the
- * device's size finds how many. */
+ * allocation and heap, and maxStorageBufferRange: of the lists of deep pixels and, without
+ * VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS, of the pool). An upper bound: head pointers, sums and lists lie in the same
+ * allocation, so a target of many pixels holds fewer. A memoryBudget of the device's size finds how many. */
 VITRAIL_API uint32_t vitrailMaxNodeCapacity(VitrailContext context, VitrailNodeFormat format,
                                             VkSampleCountFlagBits samples);
 

@@ -46,7 +46,7 @@ struct VitrailNodeHdr {
 };
 
 // Counters of one thing, to be added up: work groups that add to one word at once wait for each other.
-#define VITRAIL_PARTS 16
+#define VITRAIL_COUNTERS 16
 
 // What a frame counts. All zero when the collect pass starts.
 struct VitrailControl {
@@ -54,7 +54,7 @@ struct VitrailControl {
   uint wraps;     // VITRAIL_WRAP_STEP of them each are not in `requested`
   uint misfits;   // fragments of shaders that were specialized for another target: they are missing too
   uint layersMax; // this and the next three are written by the resolve
-  uint coveredPixels[VITRAIL_PARTS];
+  uint coveredPixels[VITRAIL_COUNTERS];
   uint cutPixels; // lists that the driver did not let it finish
   uint approximatePixels;
   uint mediumLists;   // lists that are left to the second dispatch

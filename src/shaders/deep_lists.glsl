@@ -29,7 +29,7 @@ uint deepGroup() { return gl_WorkGroupID.y * GROUPS_IN_ROW + gl_WorkGroupID.x; }
 
 // Defines a function that takes a number for a list that is left to a later dispatch, and makes that one large enough.
 // A macro, because memory that atomics change cannot be a parameter.
-#define LEAVE(name, groupLists, lists, groupsX, groupsY, groupsZ) \
+#define COUNT_LISTS(name, groupLists, lists, groupsX, groupsY, groupsZ) \
   uint name() { \
     uint slot = atomicAdd(control.lists, 1u); \
     if (slot % groupLists == 0u) { \
@@ -40,12 +40,12 @@ uint deepGroup() { return gl_WorkGroupID.y * GROUPS_IN_ROW + gl_WorkGroupID.x; }
     } \
     return slot; \
   }
-LEAVE(longSlot, LONG_GROUP_LISTS, longLists, longGroupsX, longGroupsY, longGroupsZ)
+COUNT_LISTS(longSlot, LONG_GROUP_LISTS, longLists, longGroupsX, longGroupsY, longGroupsZ)
 #ifdef VITRAIL_GROUPS
-LEAVE(mediumSlot, MEDIUM_GROUP_LISTS, mediumLists, mediumGroupsX, mediumGroupsY, mediumGroupsZ)
-LEAVE(longestSlot, LONGEST_GROUP_LISTS, longestLists, longestGroupsX, longestGroupsY, longestGroupsZ)
+COUNT_LISTS(mediumSlot, MEDIUM_GROUP_LISTS, mediumLists, mediumGroupsX, mediumGroupsY, mediumGroupsZ)
+COUNT_LISTS(longestSlot, LONGEST_GROUP_LISTS, longestLists, longestGroupsX, longestGroupsY, longestGroupsZ)
 #endif
-#undef LEAVE
+#undef COUNT_LISTS
 
 // Whether there is room for a list. Where there is none, lists are corrupt: the pool has not the nodes for so many.
 bool hasRoom(uint end, uint length) {

@@ -31,7 +31,7 @@ void endCounts() {
   barrier();
   if (gl_LocalInvocationIndex != 0u || groupCovered == 0u) return;
   countLayers(groupLayersMax);
-  atomicAdd(control.coveredPixels[(gl_WorkGroupID.x + gl_WorkGroupID.y) % VITRAIL_PARTS], groupCovered);
+  atomicAdd(control.coveredPixels[(gl_WorkGroupID.x + gl_WorkGroupID.y) % VITRAIL_COUNTERS], groupCovered);
   if (groupApproximate > 0u) atomicAdd(control.approximatePixels, groupApproximate);
 }
 #else
@@ -39,7 +39,7 @@ void beginCounts() {}
 
 void countPixel(uint layers) {
   countLayers(layers);
-  atomicAdd(control.coveredPixels[(gl_WorkGroupID.x + gl_WorkGroupID.y) % VITRAIL_PARTS], 1u);
+  atomicAdd(control.coveredPixels[(gl_WorkGroupID.x + gl_WorkGroupID.y) % VITRAIL_COUNTERS], 1u);
   if (kMaxLayers != 0u && layers > kMaxLayers) atomicAdd(control.approximatePixels, 1u);
 }
 
