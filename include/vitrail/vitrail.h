@@ -44,7 +44,7 @@ extern "C" {
 #endif
 
 #define VITRAIL_VERSION_MAJOR 0
-#define VITRAIL_VERSION_MINOR 2
+#define VITRAIL_VERSION_MINOR 3
 #define VITRAIL_VERSION_PATCH 0
 
 typedef struct VitrailContext_T* VitrailContext;
@@ -110,7 +110,9 @@ VITRAIL_API void vitrailDestroyContext(VitrailContext context);
 typedef enum VitrailNodeFormat {
   /* 12 bytes a node.
    *   colour    8 bits a channel on the sRGB curve (IEC 61966-2-1), decoded to linear light before it is blended,
-   *             clamped to [0, 1]; the error is at most 0.5/255 on the curve.
+   *             clamped to [0, 1]; the error is at most 0.5/255 on the curve. At 1 sample with
+   *             VITRAIL_LINKING_COMPUTE it is rounded twice: at most 0.7/255 for red and green, 0.9/255 for blue, and
+   *             none for colours that are whole steps of the curve.
    *   alpha     8 bits, linear, clamped to [0, 1]; the error is at most 0.5/255.
    *   depth     the full 32-bit float of gl_FragCoord.z, clamped to [0, 1]; no error.
    *   coverage  up to 8 samples.
@@ -171,6 +173,21 @@ typedef enum VitrailResolve {
   VITRAIL_RESOLVE_FRAGMENT = 2,
   VITRAIL_RESOLVE_MAX_ENUM = 0x7fffffff
 } VitrailResolve;
+
+/* Who puts a fragment on the list of its pixel. Lists, memory and everything above hold for both; so does the picture,
+ * but for the colours of VITRAIL_NODE_STANDARD at 1 sample, see there. */
+typedef enum VitrailLinking {
+  /* What vitrailDefaultLinking() says for the target's fields. */
+  VITRAIL_LINKING_DEFAULT = 0,
+  /* The fragment shader, as it collects (Yang et al.). */
+  VITRAIL_LINKING_FRAGMENT = 1,
+  /* A compute pass, which vitrailCmdCollected() records: the fragment shader notes the pixel in the node, and in
+   * VITRAIL_NODE_STANDARD at 1 sample also leaves it to that pass to encode the colour. It takes less of fragment
+   * shaders, and each node is read and written once more. For GPUs that run fragment shaders on few of their cores
+   * (docs/performance.md). Areas of up to 4096 x 4096 pixels (areaPixels). */
+  VITRAIL_LINKING_COMPUTE = 2,
+  VITRAIL_LINKING_MAX_ENUM = 0x7fffffff
+} VitrailLinking;
 
 /* What the resolve writes where the collect pass has several samples. Each sample blends its own fragments, those that
  * cover it, over its own opaque colour. */
@@ -247,6 +264,7 @@ typedef struct VitrailTargetDesc {
    * approximatePixels. Default 0: no bound. */
   uint32_t maxLayers;
   VitrailOverflow overflow;
+  VitrailLinking linking;
 
   /* Memory: either a fixed nodeCapacity, or a budget that the pool grows towards. */
   /* Nodes of the pool, at most vitrailMaxNodeCapacity(), less where the rest of the target needs the room. With a
@@ -278,6 +296,11 @@ typedef struct VitrailTargetDesc {
  * is given, the device stores to colorFormat, and the resolve is not per sample), else VITRAIL_RESOLVE_FRAGMENT.
  * docs/performance.md has the measurements behind it. */
 VITRAIL_API VitrailResolve vitrailDefaultResolve(VitrailContext context, const VitrailTargetDesc* desc);
+
+/* The linking that VITRAIL_LINKING_DEFAULT stands for: VITRAIL_LINKING_COMPUTE on devices where it was measured to be
+ * faster for the target's fields, and where they allow it, else VITRAIL_LINKING_FRAGMENT. docs/performance.md says
+ * which those are, and how to measure another device. */
+VITRAIL_API VitrailLinking vitrailDefaultLinking(VitrailContext context, const VitrailTargetDesc* desc);
 
 /* What a buffer of the host's must be to serve as a target's memory. Its memory is device-local: shaders do atomics in
  * it, which not every machine carries to system memory. */
@@ -357,16 +380,18 @@ VITRAIL_API VkDescriptorSetLayout vitrailDescriptorSetLayout(VitrailContext cont
 VITRAIL_API VkDescriptorSet vitrailTargetDescriptorSet(VitrailTarget target);
 
 /* Optional: specialization constants for the host's collecting fragment shaders, which fix the node format, the sample
- * count and whether fragments without a node are summed (VitrailOverflow). Without them the shader reads all of it from
+ * count, whether fragments without a node are summed (VitrailOverflow) and who links (VitrailLinking; extent and
+ * areaPixels matter for its default). Without them the shader reads all of it from
  * the target and has code for everything; with them it is smaller, which drivers that execute both sides of every
  * branch repay most. A shader that was specialized for another target stores nothing, and its fragments count as
  * missing. */
 typedef struct VitrailSpecialization {
-  VkSpecializationMapEntry entries[3]; /* ids VITRAIL_CONSTANT_ID (default 1700) and the next two */
-  uint32_t data[3];
+  VkSpecializationMapEntry entries[4]; /* ids VITRAIL_CONSTANT_ID (default 1700) and the next three */
+  uint32_t data[4];
 } VitrailSpecialization;
 
-VITRAIL_API void vitrailCollectSpecialization(const VitrailTargetDesc* desc, VitrailSpecialization* specialization);
+VITRAIL_API void vitrailCollectSpecialization(VitrailContext context, const VitrailTargetDesc* desc,
+                                              VitrailSpecialization* specialization);
 
 /* Fills in the stencil state of collecting pipelines for VitrailScope::stencilMark: increments where the depth test
  * passes, never fails. stencilTestEnable is the host's to set, for both faces. */
@@ -393,8 +418,8 @@ typedef struct VitrailBeginInfo {
 VITRAIL_API void vitrailCmdBegin(VkCommandBuffer commandBuffer, VitrailTarget target, const VitrailBeginInfo* info);
 
 /* Ends the collect pass. Outside a rendering scope, after the draws. Makes the lists that fragment shaders wrote
- * visible to the resolve. For VITRAIL_RESOLVE_FRAGMENT it also sorts the lists that are longer than 16 fragments, in
- * place, and binds compute pipelines and sets to do so. */
+ * visible to the resolve. With VITRAIL_LINKING_COMPUTE it links the fragments, and for VITRAIL_RESOLVE_FRAGMENT it
+ * sorts the lists that are longer than 16 fragments, in place; for both it binds compute pipelines and a set. */
 VITRAIL_API void vitrailCmdCollected(VkCommandBuffer commandBuffer, VitrailTarget target);
 
 typedef struct VitrailResolveInfo {
@@ -426,7 +451,8 @@ VITRAIL_API void vitrailCmdEnd(VkCommandBuffer commandBuffer, VitrailTarget targ
 typedef enum VitrailBarrierPoint {
   VITRAIL_BARRIER_BEFORE_CLEAR = 0,   /* first in vitrailCmdBegin: the previous frame -> the clears */
   VITRAIL_BARRIER_BEFORE_COLLECT = 1, /* last in vitrailCmdBegin: the clears -> vitrailCollect() */
-  VITRAIL_BARRIER_COLLECTED = 2,      /* first in vitrailCmdCollected: vitrailCollect() -> sorting and the resolve */
+  /* first in vitrailCmdCollected: vitrailCollect() -> linking, sorting and the resolve */
+  VITRAIL_BARRIER_COLLECTED = 2,
   VITRAIL_BARRIER_POINT_MAX_ENUM = 0x7fffffff
 } VitrailBarrierPoint;
 

@@ -32,6 +32,12 @@ class Context {
     return vitrailMaxNodeCapacity(handle_, format, samples);
   }
   VitrailResolve defaultResolve(const VitrailTargetDesc& desc) const { return vitrailDefaultResolve(handle_, &desc); }
+  VitrailLinking defaultLinking(const VitrailTargetDesc& desc) const { return vitrailDefaultLinking(handle_, &desc); }
+  VitrailSpecialization collectSpecialization(const VitrailTargetDesc& desc) const {
+    VitrailSpecialization specialization{};
+    vitrailCollectSpecialization(handle_, &desc, &specialization);
+    return specialization;
+  }
   VkResult targetRequirements(const VitrailTargetDesc& desc, VitrailRequirements& requirements) const {
     return vitrailTargetRequirements(handle_, &desc, &requirements);
   }

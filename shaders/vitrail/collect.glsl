@@ -13,7 +13,12 @@
 //   VITRAIL_SET                   required: the descriptor set number of vitrailTargetDescriptorSet() in your layout
 //   VITRAIL_POST_DEPTH_COVERAGE   with several samples and VK_EXT_post_depth_coverage: VitrailTargetDesc says the same
 //   VITRAIL_BUFFER_REFERENCE      where the context has VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS
-//   VITRAIL_CONSTANT_ID           the first of three specialization constants, default 1700; see
+//   VITRAIL_DEPTH                 the depth of a fragment, default gl_FragCoord.z. GPUs were seen to be faster where a
+//                                 shader does not read that: with a perspective projection P it is also
+//                                 fma(gl_FragCoord.w, P[3][2], -P[2][2]) for P[2][3] = -1, with a depth range of
+//                                 [0, 1] and no depth bias. With several samples only together with
+//                                 VITRAIL_POST_DEPTH_COVERAGE: else depths are compared with those of the depth image
+//   VITRAIL_CONSTANT_ID           the first of four specialization constants, default 1700; see
 //                                 vitrailCollectSpecialization()
 #ifndef VITRAIL_COLLECT_GLSL
 #define VITRAIL_COLLECT_GLSL
@@ -34,6 +39,9 @@
 #ifndef VITRAIL_CONSTANT_ID
 #define VITRAIL_CONSTANT_ID 1700
 #endif
+#ifndef VITRAIL_DEPTH
+#define VITRAIL_DEPTH gl_FragCoord.z
+#endif
 
 #ifdef VITRAIL_POST_DEPTH_COVERAGE
 layout(post_depth_coverage) in;
@@ -44,6 +52,7 @@ layout(early_fragment_tests) in;
 layout(constant_id = VITRAIL_CONSTANT_ID) const uint VITRAIL_NODE_FORMAT = 0xffffffffu;
 layout(constant_id = VITRAIL_CONSTANT_ID + 1) const uint VITRAIL_SAMPLES = 0u;
 layout(constant_id = VITRAIL_CONSTANT_ID + 2) const uint VITRAIL_KEEP_SUMS = 0xffffffffu; // 0 or 1
+layout(constant_id = VITRAIL_CONSTANT_ID + 3) const uint VITRAIL_UNLINKED = 0xffffffffu;  // 0 or 1
 
 layout(set = VITRAIL_SET, binding = 0, std140) uniform VitrailParametersBlock { VitrailParameters vitrailParameters; };
 layout(set = VITRAIL_SET, binding = 1, std430) buffer VitrailControlBlock { VitrailControl vitrailControl; };
@@ -66,6 +75,7 @@ uvec2 vitrailPoolAddress() { return uvec2(vitrailParameters.nodesLow, vitrailPar
 #define VITRAIL_POOL_BINDING 3
 #include "pool.glsl"
 #include "sums.glsl"
+#include "unlinked.glsl"
 
 VitrailLayout vitrailTargetLayout() {
   return VitrailLayout(VITRAIL_NODE_FORMAT == 0xffffffffu ? vitrailParameters.format : VITRAIL_NODE_FORMAT,
@@ -77,24 +87,45 @@ bool vitrailKeepsSums() {
   return VITRAIL_KEEP_SUMS == 0xffffffffu ? vitrailParameters.keepSums != 0u : VITRAIL_KEEP_SUMS != 0u;
 }
 
-// Whether the shader was specialized, if at all, for this target.
-bool vitrailSuitsTarget() {
-  VitrailLayout nodes = vitrailTargetLayout();
-  return VITRAIL_LAYOUT_WORD(nodes.format, nodes.samples, vitrailKeepsSums() ? 1u : 0u) == vitrailParameters.layoutWord;
+// Whether a compute pass links the nodes.
+bool vitrailLinksLater() {
+  return VITRAIL_UNLINKED == 0xffffffffu ? vitrailParameters.unlinked != 0u : VITRAIL_UNLINKED != 0u;
 }
 
-// Counts a fragment that was given this index, and so no node.
-void vitrailCountMissing(uint index) {
+// The nodes that this shader may write: none where it was specialized for another target.
+uint vitrailCapacity() {
+  VitrailLayout nodes = vitrailTargetLayout();
+  uint keepSums = vitrailKeepsSums() ? 1u : 0u;
+  uint number = VITRAIL_LAYOUT(nodes.format, nodes.samples, keepSums, vitrailLinksLater() ? 1u : 0u);
+  return vitrailParameters.capacities[number / 4u][number % 4u];
+}
+
+// Leaves a node as one that changes nothing: who links nodes later links all of them.
+void vitrailStoreNothing(uint index, uint pixelIndex) {
+  VitrailLayout target = VitrailLayout(vitrailParameters.format, vitrailParameters.samples, false);
+  vitrailStoreNode(index, uvec4(0u, 0u, 0u, pixelIndex & VITRAIL_PIXEL_MASK), target);
+}
+
+// Counts a fragment that was given this index, and so no node, or one that its shader must not write: `unfit`.
+void vitrailCountMissing(uint index, uint pixelIndex, bool unfit) {
 #ifdef VITRAIL_BUFFER_REFERENCE
-  if (index == VITRAIL_WRAP_AT) atomicAdd(vitrailControl.requested, 0u - VITRAIL_WRAP_STEP);
-  if (index == VITRAIL_WRAP_AT) atomicAdd(vitrailControl.wraps, 1u);
-  if (index == VITRAIL_END) atomicAdd(vitrailControl.misfits, 1u);
+  // One branch round all of it, which compilers keep: what stands in short ones they execute for every fragment.
+  if (unfit || index == VITRAIL_WRAP_AT) {
+    if (unfit) {
+      atomicAdd(vitrailControl.misfits, 1u);
+      vitrailStoreNothing(index, pixelIndex);
+    } else {
+      atomicAdd(vitrailControl.requested, 0u - VITRAIL_WRAP_STEP);
+      atomicAdd(vitrailControl.wraps, 1u);
+    }
+  }
 #else
-  // The same in a loop: lavapipe executes the body of a branch for no fragment, too, and an atomic is long there.
-  uint updates = index == VITRAIL_WRAP_AT ? 2u : index == VITRAIL_END ? 1u : 0u;
+  // A loop: lavapipe executes the body of a branch for no fragment, too, and an atomic is long there.
+  uint updates = index == VITRAIL_WRAP_AT ? 2u : unfit ? 1u : 0u;
   for (uint i = 0u; i < updates; ++i) {
-    uint word = index == VITRAIL_END ? 2u : i; // misfits, or requested and wraps
+    uint word = unfit ? 2u : i; // misfits, or requested and wraps
     atomicAdd(vitrailControlAgain[word], word == 0u ? 0u - VITRAIL_WRAP_STEP : 1u);
+    if (unfit) vitrailStoreNothing(index, pixelIndex);
   }
 #endif
 }
@@ -138,10 +169,10 @@ uvec2 vitrailAreaPixel(uint samples) {
   return floatBitsToUint(gl_FragCoord.xy + 8388607.5) - (origin + 0x4b000000u);
 }
 
-// Pushes a fragment at this pixel's depth and coverage on the list of its pixel. `color` is linear; `blend` is one of
-// VITRAIL_OVER (straight alpha), VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY. A fragment outside the
-// frame's area, or one that would change nothing, is ignored. When the pool is full the list is left as it is, and the
-// fragment is counted, by the same counter that hands out nodes.
+// Pushes a fragment at VITRAIL_DEPTH with this pixel's coverage on the list of its pixel. `color` is linear; `blend` is
+// one of VITRAIL_OVER (straight alpha), VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY. A fragment outside
+// the frame's area, or one that would change nothing, is ignored. When the pool is full the list is left as it is, and
+// the fragment is counted, by the same counter that hands out nodes.
 void vitrailCollect(vec4 color, uint blend) {
   vitrailKeepDeclarations();
   VitrailLayout nodes = vitrailTargetLayout();
@@ -149,20 +180,28 @@ void vitrailCollect(vec4 color, uint blend) {
   if (pixel.x >= vitrailParameters.width || pixel.y >= vitrailParameters.height) return; // also those left and above
   uint coverage = nodes.samples == 1u ? 1u : uint(gl_SampleMaskIn[0]) & ((1u << nodes.samples) - 1u);
   uvec4 node;
-  if (!vitrailPack(color, blend, gl_FragCoord.z, coverage, nodes, node) || coverage == 0u) return;
+  bool changes;
+  if (vitrailLinksLater()) {
+    changes = vitrailPackUnlinked(color, blend, VITRAIL_DEPTH, coverage, nodes, node);
+  } else {
+    changes = vitrailPack(color, blend, VITRAIL_DEPTH, coverage, nodes, node);
+  }
+  if (!changes || coverage == 0u) return;
 
   uint pixelIndex = pixel.y * vitrailParameters.width + pixel.x;
-  uint index = VITRAIL_END;
-  if (vitrailSuitsTarget()) index = atomicAdd(vitrailControl.requested, 1u);
-  if (index >= vitrailParameters.capacity) {
-    vitrailCountMissing(index);
+  uint index = atomicAdd(vitrailControl.requested, 1u);
+  if (index >= vitrailCapacity()) {
+    bool unfit = index < vitrailParameters.capacity;
+    vitrailCountMissing(index, pixelIndex, unfit);
     if (vitrailKeepsSums() && vitrailParameters.keepSums != 0u) { // a shader for another target looks at both
-      if (index == vitrailParameters.capacity || index == VITRAIL_END) vitrailCallForSums();
+      if (index == vitrailParameters.capacity || unfit) vitrailCallForSums();
+      if (vitrailLinksLater()) node = vitrailFinish(node, nodes);
       vitrailAddMissing(pixelIndex, node, coverage, nodes);
     }
     return;
   }
-  uint next = atomicExchange(vitrailHeads[pixelIndex], index);
+  uint next = pixelIndex;
+  if (!vitrailLinksLater()) next = atomicExchange(vitrailHeads[pixelIndex], index);
   node.w |= next & vitrailNextMask(nodes);
   vitrailStoreNode(index, node, nodes);
 }

@@ -44,6 +44,8 @@ struct VitrailNodeCompact {
 struct VitrailNodeHdr {
   uvec4 words;
 };
+// Nodes that a compute pass links (VitrailLinking) hold in place of `next`, until then, the number of their pixel in 24
+// bits: VITRAIL_PIXELS_TO_LINK of them at most. `standard` ones at 1 sample then also are as unlinked.glsl says.
 
 // Counters of one thing, to be added up: work groups that add to one word at once wait for each other.
 #define VITRAIL_COUNTERS 16
@@ -52,7 +54,7 @@ struct VitrailNodeHdr {
 struct VitrailControl {
   uint requested; // fragments that asked for a node: the index of the next one's, which may be beyond the pool
   uint wraps;     // VITRAIL_WRAP_STEP of them each are not in `requested`
-  uint misfits;   // fragments of shaders that were specialized for another target: they are missing too
+  uint misfits;   // of those that got a node: fragments of shaders for another target, which are missing too
   uint layersMax; // this and the next three are written by the resolve
   uint coveredPixels[VITRAIL_COUNTERS];
   uint cutPixels; // lists that the driver did not let it finish
@@ -75,7 +77,13 @@ struct VitrailControl {
   uint overflowGroupsZ;
 };
 
-// What one vitrailCmdBegin sets. std140: four-component vectors of words would be padded anyway.
+// How nodes are collected, as a number: a shader that was specialized for another target must not write to this one.
+// Samples are 1, 2, 4 or 8, the others 0 or 1.
+#define VITRAIL_LAYOUT(format, samples, keepSums, unlinked) \
+  ((((format)*4u + (samples) / 2u - (samples) / 8u) * 2u + (keepSums)) * 2u + (unlinked))
+#define VITRAIL_LAYOUTS 48
+
+// What one vitrailCmdBegin sets (std140).
 struct VitrailParameters {
   uint x; // the first pixel of the area
   uint y;
@@ -86,9 +94,12 @@ struct VitrailParameters {
   uint samples;      // 1, 2, 4, 8
   uint nearestIsOne; // 1: reversed depth
   uint keepSums;     // 1: fragments without a node are added to their pixel's sums
-  uint layoutWord;   // VITRAIL_LAYOUT_WORD of the three: what a specialized shader must agree with
+  uint unlinked;     // 1: a compute pass links the nodes
   uint nodesLow;     // the address of the pool, where it is reached by address
   uint nodesHigh;
+  // The nodes for shaders of each VITRAIL_LAYOUT: `capacity` for those that suit the target, else 0. Asking whether a
+  // fragment's node is one of them asks both questions at once.
+  uvec4 capacities[VITRAIL_LAYOUTS / 4];
 };
 
 #ifdef __cplusplus
@@ -98,7 +109,7 @@ static_assert(sizeof(VitrailNodeHdr) == 16);
 static_assert(sizeof(VitrailControl) == 148);
 static_assert(offsetof(VitrailControl, wraps) == 4); // collect.glsl reaches both as words
 static_assert(offsetof(VitrailControl, misfits) == 8);
-static_assert(sizeof(VitrailParameters) == 48);
+static_assert(sizeof(VitrailParameters) == 240);
 #define VITRAIL_CONSTANT constexpr uint
 #else
 #define VITRAIL_CONSTANT const uint
@@ -117,7 +128,7 @@ VITRAIL_CONSTANT VITRAIL_FORMAT_STANDARD = 0u;
 VITRAIL_CONSTANT VITRAIL_FORMAT_COMPACT = 1u;
 VITRAIL_CONSTANT VITRAIL_FORMAT_HDR = 2u;
 
-#define VITRAIL_LAYOUT_WORD(format, samples, keepSums) ((format) | (samples) << 8 | (keepSums) << 16)
+VITRAIL_CONSTANT VITRAIL_PIXELS_TO_LINK = 0x1000000u; // of an area whose nodes a compute pass links
 
 // Blend modes, with the values of VitrailBlend.
 VITRAIL_CONSTANT VITRAIL_OVER = 0u;

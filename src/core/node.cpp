@@ -25,6 +25,17 @@ std::uint32_t quantizeCurve(double linear, std::uint32_t largest) {
   return quantize(linearToSrgb(clampTo(linear, 1.0)), largest);
 }
 
+// What is left of a linear value that a compute pass puts on the curve: of the float of value + 2^-7 the first 8 bits
+// of fraction, of blue 7, and the middle of what they leave open.
+double throughUnlinked(double value, bool blue) {
+  constexpr float kBias = 0x1p-7F;
+  const unsigned dropped = blue ? 16 : 15;
+  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(clampTo(value, 1.0)) + kBias) >> dropped;
+  if (bits == std::bit_cast<std::uint32_t>(kBias) >> dropped) return 0.0;
+  const auto middle = std::bit_cast<float>((bits << dropped) + (1U << (dropped - 1U)));
+  return std::min(middle - kBias, 1.0F);
+}
+
 double decodeCurve(std::uint32_t step, std::uint32_t largest) {
   return srgbToLinear(static_cast<double>(step) / largest);
 }
@@ -119,8 +130,10 @@ NodeWords packFull(const NodeCoding& coding, const Fragment& fragment) {
   const std::uint32_t depth =
       std::bit_cast<std::uint32_t>(storedDepth(fragment.depth, coding.nearestIsOne)) | fragment.blend << 30U;
   const std::uint32_t next = coding.samples == 1 ? 0 : fragment.coverage << indexBits(coding.format, coding.samples);
-  const Color& c = fragment.color;
+  Color c = fragment.color;
   if (coding.format == layout::VITRAIL_FORMAT_STANDARD) {
+    const bool rounded = coding.linkedByCompute && coding.samples == 1;
+    for (unsigned i = 0; rounded && i < 3; ++i) c[i] = throughUnlinked(c[i], i == 2);
     return {quantizeCurve(c[0], 255) | quantizeCurve(c[1], 255) << 8U | quantizeCurve(c[2], 255) << 16U |
                 quantize(c[3], 255) << 24U,
             depth, next};

@@ -26,6 +26,9 @@ struct NodeCoding {
   std::uint32_t format = layout::VITRAIL_FORMAT_STANDARD;
   std::uint32_t samples = 1; // 1, 2, 4, 8
   bool nearestIsOne = false;
+  // VITRAIL_LINKING_COMPUTE: on their way into `standard` nodes at 1 sample colours are rounded once more
+  // (shaders/vitrail/unlinked.glsl).
+  bool linkedByCompute = false;
 };
 
 // What a shader hands to vitrailCollect(), or what is left of it once it is stored.

@@ -4,6 +4,8 @@
 
 #include "shaders/clear_sums_insertion_address.h"
 #include "shaders/clear_sums_insertion_binding.h"
+#include "shaders/link_insertion_address.h"
+#include "shaders/link_insertion_binding.h"
 #include "shaders/resolve_frag_dual_insertion_address.h"
 #include "shaders/resolve_frag_dual_insertion_binding.h"
 #include "shaders/resolve_frag_dual_networks_address.h"
@@ -196,6 +198,8 @@ constexpr PictureCode kResolveOverflow = {
                                          shaders::resolve_overflow_rgba32f_multisampled_insertion_address},
                                   Access{shaders::resolve_overflow_rgba32f_multisampled_insertion_binding,
                                          shaders::resolve_overflow_rgba32f_multisampled_insertion_address}}}}};
+constexpr Code kLink = Code{{Access{shaders::link_insertion_binding, shaders::link_insertion_address},
+                             Access{shaders::link_insertion_binding, shaders::link_insertion_address}}};
 constexpr Code kSortFind = Code{{Access{shaders::sort_find_networks_binding, shaders::sort_find_networks_address},
                                  Access{shaders::sort_find_insertion_binding, shaders::sort_find_insertion_address}}};
 constexpr Code kSortLong = Code{{Access{shaders::sort_long_networks_binding, shaders::sort_long_networks_address},
@@ -242,6 +246,8 @@ const Code& kernelPermutation(Kernel kernel, ColorImage color, bool multisampled
       return of(kResolveLong);
     case Kernel::ResolveOverflow:
       return of(kResolveOverflow);
+    case Kernel::Link:
+      return kLink;
     case Kernel::SortFind:
       return kSortFind;
     case Kernel::SortLong:

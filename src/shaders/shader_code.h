@@ -14,6 +14,7 @@ enum class Kernel : std::uint32_t {
   ResolveGroup,
   ResolveLong, // by insertion
   ResolveOverflow,
+  Link,
   SortFind,
   SortLong,
   ClearSums

@@ -84,17 +84,23 @@ VkResult checkColorFormat(const VitrailContext_T& context, const VitrailTargetDe
 
 } // namespace
 
-VitrailTargetDesc withDefaults(VitrailContext context, const VitrailTargetDesc& desc) {
+VitrailTargetDesc withAreaPixels(const VitrailTargetDesc& desc) {
   VitrailTargetDesc full = desc;
+  const std::uint64_t pixels = std::uint64_t{full.extent.width} * full.extent.height;
+  if (full.areaPixels == 0 || full.areaPixels > pixels) {
+    full.areaPixels = static_cast<std::uint32_t>(std::min<std::uint64_t>(pixels, ~0U));
+  }
+  return full;
+}
+
+VitrailTargetDesc withDefaults(VitrailContext context, const VitrailTargetDesc& desc) {
+  VitrailTargetDesc full = withAreaPixels(desc);
   if (full.samples == 0) full.samples = VK_SAMPLE_COUNT_1_BIT;
   if (full.colorFormat == VK_FORMAT_UNDEFINED) full.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
   if (full.framesInFlight == 0) full.framesInFlight = kDefaultFramesInFlight;
   if (full.debugName == nullptr) full.debugName = "vitrail";
   if (full.resolve == VITRAIL_RESOLVE_DEFAULT) full.resolve = vitrailDefaultResolve(context, &full);
-  const std::uint64_t pixels = std::uint64_t{full.extent.width} * full.extent.height;
-  if (full.areaPixels == 0 || full.areaPixels > pixels) {
-    full.areaPixels = static_cast<std::uint32_t>(std::min<std::uint64_t>(pixels, ~0U));
-  }
+  if (full.linking == VITRAIL_LINKING_DEFAULT) full.linking = vitrailDefaultLinking(context, &full);
   if (full.memoryBudget != 0 && full.nodeCapacity == 0) {
     full.nodeCapacity = static_cast<std::uint32_t>(std::min<std::uint64_t>(kFirstLayers * full.areaPixels, ~0U));
   }
@@ -123,6 +129,15 @@ VkResult checkMemory(VitrailContext context, const VitrailTargetDesc& desc) {
   if (result != VK_SUCCESS) return result;
   if (desc.overflow != VITRAIL_OVERFLOW_APPROXIMATE && desc.overflow != VITRAIL_OVERFLOW_SKIP) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED, "overflow %d is none of VitrailOverflow", desc.overflow);
+  }
+  if (desc.linking != VITRAIL_LINKING_FRAGMENT && desc.linking != VITRAIL_LINKING_COMPUTE) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "linking %d is none of VitrailLinking", desc.linking);
+  }
+  if (desc.linking == VITRAIL_LINKING_COMPUTE && desc.areaPixels > layout::VITRAIL_PIXELS_TO_LINK) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                    "an area of %u pixels: VITRAIL_LINKING_COMPUTE takes up to %u at once; make the target with "
+                    "VITRAIL_LINKING_FRAGMENT, or draw in tiles",
+                    desc.areaPixels, layout::VITRAIL_PIXELS_TO_LINK);
   }
   const std::uint64_t perPixel =
       std::max<std::uint64_t>(headBytes(desc.areaPixels), keepsSums(desc) ? sumBytes(desc.areaPixels) : 0);

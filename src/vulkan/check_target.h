@@ -6,11 +6,14 @@
 
 namespace vitrail {
 
+// The descriptor with the area that it stands for.
+VitrailTargetDesc withAreaPixels(const VitrailTargetDesc& desc);
+
 // The descriptor with its defaults filled in.
 VitrailTargetDesc withDefaults(VitrailContext context, const VitrailTargetDesc& desc);
 
-// Checks what concerns memory: extent, samples, node format, area, capacity, budget. `desc` has its defaults. Logs the
-// reason where it fails.
+// Checks what concerns memory: extent, samples, node format, linking, area, capacity, budget. `desc` has its defaults.
+// Logs the reason where it fails.
 VkResult checkMemory(VitrailContext context, const VitrailTargetDesc& desc);
 
 // Checks everything. `desc` has its defaults. Logs the reason where it fails.

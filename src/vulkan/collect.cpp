@@ -1,8 +1,10 @@
 // The recording calls round the host's transparent draws: empty lists before, visible and, for a fragment resolve,
 // sorted lists after.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstring>
 
 #include "barrier.h"
 #include "dispatch_compute.h"
@@ -45,9 +47,14 @@ layout::VitrailParameters parametersOf(const VitrailTarget_T& target) {
   parameters.samples = target.desc.samples;
   parameters.nearestIsOne = target.desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE ? 1 : 0;
   parameters.keepSums = target.keepSums ? 1 : 0;
-  parameters.layoutWord = VITRAIL_LAYOUT_WORD(parameters.format, parameters.samples, parameters.keepSums);
+  parameters.unlinked = target.desc.linking == VITRAIL_LINKING_COMPUTE ? 1 : 0;
   parameters.nodesLow = static_cast<std::uint32_t>(target.storage.nodesAddress);
   parameters.nodesHigh = static_cast<std::uint32_t>(target.storage.nodesAddress >> 32U);
+  std::array<std::uint32_t, VITRAIL_LAYOUTS> capacities{};
+  static_assert(sizeof(capacities) == sizeof(parameters.capacities));
+  capacities.at(VITRAIL_LAYOUT(parameters.format, parameters.samples, parameters.keepSums, parameters.unlinked)) =
+      parameters.capacity;
+  std::memcpy(parameters.capacities, capacities.data(), sizeof(capacities));
   return parameters;
 }
 
@@ -85,9 +92,16 @@ void clear(VkCommandBuffer commandBuffer, VitrailTarget_T& target) {
                    sizeof(StatsSlot::tag), 0); // the slot's old frame is gone
 }
 
+// Puts the nodes on their lists, where the collecting shader did not.
+void linkNodes(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
+  dispatchNodes(commandBuffer, target, target.pipelines.link);
+  // Writer: the linking. Readers: sorting and the resolve, which link nodes anew, and add to the counters.
+  recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
+                {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT});
+}
+
 // For a fragment resolve: lists that are longer than it sorts itself are sorted where they lie.
 void sortLongLists(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
-  bindTargetSet(commandBuffer, target);
   dispatchPixels(commandBuffer, target, target.pipelines.sortFind);
   betweenDispatches(commandBuffer, target);
   dispatchIndirect(commandBuffer, target, target.pipelines.sortLong, offsetof(layout::VitrailControl, longGroupsX));
@@ -112,5 +126,8 @@ extern "C" void vitrailCmdCollected(VkCommandBuffer commandBuffer, VitrailTarget
 #ifndef VITRAIL_TEST_OMIT_COLLECTED_BARRIER // the negative control of the tests: they must notice that it is missing
   vitrail::recordBarriers(commandBuffer, target, VITRAIL_BARRIER_COLLECTED);
 #endif
+  if (target->pipelines.link == VK_NULL_HANDLE && target->isCompute()) return;
+  vitrail::bindTargetSet(commandBuffer, *target);
+  if (target->pipelines.link != VK_NULL_HANDLE) vitrail::linkNodes(commandBuffer, *target);
   if (!target->isCompute()) vitrail::sortLongLists(commandBuffer, *target);
 }

@@ -47,6 +47,10 @@ void readLimits(VitrailContext_T& context, const VkPhysicalDeviceProperties& dev
   kept.sampleCounts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts &
                       limits.sampledImageColorSampleCounts & limits.sampledImageDepthSampleCounts;
   kept.isCpu = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  // NVIDIA's GH100 (H100, H200 and their like), of which 2 of 66 texture processing clusters draw. Vulkan does not tell
+  // such things of a device.
+  constexpr std::uint32_t kNvidia = 0x10de;
+  kept.fewFragmentCores = device.vendorID == kNvidia && device.deviceID >> 8U == 0x23;
   context.vk.GetPhysicalDeviceMemoryProperties(context.physicalDevice, &context.memory);
   for (std::uint32_t i = 0; i < context.memory.memoryHeapCount; ++i) {
     const VkMemoryHeap& heap = context.memory.memoryHeaps[i];

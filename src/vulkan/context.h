@@ -37,6 +37,7 @@ struct Limits {
   VkSampleCountFlags sampleCounts = 0; // that colour and depth attachments and sampled images share
   bool isCpu = false;                  // a driver that runs on the CPU
   bool exchangesInGroups = false;      // compute shaders exchange values within at least 8 invocations
+  bool fewFragmentCores = false;       // a GPU that runs fragment shaders on a small part of its cores
 };
 
 } // namespace vitrail

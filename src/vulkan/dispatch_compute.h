@@ -12,6 +12,9 @@ void bindViewSet(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, s
 // One thread a pixel of the frame's area.
 void dispatchPixels(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline);
 
+// One thread a node of the pool, or several nodes, of those that are in use.
+void dispatchNodes(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline);
+
 // As many work groups as the counters say: `counter` is the offset of three words in VitrailControl.
 void dispatchIndirect(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline,
                       std::size_t counter);

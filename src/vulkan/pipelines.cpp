@@ -34,6 +34,8 @@ const char* kernelName(Kernel kernel) {
       return "vitrail resolve long";
     case Kernel::ResolveOverflow:
       return "vitrail resolve overflow";
+    case Kernel::Link:
+      return "vitrail link";
     case Kernel::SortFind:
       return "vitrail sort find";
     case Kernel::SortLong:

@@ -2,6 +2,7 @@
 #include "target.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <new>
 
@@ -127,6 +128,17 @@ VkResult createStats(VitrailTarget_T& target) {
   return VK_SUCCESS;
 }
 
+VkResult findLinkPipeline(VitrailTarget_T& target) {
+  if (target.desc.linking != VITRAIL_LINKING_COMPUTE) return VK_SUCCESS;
+  ComputeKey key;
+  key.kernel = Kernel::Link;
+  key.byAddress = target.context->has(VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS);
+  key.networks = false;
+  key.constants.format = target.constants.format;
+  key.constants.samples = target.constants.samples;
+  return computePipeline(*target.context, key, &target.pipelines.link);
+}
+
 // `desc` has passed checkTarget().
 VkResult build(VitrailTarget_T& target, const VitrailTargetDesc& desc) {
   target.desc = desc;
@@ -138,6 +150,7 @@ VkResult build(VitrailTarget_T& target, const VitrailTargetDesc& desc) {
     target.desc.nodeCapacity = std::min(desc.nodeCapacity, budgetCapacity(target.context, desc, desc.areaPixels));
   }
   VkResult result = target.isCompute() ? findComputePipelines(target) : createFragmentPipelines(target);
+  if (result == VK_SUCCESS) result = findLinkPipeline(target);
   if (result == VK_SUCCESS) result = createStats(target);
   if (result == VK_SUCCESS) {
     result = target.storage.create(*target.context, storageInfo(target, target.desc.nodeCapacity));
@@ -193,6 +206,11 @@ extern "C" VitrailResolve vitrailDefaultResolve(VitrailContext context, const Vi
   context->vk.GetPhysicalDeviceFormatProperties(context->physicalDevice, format, &properties);
   const bool stores = (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) != 0;
   return stores ? VITRAIL_RESOLVE_COMPUTE : VITRAIL_RESOLVE_FRAGMENT;
+}
+
+extern "C" VitrailLinking vitrailDefaultLinking(VitrailContext context, const VitrailTargetDesc* desc) {
+  const bool fits = vitrail::withAreaPixels(*desc).areaPixels <= vitrail::layout::VITRAIL_PIXELS_TO_LINK;
+  return fits && context->limits.fewFragmentCores ? VITRAIL_LINKING_COMPUTE : VITRAIL_LINKING_FRAGMENT;
 }
 
 extern "C" VkResult vitrailTargetRequirements(VitrailContext context, const VitrailTargetDesc* desc,
@@ -282,12 +300,16 @@ extern "C" void vitrailTargetMemory(VitrailTarget target, VitrailMemory* memory)
   for (const vitrail::Retired& retired : target->retired) memory->totalBytes += retired.storage.layout.total;
 }
 
-extern "C" void vitrailCollectSpecialization(const VitrailTargetDesc* desc, VitrailSpecialization* specialization) {
+extern "C" void vitrailCollectSpecialization(VitrailContext context, const VitrailTargetDesc* desc,
+                                             VitrailSpecialization* specialization) {
   constexpr std::uint32_t kFirstId = 1700; // VITRAIL_CONSTANT_ID of shaders/vitrail/collect.glsl
   specialization->data[0] = desc->nodeFormat;
   specialization->data[1] = desc->samples != 0 ? desc->samples : VK_SAMPLE_COUNT_1_BIT;
   specialization->data[2] = vitrail::keepsSums(*desc) ? 1 : 0;
-  for (std::uint32_t i = 0; i < 3; ++i) {
+  const VitrailLinking linking =
+      desc->linking != VITRAIL_LINKING_DEFAULT ? desc->linking : vitrailDefaultLinking(context, desc);
+  specialization->data[3] = linking == VITRAIL_LINKING_COMPUTE ? 1 : 0;
+  for (std::uint32_t i = 0; i < std::size(specialization->data); ++i) {
     specialization->entries[i] = {kFirstId + i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)),
                                   sizeof(std::uint32_t)};
   }

@@ -27,6 +27,7 @@ static_assert(sizeof(StatsSlot) == 168);
 
 // The pipelines of a target's resolve; null where its kind does not need one.
 struct ResolvePipelines {
+  VkPipeline link = VK_NULL_HANDLE;
   VkPipeline shortLists = VK_NULL_HANDLE;
   VkPipeline mediumLists = VK_NULL_HANDLE;
   VkPipeline longLists = VK_NULL_HANDLE;

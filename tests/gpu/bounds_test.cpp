@@ -28,6 +28,7 @@ TEST_F(BoundsTest, CapacitiesAroundTheNeedCountWhatIsMissing) {
       PointHostDesc desc;
       desc.samples = samples;
       desc.nodes = format;
+      desc.linking = format == VITRAIL_NODE_COMPACT ? VITRAIL_LINKING_FRAGMENT : VITRAIL_LINKING_COMPUTE;
       desc.guarded = true;
       PointVariety variety;
       variety.coverage = samples > 1;
@@ -67,6 +68,7 @@ TEST_F(BoundsTest, RequestsBeyond32BitsAreCountedAndTakeNoNode) {
     desc.guarded = true;
     desc.capacity = 8;
     desc.overflow = overflow;
+    desc.linking = overflow == VITRAIL_OVERFLOW_SKIP ? VITRAIL_LINKING_COMPUTE : VITRAIL_LINKING_FRAGMENT;
     desc.requestedBefore = layout::VITRAIL_WRAP_AT - 7;
     const std::vector<Point> points = randomLists(desc, {0, 1, 2, 17, 40, 100}, 3);
     PointHost host(gpu(), desc);
@@ -184,10 +186,35 @@ TEST_F(BoundsTest, AFrameThatIsNeverSubmittedLeavesNothingBehind) {
   }
 }
 
+// A fragment is encoded where it is linked, or where it is added to the sums if it found no node: the same bits.
+TEST_F(BoundsTest, ColoursBetweenStepsOverflowAlike) {
+  for (const bool addresses : {false, true}) {
+    if (addresses && !gpu().features().bufferDeviceAddress) continue;
+    PointHostDesc desc;
+    desc.linking = VITRAIL_LINKING_COMPUTE;
+    desc.addresses = addresses;
+    desc.width = 64;
+    desc.height = 64;
+    std::vector<Point> points;
+    for (std::uint32_t i = 0; i < 4 * desc.width * desc.height; ++i) {
+      const auto channel = [&](std::uint32_t seed) { return static_cast<float>((i * seed) % 65521U) / 65520.0F; };
+      points.push_back({i % 64, i / 64 % 64, channel(7919), {channel(31), channel(2741), channel(977), channel(5)}});
+    }
+    desc.capacity = static_cast<std::uint32_t>(points.size() / 2);
+    PointHost host(gpu(), desc);
+    const PointResult forward = host.draw(points);
+    EXPECT_GT(forward.stats.fragmentsMissing, 0U);
+    for (const Order order : {Order::Reversed, Order::Shuffled}) {
+      EXPECT_TRUE(host.draw(ordered(points, order)).pixels == forward.pixels);
+    }
+  }
+}
+
 TEST_F(BoundsTest, OtherBlendModesOverflowToo) {
   for (const VitrailNodeFormat format : nodeFormats(1)) {
     PointHostDesc desc;
     desc.nodes = format;
+    desc.linking = format == VITRAIL_NODE_STANDARD ? VITRAIL_LINKING_COMPUTE : VITRAIL_LINKING_FRAGMENT;
     desc.behind = {0.5F, 0.5F, 0.5F, 1.0F};
     PointVariety variety;
     variety.blendModes = true;

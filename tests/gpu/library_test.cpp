@@ -31,6 +31,8 @@ std::vector<std::uint32_t> manyLengths(std::initializer_list<std::uint32_t> long
   return lengths;
 }
 
+constexpr std::array kLinkings{VITRAIL_LINKING_FRAGMENT, VITRAIL_LINKING_COMPUTE};
+
 void expectLikeReference(const PointResult& result, const Expected& expected, double tolerance = kBlendTolerance) {
   EXPECT_LT(largestError(result.pixels, expected.pixels), tolerance);
   EXPECT_EQ(result.stats.exact, 1U);
@@ -119,12 +121,12 @@ TEST_F(LibraryTest, EveryFormatAndBlendModeMatchesTheReferenceInEveryOrder) {
 // Every way computes the same picture, up to what fixed-function blending rounds.
 TEST_F(LibraryTest, BothResolvesAgree) {
   std::vector<std::vector<FloatColor>> pictures;
+  PointHostDesc desc;
+  desc.behind = {0.2F, 0.4F, 0.6F, 1.0F};
+  const std::vector<Point> points = randomLists(desc, {0, 1, 2, 5, 16, 17, 31, 32, 33, 80, 400}, 8);
+  desc.capacity = static_cast<std::uint32_t>(points.size());
   for (const Way& way : everyWay(gpu(), 1)) {
-    PointHostDesc desc;
-    desc.behind = {0.2F, 0.4F, 0.6F, 1.0F};
     apply(way, desc);
-    const std::vector<Point> points = randomLists(desc, {0, 1, 2, 5, 16, 17, 31, 32, 33, 80, 400}, 8);
-    desc.capacity = static_cast<std::uint32_t>(points.size());
     pictures.push_back(PointHost(gpu(), desc).draw(points).pixels);
   }
   for (const auto& picture : pictures) {
@@ -301,33 +303,44 @@ TEST_F(LibraryTest, AListThatTheDriverCutsIsReported) {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+// A colour that rounds to black: on the way, to something else.
+constexpr float kFaint = 1.4e-4F;
+
+void expectHostileColoursApart(tool::Gpu& gpu, VitrailNodeFormat format, VitrailLinking linking) {
+  const float brightest = format == VITRAIL_NODE_HDR ? 65504.0F : 1.0F;
+  PointHostDesc desc;
+  desc.nodes = format;
+  desc.linking = linking;
+  desc.behind = {0.5F, 0.5F, 0.5F, 1.0F};
+  const std::vector<Point> points = {
+      {0, 0, 0.5F, {kNan, 0.5F, 0.5F, 1.0F}},
+      {1, 0, 0.5F, {0.5F, 0.5F, 0.5F, kNan}},
+      {2, 0, 0.5F, {kInfinity, 0.0F, 0.0F, 1.0F}},
+      {3, 0, 0.5F, {-kInfinity, -1.0F, kInfinity, 7.0F}},
+      {4, 0, 0.5F, {0.5F, 0.5F, 0.5F, -3.0F}},
+      {5, 0, 0.5F, {0.5F, 0.5F, 0.5F, 0.000007F}},
+      {6, 0, 0.5F, {kNan, -1.0F, 0.0F, 0.0F}, VITRAIL_BLEND_PREMULTIPLIED},
+      {7, 0, 0.5F, {0.0F, format != VITRAIL_NODE_HDR ? kFaint : 0.0F, 0.0F, 0.0F}, VITRAIL_BLEND_PREMULTIPLIED},
+  };
+  desc.capacity = static_cast<std::uint32_t>(points.size());
+  const PointResult result = PointHost(gpu, desc).draw(points);
+  EXPECT_EQ(result.pixels[0][0], 0.0F);
+  EXPECT_EQ(result.pixels[1], desc.behind);
+  EXPECT_EQ(result.pixels[2], (FloatColor{brightest, 0.0F, 0.0F, 1.0F}));
+  EXPECT_EQ(result.pixels[3], (FloatColor{0.0F, 0.0F, brightest, 1.0F}));
+  EXPECT_EQ(result.pixels[4], desc.behind);
+  EXPECT_EQ(result.pixels[5], desc.behind);
+  for (std::size_t i = 6; i < result.pixels.size(); ++i) EXPECT_EQ(result.pixels[i], desc.behind);
+  // Stored alpha 0 is neither stored nor counted: points 1, 4, 5, 6 and 7.
+  EXPECT_EQ(result.stats.fragmentsRequested, 3U);
+}
+
 TEST_F(LibraryTest, HostileColoursStayInTheirPixel) {
   for (const VitrailNodeFormat format : nodeFormats(1)) {
-    SCOPED_TRACE(format);
-    const float brightest = format == VITRAIL_NODE_HDR ? 65504.0F : 1.0F;
-    PointHostDesc desc;
-    desc.nodes = format;
-    desc.behind = {0.5F, 0.5F, 0.5F, 1.0F};
-    const std::vector<Point> points = {
-        {0, 0, 0.5F, {kNan, 0.5F, 0.5F, 1.0F}},
-        {1, 0, 0.5F, {0.5F, 0.5F, 0.5F, kNan}},
-        {2, 0, 0.5F, {kInfinity, 0.0F, 0.0F, 1.0F}},
-        {3, 0, 0.5F, {-kInfinity, -1.0F, kInfinity, 7.0F}},
-        {4, 0, 0.5F, {0.5F, 0.5F, 0.5F, -3.0F}},
-        {5, 0, 0.5F, {0.5F, 0.5F, 0.5F, 0.000007F}},
-        {6, 0, 0.5F, {kNan, -1.0F, 0.0F, 0.0F}, VITRAIL_BLEND_PREMULTIPLIED},
-    };
-    desc.capacity = static_cast<std::uint32_t>(points.size());
-    const PointResult result = PointHost(gpu(), desc).draw(points);
-    EXPECT_EQ(result.pixels[0][0], 0.0F);
-    EXPECT_EQ(result.pixels[1], desc.behind);
-    EXPECT_EQ(result.pixels[2], (FloatColor{brightest, 0.0F, 0.0F, 1.0F}));
-    EXPECT_EQ(result.pixels[3], (FloatColor{0.0F, 0.0F, brightest, 1.0F}));
-    EXPECT_EQ(result.pixels[4], desc.behind);
-    EXPECT_EQ(result.pixels[5], desc.behind);
-    for (std::size_t i = 6; i < result.pixels.size(); ++i) EXPECT_EQ(result.pixels[i], desc.behind);
-    // Stored alpha 0 is neither stored nor counted: points 1, 4, 5 and 6.
-    EXPECT_EQ(result.stats.fragmentsRequested, 3U);
+    for (const VitrailLinking linking : kLinkings) {
+      SCOPED_TRACE("format " + std::to_string(format) + ", linking " + std::to_string(linking));
+      expectHostileColoursApart(gpu(), format, linking);
+    }
   }
 }
 
@@ -350,62 +363,94 @@ TEST_F(LibraryTest, HostileDepthsStayInTheirPixel) {
   }
 }
 
-// The steps of the colour channels on the curve and of alpha; none: `hdr` has floats.
-struct Steps {
+// How far colour channels may be off on the curve, and alpha; `hdr` has floats.
+struct Rounding {
   std::array<double, 3> color{};
   double alpha = 0.0;
 };
 
-Steps stepsOf(VitrailNodeFormat format, std::uint32_t samples) {
+Rounding roundingOf(VitrailNodeFormat format, std::uint32_t samples, VitrailLinking linking) {
   switch (format) {
     case VITRAIL_NODE_STANDARD:
-      return {{255, 255, 255}, 255};
+      if (linking == VITRAIL_LINKING_COMPUTE && samples == 1) return {{0.7 / 255, 0.7 / 255, 0.9 / 255}, 0.5 / 255};
+      return {{0.5 / 255, 0.5 / 255, 0.5 / 255}, 0.5 / 255};
     case VITRAIL_NODE_COMPACT:
-      return samples == 1 ? Steps{{31, 63, 31}, 63} : Steps{{31, 31, 31}, 31};
+      if (samples > 1) return {{0.5 / 31, 0.5 / 31, 0.5 / 31}, 0.5 / 31};
+      return {{0.5 / 31, 0.5 / 63, 0.5 / 31}, 0.5 / 63};
     default:
-      return {{}, 65535};
+      return {{}, 0.5 / 65535};
   }
 }
 
 // One fragment a pixel over black: the picture is the stored colour, premultiplied, or white times the stored alpha.
 // Values lie anywhere between two steps; the bounds are those of VitrailNodeFormat.
-TEST_F(LibraryTest, ColourAndAlphaKeepTheirStatedRounding) {
+void expectStatedRounding(tool::Gpu& gpu, PointHostDesc desc) {
   constexpr std::uint32_t kValues = 2048;
+  desc.width = kValues;
+  desc.height = 2;
+  const bool hdr = desc.nodes == VITRAIL_NODE_HDR;
+  std::vector<Point> points;
+  std::vector<double> wanted;
+  for (std::uint32_t i = 0; i < kValues; ++i) {
+    const double step = (i + 0.37) / kValues;
+    wanted.push_back(hdr ? std::exp2(step * 38.0 - 22.0) : srgbToLinear(step)); // hdr: 2^-22 to 2^16
+    const auto grey = static_cast<float>(wanted.back());
+    points.push_back({i, 0, 0.5F, {grey, grey, grey, 1.0F}, VITRAIL_BLEND_PREMULTIPLIED});
+    points.push_back({i, 1, 0.5F, {1.0F, 1.0F, 1.0F, static_cast<float>(step)}});
+  }
+  desc.capacity = static_cast<std::uint32_t>(points.size());
+  const PointResult result = PointHost(gpu, desc).draw(points);
+  const Rounding rounding = roundingOf(desc.nodes, desc.samples, desc.linking);
+  for (std::uint32_t i = 0; i < kValues; ++i) {
+    for (unsigned c = 0; c < 3; ++c) {
+      const double got = result.pixels[i][c];
+      if (hdr) {
+        ASSERT_NEAR(got, wanted[i], std::max(wanted[i] * 0x1p-10, 0x1p-24)) << i;
+      } else {
+        ASSERT_NEAR(linearToSrgb(got), linearToSrgb(wanted[i]), rounding.color[c] + 2e-5) << i;
+      }
+    }
+    ASSERT_NEAR(double{result.pixels[kValues + i][0]}, (i + 0.37) / kValues, rounding.alpha + 1e-6) << i;
+  }
+}
+
+TEST_F(LibraryTest, ColourAndAlphaKeepTheirStatedRounding) {
   std::vector<std::uint32_t> counts = sampleCounts(gpu());
   counts.insert(counts.begin(), 1);
   for (const std::uint32_t samples : counts) {
     for (const VitrailNodeFormat format : nodeFormats(samples)) {
-      SCOPED_TRACE(std::to_string(samples) + " samples, format " + std::to_string(format));
-      PointHostDesc desc;
-      desc.nodes = format;
-      desc.samples = samples;
-      desc.width = kValues;
-      desc.height = 2;
-      const bool hdr = format == VITRAIL_NODE_HDR;
-      std::vector<Point> points;
-      std::vector<double> wanted;
-      for (std::uint32_t i = 0; i < kValues; ++i) {
-        const double step = (i + 0.37) / kValues;
-        wanted.push_back(hdr ? std::exp2(step * 38.0 - 22.0) : srgbToLinear(step)); // hdr: 2^-22 to 2^16
-        const auto grey = static_cast<float>(wanted.back());
-        points.push_back({i, 0, 0.5F, {grey, grey, grey, 1.0F}, VITRAIL_BLEND_PREMULTIPLIED});
-        points.push_back({i, 1, 0.5F, {1.0F, 1.0F, 1.0F, static_cast<float>(step)}});
-      }
-      desc.capacity = static_cast<std::uint32_t>(points.size());
-      const PointResult result = PointHost(gpu(), desc).draw(points);
-      const Steps steps = stepsOf(format, samples);
-      for (std::uint32_t i = 0; i < kValues; ++i) {
-        for (unsigned c = 0; c < 3; ++c) {
-          const double got = result.pixels[i][c];
-          if (hdr) {
-            ASSERT_NEAR(got, wanted[i], std::max(wanted[i] * 0x1p-10, 0x1p-24)) << i;
-          } else {
-            ASSERT_NEAR(linearToSrgb(got), linearToSrgb(wanted[i]), 0.5 / steps.color[c] + 2e-5) << i;
-          }
-        }
-        ASSERT_NEAR(double{result.pixels[kValues + i][0]}, (i + 0.37) / kValues, 0.5 / steps.alpha + 1e-6) << i;
+      for (const VitrailLinking linking : kLinkings) {
+        SCOPED_TRACE(std::to_string(samples) + " samples, format " + std::to_string(format) + ", linking " +
+                     std::to_string(linking));
+        PointHostDesc desc;
+        desc.nodes = format;
+        desc.samples = samples;
+        desc.linking = linking;
+        expectStatedRounding(gpu(), desc);
       }
     }
+  }
+}
+
+// Wherever between two steps they lie, colours come out of `standard` nodes as the reference rounds them, and whole
+// steps as they are.
+TEST_F(LibraryTest, ColoursThatComputeEncodesAreRoundedAsTheReferenceDoes) {
+  PointHostDesc desc;
+  desc.linking = VITRAIL_LINKING_COMPUTE;
+  desc.width = 256;
+  desc.height = 33;
+  std::vector<Point> points;
+  for (std::uint32_t i = 0; i < desc.width * desc.height; ++i) {
+    const std::uint32_t step = i % 256;
+    const std::uint32_t part = i / 256; // of 32 between two steps
+    const auto value = static_cast<float>(srgbToLinear(std::min((step + part / 32.0) / 255.0, 1.0)));
+    points.push_back({step, part, 0.5F, {value, value, value, 1.0F}, VITRAIL_BLEND_PREMULTIPLIED});
+  }
+  desc.capacity = static_cast<std::uint32_t>(points.size());
+  const PointResult result = PointHost(gpu(), desc).draw(points);
+  EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), 1e-6);
+  for (std::uint32_t step = 0; step < 256; ++step) {
+    for (unsigned c = 0; c < 3; ++c) EXPECT_NEAR(double{result.pixels[step][c]}, srgbToLinear(step / 255.0), 1e-6);
   }
 }
 
@@ -447,27 +492,56 @@ TEST_F(LibraryTest, CompactDepthsAreToldApartAsStated) {
 
 // A shader that is specialized for another target stores nothing there, and says so.
 TEST_F(LibraryTest, AShaderOfAnotherTargetStoresNothing) {
-  PointHostDesc desc;
-  desc.capacity = 4;
-  desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
-  const Point point = {0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}};
-  desc.specialized = true;
-  EXPECT_EQ(PointHost(gpu(), desc).draw(std::span(&point, 1)).stats.fragmentsStored, 1U);
-  desc.specializedFor = VITRAIL_NODE_HDR;
-  desc.overflow = VITRAIL_OVERFLOW_SKIP;
-  const PointResult result = PointHost(gpu(), desc).draw(std::span(&point, 1));
-  EXPECT_EQ(result.stats.fragmentsStored, 0U);
-  EXPECT_EQ(result.stats.fragmentsMissing, 1U);
-  EXPECT_EQ(result.pixels[0], desc.behind);
-  // One for a target that keeps sums does not write them where there are none.
-  desc.specializedFor.reset();
-  desc.specializedForOverflow = VITRAIL_OVERFLOW_APPROXIMATE;
-  desc.guarded = true;
-  const std::vector<Point> points = randomLists(desc, std::vector<std::uint32_t>(64, 1), 2);
-  PointHost host(gpu(), desc);
-  EXPECT_EQ(host.draw(points).stats.fragmentsMissing, points.size());
-  EXPECT_TRUE(host.guardsUntouched());
-  for (const std::uint32_t word : host.words(&StorageLayout::sums)) EXPECT_EQ(word, PointHost::kGuard);
+  for (const VitrailLinking linking : kLinkings) {
+    PointHostDesc desc;
+    desc.capacity = 4;
+    desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
+    desc.linking = linking;
+    const Point point = {0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}};
+    desc.specialized = true;
+    EXPECT_EQ(PointHost(gpu(), desc).draw(std::span(&point, 1)).stats.fragmentsStored, 1U);
+    desc.specializedFor = VITRAIL_NODE_HDR;
+    desc.overflow = VITRAIL_OVERFLOW_SKIP;
+    const PointResult result = PointHost(gpu(), desc).draw(std::span(&point, 1));
+    EXPECT_EQ(result.stats.fragmentsStored, 0U);
+    EXPECT_EQ(result.stats.fragmentsMissing, 1U);
+    EXPECT_EQ(result.stats.exact, 0U);
+    EXPECT_EQ(result.pixels[0], desc.behind);
+    // One for a target that keeps sums does not write them where there are none.
+    desc.specializedFor.reset();
+    desc.specializedForOverflow = VITRAIL_OVERFLOW_APPROXIMATE;
+    desc.guarded = true;
+    const std::vector<Point> points = randomLists(desc, std::vector<std::uint32_t>(64, 1), 2);
+    PointHost host(gpu(), desc);
+    EXPECT_EQ(host.draw(points).stats.fragmentsMissing, points.size());
+    EXPECT_TRUE(host.guardsUntouched());
+    for (const std::uint32_t word : host.words(&StorageLayout::sums)) EXPECT_EQ(word, PointHost::kGuard);
+  }
+}
+
+// Nodes that were given to such a shader are on no list that shows: what is left of other frames in them stays unseen.
+TEST_F(LibraryTest, NodesThatNobodyWroteAreNotSeen) {
+  for (const VitrailLinking linking : kLinkings) {
+    PointHostDesc desc;
+    desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
+    desc.linking = linking;
+    desc.specialized = true;
+    desc.specializedForLinking =
+        linking == VITRAIL_LINKING_COMPUTE ? VITRAIL_LINKING_FRAGMENT : VITRAIL_LINKING_COMPUTE;
+    desc.guarded = true; // the nodes hold guard words at first
+    const std::vector<Point> points = randomLists(desc, std::vector<std::uint32_t>(64, 1), 2);
+    for (const std::uint32_t capacity : {30U, 200U}) {
+      desc.capacity = capacity;
+      PointHost host(gpu(), desc);
+      const PointResult result = host.draw(points);
+      EXPECT_EQ(result.stats.fragmentsRequested, points.size());
+      EXPECT_EQ(result.stats.fragmentsStored, 0U);
+      EXPECT_EQ(result.stats.exact, 0U);
+      // Every pixel has one fragment, and its sums are that.
+      EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), 0x1p-13);
+      EXPECT_TRUE(host.guardsUntouched());
+    }
+  }
 }
 
 TEST_F(LibraryTest, StatisticsBelongToTheirFrame) {

@@ -377,6 +377,9 @@ TEST_F(RefusedTest, WrongFields) {
   desc.overflow = static_cast<VitrailOverflow>(5);
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "overflow");
   desc = desc_;
+  desc.linking = static_cast<VitrailLinking>(4);
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "linking");
+  desc = desc_;
   desc.resolve = static_cast<VitrailResolve>(9);
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "resolve");
   desc = desc_;
@@ -436,6 +439,28 @@ TEST_F(RefusedTest, MemoryThatIsNotThere) {
   expectRefused(desc, VK_ERROR_OUT_OF_DEVICE_MEMORY, "memoryBudget");
   EXPECT_LE(context_.maxNodeCapacity(VITRAIL_NODE_COMPACT), (1U << 24U) - 2);
   EXPECT_LE(context_.maxNodeCapacity(VITRAIL_NODE_HDR, VK_SAMPLE_COUNT_8_BIT), (1U << 24U) - 2);
+}
+
+// A node has 24 bits for its pixel until it is linked.
+TEST_F(RefusedTest, AreasThatAreTooLargeToLinkByCompute) {
+  VitrailTargetDesc desc = desc_;
+  desc.linking = VITRAIL_LINKING_COMPUTE;
+  desc.overflow = VITRAIL_OVERFLOW_SKIP;
+  desc.nodeCapacity = 1;
+  desc.extent = {4096, 4097};
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "VITRAIL_LINKING_FRAGMENT");
+  VitrailRequirements requirements{};
+  EXPECT_NE(context_.targetRequirements(desc, requirements), VK_SUCCESS);
+  for (const std::uint32_t areaPixels : {0U, 1000000U}) {
+    desc.extent.height = areaPixels == 0 ? 4096 : 4097;
+    desc.areaPixels = areaPixels;
+    EXPECT_EQ(context_.targetRequirements(desc, requirements), VK_SUCCESS);
+  }
+  desc.areaPixels = 0;
+  desc.extent.height = 4097;
+  EXPECT_EQ(context_.defaultLinking(desc), VITRAIL_LINKING_FRAGMENT);
+  desc.linking = VITRAIL_LINKING_DEFAULT;
+  EXPECT_EQ(context_.targetRequirements(desc, requirements), VK_SUCCESS);
 }
 
 // Compute where it can be had, else a draw.

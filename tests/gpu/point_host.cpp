@@ -207,6 +207,7 @@ VitrailTargetDesc PointHost::targetDesc() {
   desc.postDepthCoverage = postDepthCoverage_ ? VK_TRUE : VK_FALSE;
   desc.maxLayers = desc_.maxLayers;
   desc.overflow = desc_.overflow;
+  desc.linking = desc_.linking;
   desc.nodeCapacity = desc_.capacity;
   desc.memoryBudget = desc_.memoryBudget;
   desc.areaPixels = desc_.areaPixels;
@@ -254,13 +255,13 @@ PointPipelinesInfo PointHost::pipelinesInfo(VitrailTargetDesc target) const {
   info.postDepthCoverage = postDepthCoverage_;
   info.addresses = desc_.addresses;
   if (!desc_.specialized) return info;
-  VitrailSpecialization specialization{};
   target.nodeFormat = desc_.specializedFor.value_or(target.nodeFormat);
   target.overflow = desc_.specializedForOverflow.value_or(target.overflow);
-  vitrailCollectSpecialization(&target, &specialization);
+  target.linking = desc_.specializedForLinking.value_or(target.linking);
+  const VitrailSpecialization specialization = context_->collectSpecialization(target);
   info.specialized = true;
   info.firstConstant = specialization.entries[0].constantID;
-  info.constants = {specialization.data[0], specialization.data[1], specialization.data[2]};
+  std::copy(std::begin(specialization.data), std::end(specialization.data), info.constants.begin());
   return info;
 }
 
@@ -543,10 +544,11 @@ void PointHost::scatterNodes() {
   const auto moved = [&](std::uint32_t index) { return index < capacity ? place[index] : index; };
   const std::vector<layout::VitrailNodeStandard> oldNodes(nodes.begin(), nodes.end());
   const std::vector<std::uint32_t> oldLinks(links.begin(), links.end());
+  const bool linked = desc_.linking == VITRAIL_LINKING_FRAGMENT; // else no node names another one yet
   for (std::uint32_t& head : heads) head = moved(head);
   for (std::uint32_t i = 0; i < capacity; ++i) {
     nodes[place[i]] = oldNodes[i];
-    links[place[i]] = moved(oldLinks[i]);
+    links[place[i]] = linked ? moved(oldLinks[i]) : oldLinks[i];
   }
 
   submitter_.run("nodes to the device", [&](VkCommandBuffer commands) {

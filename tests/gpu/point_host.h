@@ -47,6 +47,7 @@ struct PointHostDesc {
   VkFormat colorFormat = VK_FORMAT_R32G32B32A32_SFLOAT; // results of 16-bit formats are not read back
   std::uint32_t maxLayers = 0;
   VitrailOverflow overflow = VITRAIL_OVERFLOW_APPROXIMATE;
+  VitrailLinking linking = VITRAIL_LINKING_FRAGMENT;
   VkDeviceSize memoryBudget = 0; // the pool follows it: every draw updates the target first
   std::uint32_t areaPixels = 0;
   bool postDepthCoverage = true;  // where there are several samples and the device has it
@@ -56,6 +57,7 @@ struct PointHostDesc {
   bool specialized = false; // the collecting shader is, for this target or, if given, for one that differs in these
   std::optional<VitrailNodeFormat> specializedFor;
   std::optional<VitrailOverflow> specializedForOverflow;
+  std::optional<VitrailLinking> specializedForLinking;
   bool guarded = false; // the memory is this host's, between guard words
   // The fragments that are taken to have asked for a node before the first point. `guarded` only.
   std::uint32_t requestedBefore = 0;

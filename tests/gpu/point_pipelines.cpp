@@ -132,10 +132,9 @@ tool::Unique<VkPipeline> PointPipelines::make(bool points, std::uint32_t mask) c
   const auto vertexShader =
       makeShader(gpu_.device(), points ? std::span<const std::uint32_t>(shaders::points_vert) : shaders::opaque_vert);
   const auto fragmentShader = makeShader(gpu_.device(), points ? pointsShader() : shaders::opaque_frag);
-  const std::array<VkSpecializationMapEntry, 3> entries{VkSpecializationMapEntry{info_.firstConstant, 0, 4},
-                                                        VkSpecializationMapEntry{info_.firstConstant + 1, 4, 4},
-                                                        VkSpecializationMapEntry{info_.firstConstant + 2, 8, 4}};
-  const VkSpecializationInfo constants{3, entries.data(), sizeof(info_.constants), info_.constants.data()};
+  std::array<VkSpecializationMapEntry, 4> entries{};
+  for (std::uint32_t i = 0; i < entries.size(); ++i) entries[i] = {info_.firstConstant + i, 4 * i, 4};
+  const VkSpecializationInfo constants{entries.size(), entries.data(), sizeof(info_.constants), info_.constants.data()};
   std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
   for (auto& stage : stages) {
     stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;

@@ -67,7 +67,8 @@ class Dice {
 } // namespace
 
 NodeCoding codingOf(const PointHostDesc& desc) {
-  return {static_cast<std::uint32_t>(desc.nodes), desc.samples, desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE};
+  return {static_cast<std::uint32_t>(desc.nodes), desc.samples, desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE,
+          desc.linking == VITRAIL_LINKING_COMPUTE};
 }
 
 Expected expectedFrame(const PointHostDesc& desc, std::span<const Point> points, bool hasPostDepthCoverage) {
@@ -143,18 +144,25 @@ void apply(const Way& way, PointHostDesc& desc) {
   desc.resolve = way.resolve;
   desc.msaaResolve = way.msaaResolve;
   desc.stencilMark = way.stencilMark;
+  desc.linking = way.linking;
 }
 
 std::vector<Way> everyWay(const tool::Gpu& gpu, std::uint32_t samples) {
-  std::vector<Way> ways = {{"compute", VITRAIL_RESOLVE_COMPUTE, VITRAIL_MSAA_RESOLVE_PER_PIXEL, false},
-                           {"fragment", VITRAIL_RESOLVE_FRAGMENT, VITRAIL_MSAA_RESOLVE_PER_PIXEL, false}};
+  constexpr VitrailMsaaResolve kPerPixel = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
+  constexpr VitrailMsaaResolve kPerSample = VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
+  constexpr VitrailLinking kCompute = VITRAIL_LINKING_COMPUTE;
+  std::vector<Way> ways = {{"compute", VITRAIL_RESOLVE_COMPUTE, kPerPixel, false},
+                           {"compute, linked by compute", VITRAIL_RESOLVE_COMPUTE, kPerPixel, false, kCompute},
+                           {"fragment", VITRAIL_RESOLVE_FRAGMENT, kPerPixel, false}};
   if (samples == 1 && gpu.features().stencil) {
-    ways.push_back({"fragment with stencil mark", VITRAIL_RESOLVE_FRAGMENT, VITRAIL_MSAA_RESOLVE_PER_PIXEL, true});
+    ways.push_back(
+        {"fragment with stencil mark, linked by compute", VITRAIL_RESOLVE_FRAGMENT, kPerPixel, true, kCompute});
   }
   if (samples > 1 && gpu.features().sampleRateShading) {
-    ways.push_back({"per sample", VITRAIL_RESOLVE_FRAGMENT, VITRAIL_MSAA_RESOLVE_PER_SAMPLE, false});
+    ways.push_back({"per sample", VITRAIL_RESOLVE_FRAGMENT, kPerSample, false});
     if (gpu.features().stencil) {
-      ways.push_back({"per sample with stencil mark", VITRAIL_RESOLVE_FRAGMENT, VITRAIL_MSAA_RESOLVE_PER_SAMPLE, true});
+      ways.push_back(
+          {"per sample with stencil mark, linked by compute", VITRAIL_RESOLVE_FRAGMENT, kPerSample, true, kCompute});
     }
   }
   return ways;

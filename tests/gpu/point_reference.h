@@ -55,10 +55,11 @@ struct Way {
   VitrailResolve resolve = VITRAIL_RESOLVE_COMPUTE;
   VitrailMsaaResolve msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
   bool stencilMark = false;
+  VitrailLinking linking = VITRAIL_LINKING_FRAGMENT;
 };
 void apply(const Way& way, PointHostDesc& desc);
 
-// All that there are on a device at a sample count.
+// All that there are on a device at a sample count; each linking with each resolve.
 std::vector<Way> everyWay(const tool::Gpu& gpu, std::uint32_t samples);
 
 // Which of 2, 4 and 8 samples the device has.

@@ -43,10 +43,10 @@ TEST(Cli, HelpPagesAndVersion) {
 
 TEST(Cli, TheHelpPageNamesEveryOption) {
   const std::string help = vitrail({"render", "--help"}).out;
-  for (const char* option : {"--scene",   "--count",      "--seed",         "--size",    "--camera",       "--orbit",
-                             "--opacity", "--background", "--output",       "-o",        "--json",         "--quiet",
-                             "--device",  "--validate",   "--method",       "--samples", "--msaa-resolve", "--nodes",
-                             "--resolve", "--layers",     "--memory-budget"}) {
+  for (const char* option : {"--scene",   "--count",      "--seed",          "--size",    "--camera",       "--orbit",
+                             "--opacity", "--background", "--output",        "-o",        "--json",         "--quiet",
+                             "--device",  "--validate",   "--method",        "--samples", "--msaa-resolve", "--nodes",
+                             "--resolve", "--layers",     "--memory-budget", "--linking"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
 }
@@ -104,6 +104,8 @@ TEST(Cli, WrongUsageIsOneLineAndExitCode2) {
       {with({"--msaa-resolve", "per-sample", "--samples", "4", "--resolve", "compute"}), "--resolve fragment"},
       {with({"--samples", "8", "--nodes", "compact"}), "at most 4 samples"},
       {with({"--resolve", "default"}), "--resolve"},
+      {with({"--linking", "late"}), "fragment and compute"},
+      {with({"--method", "insertion", "--linking", "compute"}), "insertion has no choice"},
       {with({"--layers", "0"}), "--layers"},
       {with({"--layers", "-1"}), "--layers"},
       {with({"--memory-budget", "0"}), "--memory-budget"},
@@ -250,6 +252,19 @@ TEST(Cli, BothResolvesGiveOnePicture) {
     EXPECT_EQ(compute.report.at("resolve"), "compute");
     EXPECT_EQ(fragment.report.at("resolve"), "fragment");
     EXPECT_LE(largestDifference(compute.png, fragment.png), 1) << samples << " samples";
+    EXPECT_EQ(compute.report.at("fragments"), fragment.report.at("fragments"));
+  }
+}
+
+TEST(Cli, BothLinkingsGiveOnePictureButForRounding) {
+  for (const char* samples : {"1", "4"}) {
+    const Drawn fragment = draw({"--samples", samples, "--linking", "fragment"});
+    const Drawn compute = draw({"--samples", samples, "--linking", "compute"});
+    EXPECT_EQ(fragment.report.at("linking"), "fragment");
+    EXPECT_EQ(compute.report.at("linking"), "compute");
+    EXPECT_FALSE(fragment.report.at("passes_ms").contains("link"));
+    EXPECT_TRUE(compute.report.at("passes_ms").contains("link"));
+    EXPECT_LE(largestDifference(compute.png, fragment.png), samples == std::string("1") ? 3 : 0) << samples;
     EXPECT_EQ(compute.report.at("fragments"), fragment.report.at("fragments"));
   }
 }

@@ -86,6 +86,14 @@ TEST(BenchMatrix, EveryChoiceWithEveryOther) {
                                       "linked-list, hdr, compute", "linked-list, hdr, fragment"}));
 }
 
+TEST(BenchMatrix, LinkingsAreOfTheMethodsThatHaveThem) {
+  BenchMatrix matrix;
+  matrix.methods = {"linked-list", "insertion"};
+  matrix.linkings = {VITRAIL_LINKING_FRAGMENT, VITRAIL_LINKING_COMPUTE};
+  EXPECT_EQ(describeAll(matrix), (std::vector<std::string>{"unsorted", "linked-list, standard, linking fragment",
+                                                           "linked-list, standard, linking compute", "insertion"}));
+}
+
 TEST(BenchMatrix, WhatAMethodDoesNotHaveIsSkippedWithAReason) {
   BenchMatrix matrix;
   matrix.methods = {"insertion", "unsorted", "linked-list"};
@@ -154,6 +162,7 @@ std::vector<Measurement> twoMeasurements() {
   lists.exact = true;
   lists.nodes = "standard";
   lists.resolve = "compute";
+  lists.linking = "fragment";
   lists.fragmentsRequested = lists.fragmentsStored = 700;
   lists.layersMax = 9;
   lists.layersMean = 7.0;
@@ -336,13 +345,13 @@ TEST(BenchCsv, OneRowForEachMeasurement) {
   EXPECT_EQ(lines[0],
             "device,driver,cpu,sweep,step,scene,count,width,height,triangles,method,nodes,resolve,samples,exact,"
             "fragments,missing,layers_max,tiles,cost_ms,cost_lower_quartile_ms,cost_upper_quartile_ms,frame_ms,"
-            "cost_ratio,frame_ratio,memory_bytes,max_layers,passes");
+            "cost_ratio,frame_ratio,memory_bytes,max_layers,passes,linking");
   EXPECT_EQ(lines[1],
             "\"Abacus, \"\"large\"\"\",beads 1.0,false,,,spheres,400,100,10,1600000,unsorted,,,1,false,,,,1,2,"
-            "2,2,4,1,1,0,,");
+            "2,2,4,1,1,0,,,");
   EXPECT_EQ(lines[2],
             "\"Abacus, \"\"large\"\"\",beads 1.0,false,,,spheres,400,100,10,1600000,linked-list,standard,"
-            "compute,1,true,700,0,9,1,7,5.25,8.75,9,3.5,2.25,0,16,");
+            "compute,1,true,700,0,9,1,7,5.25,8.75,9,3.5,2.25,0,16,,fragment");
 }
 
 TEST(BenchCsv, ASweepNamesItsStep) {
@@ -351,7 +360,7 @@ TEST(BenchCsv, ASweepNamesItsStep) {
   const std::vector<std::string> lines = linesOf(toCsv(report));
   ASSERT_EQ(lines.size(), 10U); // 5 steps of 2, less one
   EXPECT_NE(lines[1].find(",resolution,57600,spheres,"), std::string::npos) << lines[1];
-  EXPECT_TRUE(lines[1].ends_with(",4,,1,0,,")) << lines[1]; // no ratio
+  EXPECT_TRUE(lines[1].ends_with(",4,,1,0,,,")) << lines[1]; // no ratio
 }
 
 TEST(BenchTable, SaysWhatItIs) {
@@ -371,6 +380,8 @@ TEST(BenchTable, SaysWhatItIs) {
   const std::string other = toTable(report);
   EXPECT_NE(other.find("only the ratios"), std::string::npos);
   EXPECT_NE(other.find("not exact: linked-list, standard left out 12 of 700"), std::string::npos) << other;
+  report.scenes[0].measurements[1].options.linking = VITRAIL_LINKING_FRAGMENT;
+  EXPECT_NE(toTable(report).find("linked-list, standard, compute, linking fragment  "), std::string::npos);
   frame.tiles = 3;
   EXPECT_NE(toTable(report).find("drew 3 tiles"), std::string::npos) << toTable(report);
 }

@@ -67,7 +67,7 @@ TEST(Pool, PartsAreAlignedAndDoNotOverlap) {
             end = part.offset + part.size;
           }
           EXPECT_EQ(storage.total, end);
-          EXPECT_EQ(storage.parameters.size, 48U);
+          EXPECT_EQ(storage.parameters.size, sizeof(VitrailParameters));
           EXPECT_EQ(storage.control.size, sizeof(VitrailControl));
           EXPECT_EQ(storage.sums.size, keepSums ? std::max<std::uint64_t>(16, 20ULL * pixels) : 16U);
         }

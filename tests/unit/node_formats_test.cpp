@@ -61,6 +61,23 @@ TEST(NodeFormats, StandardByHand) {
   EXPECT_EQ(*packNode({VITRAIL_FORMAT_STANDARD, 1, false}, fragment), (NodeWords{0x8000ffbcU, 0xff000000U, 0, 0}));
 }
 
+// Anywhere in [0, 1]; whole steps of the curve come through as they are.
+TEST(NodeFormats, ColoursThatComputeEncodesRoundAsStated) {
+  const NodeCoding coding{VITRAIL_FORMAT_STANDARD, 1, false, true};
+  constexpr int kParts = 400; // of a step
+  for (int i = 0; i <= 255 * kParts; ++i) {
+    const double curve = i / (255.0 * kParts);
+    const double linear = srgbToLinear(curve);
+    const Fragment kept = stored(coding, {{linear, linear, linear, 1.0}, 0.5F});
+    for (unsigned c = 0; c < 3; ++c) {
+      const double bound = i % kParts == 0 ? 1e-9 : (c == 2 ? 0.9 : 0.7) / 255;
+      ASSERT_NEAR(linearToSrgb(kept.color[c]), curve, bound) << curve;
+    }
+  }
+  const Fragment hostile = stored(coding, {{kNan, kInfinity, -kInfinity, 1.0}, 0.5F});
+  EXPECT_EQ(hostile.color, (Color{0.0, 1.0, 0.0, 1.0}));
+}
+
 TEST(NodeFormats, CompactByHand) {
   // Nearness 0.5 = 2^-1: the 31st of 32 exponents, so code 30 << 11.
   const Fragment fragment = {{1.0, 0.0, srgbToLinear(16 / 31.0), 22 / 63.0}, 0.5F, VITRAIL_ADDITIVE, 0x9};

@@ -127,12 +127,13 @@ const Offsets& controlOffsets() {
 
 const Offsets& parameterOffsets() {
   using layout::VitrailParameters;
-  static const Offsets offsets = {offsetof(VitrailParameters, x),        offsetof(VitrailParameters, y),
-                                  offsetof(VitrailParameters, width),    offsetof(VitrailParameters, height),
-                                  offsetof(VitrailParameters, capacity), offsetof(VitrailParameters, format),
-                                  offsetof(VitrailParameters, samples),  offsetof(VitrailParameters, nearestIsOne),
-                                  offsetof(VitrailParameters, keepSums), offsetof(VitrailParameters, layoutWord),
-                                  offsetof(VitrailParameters, nodesLow), offsetof(VitrailParameters, nodesHigh)};
+  static const Offsets offsets = {offsetof(VitrailParameters, x),         offsetof(VitrailParameters, y),
+                                  offsetof(VitrailParameters, width),     offsetof(VitrailParameters, height),
+                                  offsetof(VitrailParameters, capacity),  offsetof(VitrailParameters, format),
+                                  offsetof(VitrailParameters, samples),   offsetof(VitrailParameters, nearestIsOne),
+                                  offsetof(VitrailParameters, keepSums),  offsetof(VitrailParameters, unlinked),
+                                  offsetof(VitrailParameters, nodesLow),  offsetof(VitrailParameters, nodesHigh),
+                                  offsetof(VitrailParameters, capacities)};
   return offsets;
 }
 
@@ -232,6 +233,7 @@ void expectKernels(bool byAddress, bool networks) {
     SCOPED_TRACE(static_cast<int>(resolve));
     expectLayout(fragmentCode(resolve, byAddress, networks), byAddress);
   }
+  expectLayout(kernelCode(Kernel::Link, ColorImage::Rgba16f, false, byAddress, networks), byAddress);
   expectLayout(kernelCode(Kernel::SortLong, ColorImage::Rgba16f, false, byAddress, networks), byAddress);
   expectShared(parse(kernelCode(Kernel::SortFind, ColorImage::Rgba16f, false, byAddress, networks)));
   expectShared(parse(kernelCode(Kernel::ClearSums, ColorImage::Rgba16f, false, byAddress, networks)));

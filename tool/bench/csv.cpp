@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kHeader =
     "device,driver,cpu,sweep,step,scene,count,width,height,triangles,method,nodes,resolve,samples,exact,fragments,"
     "missing,layers_max,tiles,cost_ms,cost_lower_quartile_ms,cost_upper_quartile_ms,frame_ms,cost_ratio,frame_ratio,"
-    "memory_bytes,max_layers,passes\n";
+    "memory_bytes,max_layers,passes,linking\n";
 
 std::string text(std::string_view value) {
   if (value.find_first_of("\",\r\n") == std::string_view::npos) return std::string(value);
@@ -60,7 +60,8 @@ std::string rowOf(const BenchReport& report, const SceneMeasurement& scene, cons
                          number(measured.frameRatio),
                          fmt::format("{}", frame.totalBytes),
                          orEmpty(measured.options.maxLayers > 0, measured.options.maxLayers),
-                         orEmpty(measured.options.passes > 0, measured.options.passes)};
+                         orEmpty(measured.options.passes > 0, measured.options.passes),
+                         frame.linking};
   return fmt::format("{}\n", fmt::join(cells, ","));
 }
 

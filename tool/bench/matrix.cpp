@@ -9,11 +9,14 @@ namespace vitrail::tool {
 
 namespace {
 
-// Whether the node format and the resolve of a method can be chosen.
-bool hasChoices(std::string_view method) { return traitsOf(method).nodes && traitsOf(method).resolves; }
+// Whether the node format, the resolve and the linking of a method can be chosen.
+bool hasChoices(std::string_view method) {
+  return traitsOf(method).nodes && traitsOf(method).resolves && traitsOf(method).linkings;
+}
 
 bool same(const MethodOptions& a, const MethodOptions& b) {
-  return a.name == b.name && a.samples == b.samples && a.nodes == b.nodes && a.resolve == b.resolve;
+  return a.name == b.name && a.samples == b.samples && a.nodes == b.nodes && a.resolve == b.resolve &&
+         a.linking == b.linking;
 }
 
 bool holds(const BenchSettings& settings, const MethodOptions& options) {
@@ -41,9 +44,12 @@ void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t s
   if (!hasChoices(method)) return addSetting(settings, options);
   for (const VitrailNodeFormat nodes : matrix.nodes) {
     for (const VitrailResolve resolve : matrix.resolves) {
-      options.nodes = nodes;
-      options.resolve = resolve;
-      addSetting(settings, options);
+      for (const VitrailLinking linking : matrix.linkings) {
+        options.nodes = nodes;
+        options.resolve = resolve;
+        options.linking = linking;
+        addSetting(settings, options);
+      }
     }
   }
 }
@@ -94,6 +100,9 @@ std::string describe(const MethodOptions& options) {
   if (options.samples > 1) text.append(", ").append(std::to_string(options.samples)).append(" samples");
   if (hasChoices(options.name) && options.resolve != VITRAIL_RESOLVE_DEFAULT) {
     text.append(", ").append(nameOf(options.resolve));
+  }
+  if (hasChoices(options.name) && options.linking != VITRAIL_LINKING_DEFAULT) {
+    text.append(", linking ").append(nameOf(options.linking));
   }
   if (options.maxLayers > 0)
     text += fmt::format(", {} {}", options.maxLayers, options.maxLayers > 1 ? "layers" : "layer");

@@ -20,8 +20,8 @@ namespace {
 
 constexpr const char* kNone = "-";
 
-// One row: the setting, samples, then numbers.
-constexpr char kBenchRow[] = " {:<32}{:>3}{:>10}{:>7}{:>8}{:>10}{:>8}{:>9}{:>9}{:>7}{:>12}\n";
+// One row: the setting in so many columns, samples, then numbers.
+constexpr char kBenchRow[] = " {:<{}}{:>3}{:>10}{:>7}{:>8}{:>10}{:>8}{:>9}{:>9}{:>7}{:>12}\n";
 
 constexpr const char* kBenchLegend =
     R"(Milliseconds of GPU time, medians. cost: all passes but the opaque one, summed in each frame; IQR: its interquartile
@@ -36,18 +36,25 @@ std::string percent(double fraction) {
 
 std::string rate(double perSecond) { return fmt::format("{:.{}f}", perSecond * 1e-6, perSecond < 1e8 ? 1 : 0); }
 
-// What was measured: the method, its nodes and its resolve, where it has such.
+// What was measured: the method, its nodes and its resolve, where it has such, and the linking if it was chosen.
 std::string settingOf(const Measurement& measured) {
   std::string text = measured.options.name;
   for (const std::string& part : {measured.report.nodes, measured.report.resolve}) {
     if (!part.empty()) text.append(", ").append(part);
   }
+  if (measured.options.linking != VITRAIL_LINKING_DEFAULT) text.append(", linking ").append(measured.report.linking);
   return text;
 }
 
-std::string rowOf(const Measurement& measured) {
+std::size_t settingColumns(const SceneMeasurement& scene) {
+  std::size_t columns = 32;
+  for (const Measurement& measured : scene.measurements) columns = std::max(columns, settingOf(measured).size() + 1);
+  return columns;
+}
+
+std::string rowOf(const Measurement& measured, std::size_t columns) {
   const FrameReport& frame = measured.report;
-  return fmt::format(kBenchRow, settingOf(measured), frame.samples, milliseconds(measured.costMs.median),
+  return fmt::format(kBenchRow, settingOf(measured), columns, frame.samples, milliseconds(measured.costMs.median),
                      percent(relativeRange(measured.costMs)), ratio(measured.costRatio),
                      milliseconds(measured.frameMs.median), ratio(measured.frameRatio),
                      measured.fragmentsPerSecond ? rate(*measured.fragmentsPerSecond) : kNone,
@@ -56,8 +63,8 @@ std::string rowOf(const Measurement& measured) {
 }
 
 // What stands before a setting's passes.
-std::string labelOf(const Measurement& measured) {
-  return fmt::format(" {:<32}{:>3}  ", settingOf(measured), measured.report.samples);
+std::string labelOf(const Measurement& measured, std::size_t columns) {
+  return fmt::format(" {:<{}}{:>3}  ", settingOf(measured), columns, measured.report.samples);
 }
 
 // What has to be known of a measurement beside its numbers.
@@ -117,10 +124,12 @@ std::string skippedOf(const std::vector<const SceneMeasurement*>& steps) {
 
 std::string sceneTable(const SceneMeasurement& scene) {
   std::string table = sceneTitle(scene);
-  table += fmt::format(kBenchRow, "method", "AA", "cost", "IQR", "x", "frame", "x", "M/s", "floor", "bw", "memory");
-  for (const Measurement& measured : scene.measurements) table += rowOf(measured);
+  const std::size_t columns = settingColumns(scene);
+  table +=
+      fmt::format(kBenchRow, "method", columns, "AA", "cost", "IQR", "x", "frame", "x", "M/s", "floor", "bw", "memory");
+  for (const Measurement& measured : scene.measurements) table += rowOf(measured, columns);
   table += " passes\n";
-  for (const Measurement& measured : scene.measurements) table += passesOf(labelOf(measured), measured);
+  for (const Measurement& measured : scene.measurements) table += passesOf(labelOf(measured, columns), measured);
   for (const Measurement& measured : scene.measurements) table += noteOn(measured);
   return table + skippedOf(scene);
 }

@@ -42,6 +42,10 @@ How to blend it:
                         coarser colours and depths), hdr (16 bytes, brighter than white)
   --resolve R           where the lists are sorted: compute or fragment shaders (default: the faster
                         one of the device). The same picture
+  --linking L           where fragments are put on their lists: in the fragment shaders that shade
+                        them, or in a compute pass after them (default: the faster one of the
+                        device, as far as that was measured). With standard nodes and one sample the
+                        last bit of some colours differs
   --passes N            of stochastic: passes over the surfaces (default 16); four times as many
                         halve the noise
   --layers N            blends only the nearest N surfaces of a pixel exactly (default: all; loop,
@@ -77,6 +81,7 @@ void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   addPositive(command, "--memory-budget", arguments.memoryBudget);
   addChoice(command, "--nodes", "standard, compact and hdr", method.nodes, nodeFormatNamed);
   addChoice(command, "--resolve", "compute and fragment", method.resolve, resolveNamed);
+  addChoice(command, "--linking", "fragment and compute", method.linking, linkingNamed);
   addChoice(command, "--msaa-resolve", "per-pixel and per-sample", method.msaaResolve, msaaResolveNamed);
 }
 

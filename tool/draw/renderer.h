@@ -39,6 +39,7 @@ struct FrameReport {
   std::uint32_t samples = 1;
   std::string nodes;       // "compact", "standard", "hdr"; empty where the method has no choice
   std::string resolve;     // "compute", "fragment"; empty where the method has none
+  std::string linking;     // the same of who links lists
   std::string msaaResolve; // "per-pixel", "per-sample"; empty at one sample and where `resolve` is
   bool exact = false;
   bool counted = false; // whether the method counts fragments: else the counts and layers are 0
@@ -53,10 +54,10 @@ struct FrameReport {
   std::uint64_t headsBytes = 0;
   std::uint64_t totalBytes = 0; // all that the method keeps for the picture: nodes, heads, lists, counters
   std::uint64_t peakBytes = 0;  // the most device memory that the tool and the library held at once
-  // GPU time, in order: opaque, the passes that the method names, encode. With fragment lists those are clear, collect
-  // and resolve; unsorted has blend; a multisampled picture has box_filter before encode. Summed over tiles. What the
-  // host works on a frame before the GPU can go on stands among them, as sort. Empty, and frameMs 0, on devices without
-  // timestamps.
+  // GPU time, in order: opaque, the passes that the method names, encode. With fragment lists those are clear, collect,
+  // link where linking is a pass of its own, and resolve; unsorted has blend; a multisampled picture has box_filter
+  // before encode. Summed over tiles. What the host works on a frame before the GPU can go on stands among them, as
+  // sort. Empty, and frameMs 0, on devices without timestamps.
   std::vector<std::pair<std::string, double>> passesMs;
   double frameMs = 0.0;                   // of all passes
   std::vector<std::uint32_t> pixelLayers; // of the method layer-count alone: the fragments of each pixel

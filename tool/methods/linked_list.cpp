@@ -24,6 +24,8 @@ namespace {
 constexpr std::uint64_t kNodesPerPixel = 4;
 constexpr std::uint64_t kLargestGuess = std::uint64_t{1} << 24U;
 
+constexpr std::uint32_t kDepthFromW = 1; // the constant of shaders/collect.frag
+
 void remember(VitrailLogSeverity severity, const char* message, void* reason) {
   if (severity == VITRAIL_LOG_ERROR) *static_cast<std::string*>(reason) = message;
 }
@@ -60,10 +62,10 @@ bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
 
 } // namespace
 
-LinkedList::LinkedList(const MethodHost& host, const MethodOptions& options) : gpu_(host.gpu), options_(options) {
+LinkedList::LinkedList(const MethodHost& host, const MethodOptions& options)
+    : gpu_(host.gpu), source_(host.surfaces), options_(options) {
   makeContext();
   chooseResolve();
-  makeSurfaces(host.surfaces);
 }
 
 LinkedList::~LinkedList() { gpu_.memoryFreed(counted_); }
@@ -98,12 +100,19 @@ void LinkedList::chooseResolve() {
   if (options_.samples > 1 && !features.postDepthCoverage) needs_.depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
 }
 
-void LinkedList::makeSurfaces(const Surfaces& surfaces) {
+// The pipelines for the picture that is wanted, where there are none yet or others.
+void LinkedList::makeSurfaces() {
   const bool coverage = options_.samples > 1 && gpu_.features().postDepthCoverage;
   const bool address = gpu_.features().poolByAddress;
-  const VitrailTargetDesc desc = targetDesc();
-  VitrailSpecialization specialization{};
-  vitrailCollectSpecialization(&desc, &specialization);
+  VitrailTargetDesc desc = targetDesc();
+  if (desc.linking == VITRAIL_LINKING_DEFAULT) desc.linking = context_.defaultLinking(desc);
+  PipelineKind kind;
+  kind.linking = desc.linking;
+  // Where samples are tested in the resolve, depths are compared with those of the depth image.
+  kind.depthFromW = source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
+  if (surfaces_ && kind == pipelines_) return;
+  pipelines_ = kind;
+  const VitrailSpecialization specialization = context_.collectSpecialization(desc);
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     if (coverage && address) info.fragmentShader = shaders::collect_coverage_address_frag;
     if (coverage && !address) info.fragmentShader = shaders::collect_coverage_frag;
@@ -112,12 +121,13 @@ void LinkedList::makeSurfaces(const Surfaces& surfaces) {
     for (std::size_t i = 0; i < std::size(specialization.entries); ++i) {
       info.constants.emplace_back(specialization.entries[i].constantID, specialization.data[i]);
     }
+    info.constants.emplace_back(kDepthFromW, kind.depthFromW ? VK_TRUE : VK_FALSE);
     info.samples = flagOf(options_.samples);
     info.depthFormat = PictureImages::depthFormat(needs_.stencil);
     if (needs_.stencil) vitrailStencilMark(&info.stencil.emplace());
   };
   const SurfaceProgram program{.set = context_.descriptorSetLayout(), .name = "collect"};
-  surfaces_.emplace(surfaces, surfaces.scene().transparentDraws(), program, describe);
+  surfaces_.emplace(source_, source_.scene().transparentDraws(), program, describe);
 }
 
 // All but the memory and the images.
@@ -131,6 +141,7 @@ VitrailTargetDesc LinkedList::targetDesc() const {
   desc.msaaResolve = options_.msaaResolve;
   desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
   desc.maxLayers = options_.maxLayers;
+  desc.linking = pipelines_.linking != VITRAIL_LINKING_DEFAULT ? pipelines_.linking : options_.linking;
   desc.overflow = VITRAIL_OVERFLOW_SKIP; // the picture is drawn again, with a larger pool or in tiles
   desc.colorFormat = PictureImages::kColorFormat;
   if (needs_.stencil) {
@@ -142,9 +153,11 @@ VitrailTargetDesc LinkedList::targetDesc() const {
 }
 
 void LinkedList::setTarget(const MethodTarget& target) {
-  if (wanted_.color != VK_NULL_HANDLE && sameTarget(target, wanted_)) return;
+  if (wanted_.color != VK_NULL_HANDLE && sameTarget(target, wanted_)) return makeSurfaces();
   releaseTarget();
   wanted_ = target;
+  pipelines_.linking = VITRAIL_LINKING_DEFAULT; // may be another one for another size
+  makeSurfaces();
   expected_ = 0;
   budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
   inTiles_ = target.memoryBudget.has_value();
@@ -222,8 +235,9 @@ void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
   cmdBeginScope(commands, images.transparentScope(area));
   frame.drawSurfaces(*surfaces_, target_.descriptorSet());
   vkCmdEndRendering(commands);
+  if (pipelines_.linking == VITRAIL_LINKING_COMPUTE) frame.endPass("collect");
   target_.collected(commands);
-  frame.endPass("collect");
+  frame.endPass(pipelines_.linking == VITRAIL_LINKING_COMPUTE ? "link" : "collect");
   if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT) {
     cmdBeginScope(commands, images.resolveScope(commands, area));
     target_.resolve(commands);

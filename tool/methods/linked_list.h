@@ -24,6 +24,7 @@ class LinkedList final : public Method {
   std::string_view name() const override { return "linked-list"; }
   std::string_view nodes() const override { return nameOf(options_.nodes); }
   std::string_view resolve() const override { return nameOf(options_.resolve); }
+  std::string_view linking() const override { return nameOf(pipelines_.linking); }
   MethodNeeds needs() const override { return needs_; }
   void setTarget(const MethodTarget& target) override;
   void releaseTarget() override;
@@ -34,7 +35,7 @@ class LinkedList final : public Method {
  private:
   void makeContext();
   void chooseResolve();
-  void makeSurfaces(const Surfaces& surfaces);
+  void makeSurfaces();
   VitrailTargetDesc targetDesc() const;
   bool createTarget(const VitrailTargetDesc& desc);
   bool createWholeTarget(std::uint32_t nodeCapacity);
@@ -46,11 +47,20 @@ class LinkedList final : public Method {
   void add(const VitrailStats& stats);
   void check(VkResult result, const char* call) const;
 
+  // What pipelines differ in beside the options.
+  struct PipelineKind {
+    VitrailLinking linking = VITRAIL_LINKING_DEFAULT;
+    bool depthFromW = false; // shaders/collect.frag
+    bool operator==(const PipelineKind&) const = default;
+  };
+
   Gpu& gpu_;
+  const Surfaces& source_;
   MethodOptions options_;
   MethodNeeds needs_;
   std::string reason_; // what the library last logged
   Context context_;
+  PipelineKind pipelines_; // of surfaces_
   std::optional<SurfacePipelines> surfaces_;
   Target target_;
   std::uint64_t frame_ = 0;  // of the target: rises with every area

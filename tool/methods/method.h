@@ -77,10 +77,12 @@ class Method {
   Method(const Method&) = delete;
   Method& operator=(const Method&) = delete;
 
-  // In reports: the name, the node format and the resolve ("compute", "fragment"), where the method has such.
+  // In reports: the name, the node format, the resolve and the linking ("compute", "fragment"), where the method has
+  // such.
   virtual std::string_view name() const = 0;
   virtual std::string_view nodes() const { return {}; }
   virtual std::string_view resolve() const { return {}; }
+  virtual std::string_view linking() const { return {}; }
   virtual MethodNeeds needs() const = 0;
 
   // Makes what frames of this target need; keeps what it has where that fits. No frame is pending. Throws GpuError.

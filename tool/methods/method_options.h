@@ -19,6 +19,7 @@ struct MethodOptions {
   // Of methods that have a choice of them (MethodTraits):
   VitrailNodeFormat nodes = VITRAIL_NODE_STANDARD;
   VitrailResolve resolve = VITRAIL_RESOLVE_DEFAULT;
+  VitrailLinking linking = VITRAIL_LINKING_DEFAULT;
   VitrailMsaaResolve msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
   std::uint32_t maxLayers = 0; // the nearest of a pixel that are drawn as they are; 0: no bound, or the method's own
   std::uint32_t passes = 0;    // over the surfaces; 0: the method's own number
@@ -30,6 +31,7 @@ struct MethodTraits {
   bool severalSamples = true;
   bool nodes = false;        // --nodes
   bool resolves = false;     // --resolve
+  bool linkings = false;     // --linking
   bool msaaResolves = false; // --msaa-resolve
   bool layers = false;       // --layers
   bool passes = false;       // --passes
@@ -54,14 +56,17 @@ void checkMethodOptions(const MethodOptions& options);
 // The same for what is chosen with each picture: whether there is a memory budget.
 void checkPictureOptions(std::string_view method, bool memoryBudget);
 
-// The names of the choices: "standard", "compact", "hdr"; "compute", "fragment"; "per-pixel", "per-sample".
+// The names of the choices: "standard", "compact", "hdr"; "compute", "fragment", of resolve and linking; "per-pixel",
+// "per-sample".
 std::string_view nameOf(VitrailNodeFormat nodes);
 std::string_view nameOf(VitrailResolve resolve);
+std::string_view nameOf(VitrailLinking linking);
 std::string_view nameOf(VitrailMsaaResolve msaaResolve);
 
 // The choice of that name; nothing for another text.
 std::optional<VitrailNodeFormat> nodeFormatNamed(std::string_view name);
 std::optional<VitrailResolve> resolveNamed(std::string_view name);
+std::optional<VitrailLinking> linkingNamed(std::string_view name);
 std::optional<VitrailMsaaResolve> msaaResolveNamed(std::string_view name);
 
 } // namespace vitrail::tool

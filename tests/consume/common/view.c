@@ -15,8 +15,9 @@ View viewCreate(const Host* host, VitrailContext context, const VitrailTargetDes
   hostCheck(host, vitrailCreateTarget(context, &complete, &view.target), "vitrailCreateTarget");
 
   VitrailSpecialization constants;
-  vitrailCollectSpecialization(&complete, &constants);
-  const VkSpecializationInfo specialization = {3, constants.entries, sizeof constants.data, constants.data};
+  vitrailCollectSpecialization(context, &complete, &constants);
+  const VkSpecializationInfo specialization = {sizeof constants.entries / sizeof *constants.entries, constants.entries,
+                                               sizeof constants.data, constants.data};
   view.painter = sceneCreatePainter(host, &(PainterDesc){.extent = desc->extent,
                                                          .colorFormat = view.color.format,
                                                          .depthFormat = view.depth.format,

@@ -1,10 +1,17 @@
 // Transparent surfaces: each fragment goes on its pixel's list.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+float fragmentDepth();
+#define VITRAIL_DEPTH fragmentDepth()
 #define VITRAIL_SET 2
 #include "vitrail/collect.glsl"
 
 #include "surface.glsl"
+
+// Whether depths follow from gl_FragCoord.w: with a perspective camera.
+layout(constant_id = 1) const bool kDepthFromW = false;
+
+float fragmentDepth() { return kDepthFromW ? fma(gl_FragCoord.w, frame.depth.y, frame.depth.x) : gl_FragCoord.z; }
 
 void main() {
   Surface surface = shadeSurface();

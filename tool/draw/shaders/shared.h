@@ -37,6 +37,7 @@ struct FrameData {
   vec4 eye;     // xyz: the camera's position; w: 1 if orthographic
   vec4 toLight; // xyz: unit vector in the world
   vec4 ray;     // a pixel at (x, y) looks along (x * ray.x - ray.z, ray.w - y * ray.y, -1) in camera axes
+  vec4 depth;   // a perspective camera's depths are depth.x + depth.y * gl_FragCoord.w
 };
 
 // One draw (std140).
@@ -69,7 +70,7 @@ struct MaterialData {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameData) == 176);
+static_assert(sizeof(FrameData) == 192);
 static_assert(sizeof(DrawData) == 112);
 static_assert(sizeof(SlotData) == 32);
 static_assert(sizeof(MaterialData) == 256);

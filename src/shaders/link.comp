@@ -1,0 +1,26 @@
+// After the fragments have been collected, where their shader does not link them (VitrailLinking): puts every node on
+// the list of its pixel and finishes it. One thread a node, or several nodes where there are more than threads.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "target.glsl"
+#include "vitrail/unlinked.glsl"
+
+layout(local_size_x = 64) in; // kLinkGroupNodes of dispatch_compute.cpp
+
+void main() {
+  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  uint nodes = nodesInUse();
+  for (uint index = gl_GlobalInvocationID.x; index < nodes; index += threads) {
+    uvec4 node = vitrailLoadNode(index, vitrailNodes());
+    uint pixelIndex = node.w & VITRAIL_PIXEL_MASK;
+    if (pixelIndex >= parameters.width * parameters.height) continue; // never, unless memory is corrupt
+    uint next = atomicExchange(heads[pixelIndex], index) & vitrailNextMask(vitrailNodes());
+    if (vitrailIsRaw(vitrailNodes())) {
+      node = vitrailFinish(node, vitrailNodes());
+      node.w = next;
+      vitrailStoreNode(index, node, vitrailNodes());
+    } else {
+      vitrailStoreNext(index, next, vitrailNodes());
+    }
+  }
+}
