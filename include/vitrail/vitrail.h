@@ -114,7 +114,8 @@ typedef enum VitrailNodeFormat {
    *             VITRAIL_LINKING_COMPUTE it is rounded twice: at most 0.7/255 for red and green, 0.9/255 for blue, and
    *             none for colours that are whole steps of the curve.
    *   alpha     8 bits, linear, clamped to [0, 1]; the error is at most 0.5/255.
-   *   depth     the full 32-bit float of gl_FragCoord.z, clamped to [0, 1]; no error.
+   *   depth     the full 32-bit float of gl_FragCoord.z, or of the depth that the shader hands over, clamped to [0, 1];
+   *             no error.
    *   coverage  up to 8 samples.
    *   pool      up to 0xe0000000 nodes at 1 sample, 2^28 - 2 at 2 and 4 samples, 2^24 - 2 at 8 samples. */
   VITRAIL_NODE_STANDARD = 0,
@@ -175,19 +176,22 @@ typedef enum VitrailResolve {
 } VitrailResolve;
 
 /* Who puts a fragment on the list of its pixel. Lists, memory and everything above hold for both; so does the picture,
- * but for the colours of VITRAIL_NODE_STANDARD at 1 sample, see there. */
+ * but for the colours of VITRAIL_NODE_STANDARD at 1 sample, see there. Fixed when a target is made. */
 typedef enum VitrailLinking {
-  /* What vitrailDefaultLinking() says for the target's fields. */
+  /* What vitrailDefaultLinking() says for the target's fields when it is made: vitrailTargetLinking(). */
   VITRAIL_LINKING_DEFAULT = 0,
   /* The fragment shader, as it collects (Yang et al.). */
   VITRAIL_LINKING_FRAGMENT = 1,
   /* A compute pass, which vitrailCmdCollected() records: the fragment shader notes the pixel in the node, and in
    * VITRAIL_NODE_STANDARD at 1 sample also leaves it to that pass to encode the colour. It takes less of fragment
    * shaders, and each node is read and written once more. For GPUs that run fragment shaders on few of their cores
-   * (docs/performance.md). Areas of up to 4096 x 4096 pixels (areaPixels). */
+   * (docs/performance.md). Areas (areaPixels) of up to VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE. */
   VITRAIL_LINKING_COMPUTE = 2,
   VITRAIL_LINKING_MAX_ENUM = 0x7fffffff
 } VitrailLinking;
+
+/* The most pixels of an area with VITRAIL_LINKING_COMPUTE: 4096 x 4096. Tile plans make no larger tiles. */
+#define VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE 0x1000000
 
 /* What the resolve writes where the collect pass has several samples. Each sample blends its own fragments, those that
  * cover it, over its own opaque colour. */
@@ -298,8 +302,8 @@ typedef struct VitrailTargetDesc {
 VITRAIL_API VitrailResolve vitrailDefaultResolve(VitrailContext context, const VitrailTargetDesc* desc);
 
 /* The linking that VITRAIL_LINKING_DEFAULT stands for: VITRAIL_LINKING_COMPUTE on devices where it was measured to be
- * faster for the target's fields, and where they allow it, else VITRAIL_LINKING_FRAGMENT. docs/performance.md says
- * which those are, and how to measure another device. */
+ * faster, and where extent and areaPixels allow it, else VITRAIL_LINKING_FRAGMENT. docs/performance.md says which those
+ * are, and how to measure another device. */
 VITRAIL_API VitrailLinking vitrailDefaultLinking(VitrailContext context, const VitrailTargetDesc* desc);
 
 /* What a buffer of the host's must be to serve as a target's memory. Its memory is device-local: shaders do atomics in
@@ -311,7 +315,7 @@ typedef struct VitrailRequirements {
 } VitrailRequirements;
 
 /* Errors: those of vitrailCreateTarget for the fields that matter here (extent, samples, nodeFormat, overflow,
- * nodeCapacity, areaPixels). */
+ * linking, nodeCapacity, areaPixels). */
 VITRAIL_API VkResult vitrailTargetRequirements(VitrailContext context, const VitrailTargetDesc* desc,
                                                VitrailRequirements* requirements);
 
@@ -325,6 +329,9 @@ VITRAIL_API VkResult vitrailCreateTarget(VitrailContext context, const VitrailTa
 
 /* Destroys the target. No command buffer that was recorded with it may still be pending. Null is ignored. */
 VITRAIL_API void vitrailDestroyTarget(VitrailTarget target);
+
+/* The linking that a target was made with, never VITRAIL_LINKING_DEFAULT. */
+VITRAIL_API VitrailLinking vitrailTargetLinking(VitrailTarget target);
 
 /* Bytes that a pool of nodeCapacity nodes takes in a format. */
 VITRAIL_API VkDeviceSize vitrailNodePoolSize(VitrailNodeFormat format, uint32_t nodeCapacity);
@@ -358,7 +365,8 @@ VITRAIL_API VkResult vitrailUpdateTarget(VitrailTarget target, uint64_t frame);
 
 /* Gives the target another extent and other images from `frame` on. Frames in flight keep the old ones: the old views
  * must stay until those frames have finished; the library waits for nothing. The descriptor set changes. areaPixels is
- * as in VitrailTargetDesc (0: the whole extent). Errors: as vitrailCreateTarget; the target stays as it was. */
+ * as in VitrailTargetDesc (0: the whole extent). Errors: as vitrailCreateTarget, of the linking that the target was
+ * made with; the target stays as it was. */
 typedef struct VitrailResizeInfo {
   uint64_t frame;
   VkExtent2D extent;
@@ -380,8 +388,9 @@ VITRAIL_API VkDescriptorSetLayout vitrailDescriptorSetLayout(VitrailContext cont
 VITRAIL_API VkDescriptorSet vitrailTargetDescriptorSet(VitrailTarget target);
 
 /* Optional: specialization constants for the host's collecting fragment shaders, which fix the node format, the sample
- * count, whether fragments without a node are summed (VitrailOverflow) and who links (VitrailLinking; extent and
- * areaPixels matter for its default). Without them the shader reads all of it from
+ * count, whether fragments without a node are summed (VitrailOverflow) and who links (VitrailLinking). With
+ * VITRAIL_LINKING_DEFAULT the extent and areaPixels must be those that the target is made with; for a target that was
+ * resized set what vitrailTargetLinking() says. Without them the shader reads all of it from
  * the target and has code for everything; with them it is smaller, which drivers that execute both sides of every
  * branch repay most. A shader that was specialized for another target stores nothing, and its fragments count as
  * missing. */
@@ -417,9 +426,10 @@ typedef struct VitrailBeginInfo {
  * its number or go on. */
 VITRAIL_API void vitrailCmdBegin(VkCommandBuffer commandBuffer, VitrailTarget target, const VitrailBeginInfo* info);
 
-/* Ends the collect pass. Outside a rendering scope, after the draws. Makes the lists that fragment shaders wrote
- * visible to the resolve. With VITRAIL_LINKING_COMPUTE it links the fragments, and for VITRAIL_RESOLVE_FRAGMENT it
- * sorts the lists that are longer than 16 fragments, in place; for both it binds compute pipelines and a set. */
+/* Ends the collect pass. Once a frame, outside a rendering scope, after all draws that collect. Makes the lists that
+ * fragment shaders wrote visible to the resolve. With VITRAIL_LINKING_COMPUTE it links the fragments, and for
+ * VITRAIL_RESOLVE_FRAGMENT it sorts the lists that are longer than 16 fragments, in place; for both it binds compute
+ * pipelines and a set. */
 VITRAIL_API void vitrailCmdCollected(VkCommandBuffer commandBuffer, VitrailTarget target);
 
 typedef struct VitrailResolveInfo {

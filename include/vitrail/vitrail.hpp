@@ -66,6 +66,7 @@ class Target {
   explicit operator bool() const { return handle_ != nullptr; }
   VitrailTarget handle() const { return handle_; }
   VkDescriptorSet descriptorSet() const { return vitrailTargetDescriptorSet(handle_); }
+  VitrailLinking linking() const { return vitrailTargetLinking(handle_); }
   VitrailMemory memory() const {
     VitrailMemory memory{};
     vitrailTargetMemory(handle_, &memory);

@@ -6,18 +6,14 @@
 //   void main() { vitrailCollect(shade()); }   // linear colour, straight alpha
 //
 // or vitrailCollect(color, VITRAIL_ADDITIVE) and so on, see VitrailBlend; more than one call in a shader collects more
-// than one fragment. The depth test runs before the shader (early_fragment_tests), so fragments behind opaque geometry
-// never enter a list. discard still works: call it before vitrailCollect(), or do not call vitrailCollect() at all.
+// than one fragment. vitrailCollect(color, blend, depth) takes another depth than gl_FragCoord.z. The depth test runs
+// before the shader (early_fragment_tests), so fragments behind opaque geometry never enter a list. discard still
+// works: call it before vitrailCollect(), or do not call vitrailCollect() at all.
 //
 // Define before the include
 //   VITRAIL_SET                   required: the descriptor set number of vitrailTargetDescriptorSet() in your layout
 //   VITRAIL_POST_DEPTH_COVERAGE   with several samples and VK_EXT_post_depth_coverage: VitrailTargetDesc says the same
 //   VITRAIL_BUFFER_REFERENCE      where the context has VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS
-//   VITRAIL_DEPTH                 the depth of a fragment, default gl_FragCoord.z. GPUs were seen to be faster where a
-//                                 shader does not read that: with a perspective projection P it is also
-//                                 fma(gl_FragCoord.w, P[3][2], -P[2][2]) for P[2][3] = -1, with a depth range of
-//                                 [0, 1] and no depth bias. With several samples only together with
-//                                 VITRAIL_POST_DEPTH_COVERAGE: else depths are compared with those of the depth image
 //   VITRAIL_CONSTANT_ID           the first of four specialization constants, default 1700; see
 //                                 vitrailCollectSpecialization()
 #ifndef VITRAIL_COLLECT_GLSL
@@ -38,9 +34,6 @@
 #endif
 #ifndef VITRAIL_CONSTANT_ID
 #define VITRAIL_CONSTANT_ID 1700
-#endif
-#ifndef VITRAIL_DEPTH
-#define VITRAIL_DEPTH gl_FragCoord.z
 #endif
 
 #ifdef VITRAIL_POST_DEPTH_COVERAGE
@@ -100,32 +93,46 @@ uint vitrailCapacity() {
   return vitrailParameters.capacities[number / 4u][number % 4u];
 }
 
-// Leaves a node as one that changes nothing: who links nodes later links all of them.
-void vitrailStoreNothing(uint index, uint pixelIndex) {
-  VitrailLayout target = VitrailLayout(vitrailParameters.format, vitrailParameters.samples, false);
-  vitrailStoreNode(index, uvec4(0u, 0u, 0u, pixelIndex & VITRAIL_PIXEL_MASK), target);
+// Calls for the dispatch that blends the sums.
+void vitrailCallForSums() {
+  vitrailControl.overflowGroupsX = (vitrailParameters.width + 7u) / 8u;
+  vitrailControl.overflowGroupsY = (vitrailParameters.height + 7u) / 8u;
+  vitrailControl.overflowGroupsZ = 1u;
 }
 
-// Counts a fragment that was given this index, and so no node, or one that its shader must not write: `unfit`.
-void vitrailCountMissing(uint index, uint pixelIndex, bool unfit) {
+// For a fragment whose shader was specialized for another target. The node that it was given, if any, is left as one
+// that changes nothing: who links nodes later links all of them.
+void vitrailTurnAway(uint index, uint pixelIndex) {
+  if (index < vitrailParameters.capacity) {
+    atomicAdd(vitrailControl.misfits, 1u);
+    VitrailLayout target = VitrailLayout(vitrailParameters.format, vitrailParameters.samples, false);
+    vitrailStoreNode(index, uvec4(0u, 0u, 0u, pixelIndex & VITRAIL_PIXEL_MASK), target);
+  }
+  if (vitrailParameters.keepSums != 0u) vitrailCallForSums();
+}
+
+// What else the fragment that was given this index does for the counters, which is beyond `capacity`: the shader's own.
+void vitrailCountMissing(uint index, uint pixelIndex, uint capacity) {
+  bool unfit = capacity < vitrailParameters.capacity;
 #ifdef VITRAIL_BUFFER_REFERENCE
   // One branch round all of it, which compilers keep: what stands in short ones they execute for every fragment.
   if (unfit || index == VITRAIL_WRAP_AT) {
-    if (unfit) {
-      atomicAdd(vitrailControl.misfits, 1u);
-      vitrailStoreNothing(index, pixelIndex);
-    } else {
+    if (index == VITRAIL_WRAP_AT) {
       atomicAdd(vitrailControl.requested, 0u - VITRAIL_WRAP_STEP);
       atomicAdd(vitrailControl.wraps, 1u);
+    } else {
+      vitrailTurnAway(index, pixelIndex);
     }
   }
 #else
   // A loop: lavapipe executes the body of a branch for no fragment, too, and an atomic is long there.
   uint updates = index == VITRAIL_WRAP_AT ? 2u : unfit ? 1u : 0u;
   for (uint i = 0u; i < updates; ++i) {
-    uint word = unfit ? 2u : i; // misfits, or requested and wraps
-    atomicAdd(vitrailControlAgain[word], word == 0u ? 0u - VITRAIL_WRAP_STEP : 1u);
-    if (unfit) vitrailStoreNothing(index, pixelIndex);
+    if (index == VITRAIL_WRAP_AT) {
+      atomicAdd(vitrailControlAgain[i], i == 0u ? 0u - VITRAIL_WRAP_STEP : 1u); // requested, wraps
+    } else {
+      vitrailTurnAway(index, pixelIndex);
+    }
   }
 #endif
 }
@@ -140,13 +147,6 @@ void vitrailAddMissing(uint pixelIndex, uvec4 node, uint coverage, VitrailLayout
   atomicAdd(vitrailPixelSums[first + 2u], sums.color.b);
   atomicAdd(vitrailPixelSums[first + 3u], sums.opacity);
   atomicAdd(vitrailPixelSums[first + 4u], sums.density);
-}
-
-// Calls for the dispatch that blends the sums.
-void vitrailCallForSums() {
-  vitrailControl.overflowGroupsX = (vitrailParameters.width + 7u) / 8u;
-  vitrailControl.overflowGroupsY = (vitrailParameters.height + 7u) / 8u;
-  vitrailControl.overflowGroupsZ = 1u;
 }
 
 // Names the declarations that are there twice, so that compilers keep them, in code that no pipeline has. They are
@@ -169,11 +169,17 @@ uvec2 vitrailAreaPixel(uint samples) {
   return floatBitsToUint(gl_FragCoord.xy + 8388607.5) - (origin + 0x4b000000u);
 }
 
-// Pushes a fragment at VITRAIL_DEPTH with this pixel's coverage on the list of its pixel. `color` is linear; `blend` is
-// one of VITRAIL_OVER (straight alpha), VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY. A fragment outside
-// the frame's area, or one that would change nothing, is ignored. When the pool is full the list is left as it is, and
-// the fragment is counted, by the same counter that hands out nodes.
-void vitrailCollect(vec4 color, uint blend) {
+// Pushes a fragment at `depth` with this pixel's coverage on the list of its pixel. `color` is linear; `blend` is one
+// of VITRAIL_OVER (straight alpha), VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY. A fragment outside the
+// frame's area, or one that would change nothing, is ignored. When the pool is full the list is left as it is, and the
+// fragment is counted, by the same counter that hands out nodes.
+//
+// `depth` is a number in [0, 1] that orders fragments as gl_FragCoord.z does. GPUs may be faster where a shader does
+// not read that: with a perspective projection P, a depth range of [0, 1] and no depth bias it is also
+// fma(gl_FragCoord.w, P[3][2], -P[2][2]), where P[2][3] is -1 and P[0][2], P[1][2], P[0][3], P[1][3] and P[3][3] are
+// 0. With several samples only together with VITRAIL_POST_DEPTH_COVERAGE: else the resolve compares depths with those
+// of the depth image.
+void vitrailCollect(vec4 color, uint blend, float depth) {
   vitrailKeepDeclarations();
   VitrailLayout nodes = vitrailTargetLayout();
   uvec2 pixel = vitrailAreaPixel(nodes.samples);
@@ -182,19 +188,19 @@ void vitrailCollect(vec4 color, uint blend) {
   uvec4 node;
   bool changes;
   if (vitrailLinksLater()) {
-    changes = vitrailPackUnlinked(color, blend, VITRAIL_DEPTH, coverage, nodes, node);
+    changes = vitrailPackUnlinked(color, blend, depth, coverage, nodes, node);
   } else {
-    changes = vitrailPack(color, blend, VITRAIL_DEPTH, coverage, nodes, node);
+    changes = vitrailPack(color, blend, depth, coverage, nodes, node);
   }
   if (!changes || coverage == 0u) return;
 
   uint pixelIndex = pixel.y * vitrailParameters.width + pixel.x;
+  uint capacity = vitrailCapacity();
   uint index = atomicAdd(vitrailControl.requested, 1u);
-  if (index >= vitrailCapacity()) {
-    bool unfit = index < vitrailParameters.capacity;
-    vitrailCountMissing(index, pixelIndex, unfit);
+  if (index >= capacity) {
+    vitrailCountMissing(index, pixelIndex, capacity);
     if (vitrailKeepsSums() && vitrailParameters.keepSums != 0u) { // a shader for another target looks at both
-      if (index == vitrailParameters.capacity || unfit) vitrailCallForSums();
+      if (index == vitrailParameters.capacity) vitrailCallForSums();
       if (vitrailLinksLater()) node = vitrailFinish(node, nodes);
       vitrailAddMissing(pixelIndex, node, coverage, nodes);
     }
@@ -206,6 +212,7 @@ void vitrailCollect(vec4 color, uint blend) {
   vitrailStoreNode(index, node, nodes);
 }
 
+void vitrailCollect(vec4 color, uint blend) { vitrailCollect(color, blend, gl_FragCoord.z); }
 void vitrailCollect(vec4 color) { vitrailCollect(color, VITRAIL_OVER); }
 
 #endif

@@ -7,11 +7,16 @@
 
 layout(local_size_x = 64) in; // kLinkGroupNodes of dispatch_compute.cpp
 
+// Whether a node was given to a fragment that left nothing in it (vitrail/collect.glsl): no other is empty but for the
+// pixel, since a fragment without alpha is stored only where its blend mode is not 0.
+bool isTurnedAway(uvec4 node) { return (node.x | node.y | node.z | (node.w & ~VITRAIL_PIXEL_MASK)) == 0u; }
+
 void main() {
   uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   uint nodes = nodesInUse();
   for (uint index = gl_GlobalInvocationID.x; index < nodes; index += threads) {
     uvec4 node = vitrailLoadNode(index, vitrailNodes());
+    if (control.misfits != 0u && isTurnedAway(node)) continue;
     uint pixelIndex = node.w & VITRAIL_PIXEL_MASK;
     if (pixelIndex >= parameters.width * parameters.height) continue; // never, unless memory is corrupt
     uint next = atomicExchange(heads[pixelIndex], index) & vitrailNextMask(vitrailNodes());

@@ -133,7 +133,8 @@ VkResult checkMemory(VitrailContext context, const VitrailTargetDesc& desc) {
   if (desc.linking != VITRAIL_LINKING_FRAGMENT && desc.linking != VITRAIL_LINKING_COMPUTE) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED, "linking %d is none of VitrailLinking", desc.linking);
   }
-  if (desc.linking == VITRAIL_LINKING_COMPUTE && desc.areaPixels > layout::VITRAIL_PIXELS_TO_LINK) {
+  static_assert(VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE == layout::VITRAIL_PIXELS_TO_LINK);
+  if (desc.linking == VITRAIL_LINKING_COMPUTE && desc.areaPixels > VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED,
                     "an area of %u pixels: VITRAIL_LINKING_COMPUTE takes up to %u at once; make the target with "
                     "VITRAIL_LINKING_FRAGMENT, or draw in tiles",

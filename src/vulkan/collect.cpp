@@ -95,9 +95,11 @@ void clear(VkCommandBuffer commandBuffer, VitrailTarget_T& target) {
 // Puts the nodes on their lists, where the collecting shader did not.
 void linkNodes(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
   dispatchNodes(commandBuffer, target, target.pipelines.link);
+#ifndef VITRAIL_TEST_OMIT_LINKED_BARRIER // the negative control again
   // Writer: the linking. Readers: sorting and the resolve, which link nodes anew, and add to the counters.
   recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
                 {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT});
+#endif
 }
 
 // For a fragment resolve: lists that are longer than it sorts itself are sorted where they lie.

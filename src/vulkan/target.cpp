@@ -209,7 +209,7 @@ extern "C" VitrailResolve vitrailDefaultResolve(VitrailContext context, const Vi
 }
 
 extern "C" VitrailLinking vitrailDefaultLinking(VitrailContext context, const VitrailTargetDesc* desc) {
-  const bool fits = vitrail::withAreaPixels(*desc).areaPixels <= vitrail::layout::VITRAIL_PIXELS_TO_LINK;
+  const bool fits = vitrail::withAreaPixels(*desc).areaPixels <= VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE;
   return fits && context->limits.fewFragmentCores ? VITRAIL_LINKING_COMPUTE : VITRAIL_LINKING_FRAGMENT;
 }
 
@@ -288,6 +288,8 @@ extern "C" VkResult vitrailResizeTarget(VitrailTarget target, const VitrailResiz
 }
 
 extern "C" VkDescriptorSet vitrailTargetDescriptorSet(VitrailTarget target) { return target->storage.set; }
+
+extern "C" VitrailLinking vitrailTargetLinking(VitrailTarget target) { return target->desc.linking; }
 
 extern "C" void vitrailTargetMemory(VitrailTarget target, VitrailMemory* memory) {
   const vitrail::Storage& storage = target->storage;

@@ -46,8 +46,8 @@ TilePlanInfo planInfo(VitrailContext context, const VitrailTilePlanDesc& desc) {
   // The target keeps its statistics beside the buffer.
   constexpr VkDeviceSize kBeside = VITRAIL_MAX_FRAMES_IN_FLIGHT * sizeof(StatsSlot);
   info.memoryBudget = std::min({desc.memoryBudget - kBeside, limits.allocationSize, limits.heapSize});
-  info.areaPixelsLimit =
-      static_cast<std::uint32_t>(std::min<std::uint64_t>(limits.storageBufferRange / sizeof(layout::uint), ~0U));
+  info.areaPixelsLimit = static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(limits.storageBufferRange / sizeof(layout::uint), VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE));
   info.alignment = limits.alignment;
   info.nodeCapacityLimit =
       vitrailMaxNodeCapacity(context, desc.nodeFormat, static_cast<VkSampleCountFlagBits>(info.samples));

@@ -91,11 +91,13 @@ TEST_F(BudgetTest, ALargePictureOfEightLayersIsDrawnInTiles) {
   EXPECT_EQ(different, 0U);
 }
 
-// A pool beyond what one binding reaches on Mesa's CPU driver, 128 MiB.
+// A pool beyond what one binding reaches on Mesa's CPU driver, 128 MiB, and beyond the threads that link its nodes.
 TEST_F(BudgetTest, APictureMayHaveMoreNodesThanABindingHolds) {
+  MethodOptions method;
+  method.linking = VITRAIL_LINKING_COMPUTE;
   const Scene scene = panes(4);
-  const RenderResult small = renderOnce(gpu(), scene, paneOptions(4));
-  const RenderResult large = renderOnce(gpu(), scene, paneOptions(2048));
+  const RenderResult small = renderOnce(gpu(), scene, paneOptions(4), {}, DrawOrder::Forward, method);
+  const RenderResult large = renderOnce(gpu(), scene, paneOptions(2048), {}, DrawOrder::Forward, method);
   EXPECT_TRUE(large.report.exact);
   EXPECT_EQ(large.report.fragmentsStored, 4ULL * 2048 * 2048);
   if (gpu().features().poolByAddress) {

@@ -58,7 +58,9 @@ std::vector<MethodOptions> methodVariety(const Gpu& gpu) {
   compact.resolve = VITRAIL_RESOLVE_COMPUTE;
   MethodOptions hdr = drawn;
   hdr.nodes = VITRAIL_NODE_HDR;
-  std::vector<MethodOptions> methods = {compact, hdr};
+  MethodOptions linkedByCompute;
+  linkedByCompute.linking = VITRAIL_LINKING_COMPUTE;
+  std::vector<MethodOptions> methods = {compact, hdr, linkedByCompute};
   for (const std::uint32_t samples : {2U, 4U, 8U}) {
     if ((gpu.features().sampleCounts & samples) == 0) continue;
     MethodOptions perPixel;

@@ -544,6 +544,61 @@ TEST_F(LibraryTest, NodesThatNobodyWroteAreNotSeen) {
   }
 }
 
+// The fragment that is first to find no node is a stranger's: the frame is blended from sums all the same, which leave
+// nothing behind.
+TEST_F(LibraryTest, StrangersDoNotHideThatAFrameOverflows) {
+  for (const Way& way : everyWay(gpu(), 1)) {
+    SCOPED_TRACE(way.name);
+    PointHostDesc desc;
+    desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
+    desc.strangersFor = VITRAIL_OVERFLOW_SKIP;
+    apply(way, desc);
+    std::vector<Point> points = randomLists(desc, std::vector<std::uint32_t>(40, 1), 2);
+    const Expected expected = expectedFrame(desc, points);
+    points.insert(points.begin() + 20, {50 % desc.width, 50 / desc.width, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}});
+    points[20].stranger = true;
+    for (const std::uint32_t capacity : {20U, 30U}) { // it finds none, or is given one
+      desc.capacity = capacity;
+      PointHost host(gpu(), desc);
+      for (int frame = 0; frame < 2; ++frame) {
+        const PointResult result = host.draw(points);
+        EXPECT_EQ(result.stats.exact, 0U);
+        EXPECT_EQ(result.stats.fragmentsRequested, points.size());
+        EXPECT_LE(result.stats.fragmentsStored, capacity);
+        EXPECT_LT(largestError(result.pixels, expected.pixels), 0x1p-13); // sums of one layer, none of the stranger's
+      }
+    }
+  }
+}
+
+// What a host builds its shaders for is what its target is, whatever that is on this device.
+TEST_F(LibraryTest, ShadersForTheDefaultLinkingSuitTheirTarget) {
+  PointHostDesc desc;
+  desc.width = 16;
+  desc.height = 8;
+  desc.linking = VITRAIL_LINKING_DEFAULT;
+  desc.specialized = true;
+  const std::vector<Point> points = randomLists(desc, {0, 1, 5, 20, 3}, 7);
+  desc.capacity = static_cast<std::uint32_t>(points.size());
+  PointHost host(gpu(), desc);
+  const Expected expected = expectedFrame(desc, points);
+  expectLikeReference(host.draw(points), expected);
+
+  VitrailTargetDesc described{};
+  described.extent = {desc.width, desc.height};
+  const VitrailLinking linking = host.context().defaultLinking(described);
+  EXPECT_EQ(host.target().linking(), linking);
+  described.extent = {4096, 4097};
+  EXPECT_EQ(host.context().defaultLinking(described), VITRAIL_LINKING_FRAGMENT);
+  if (linking != VITRAIL_LINKING_COMPUTE) return;
+  // It stays what it is, also where another would be made otherwise.
+  VitrailResizeInfo resize{};
+  resize.frame = 1;
+  resize.extent = described.extent;
+  EXPECT_EQ(vitrailResizeTarget(host.target().handle(), &resize), VK_ERROR_INITIALIZATION_FAILED);
+  expectLikeReference(host.draw(points), expected);
+}
+
 TEST_F(LibraryTest, StatisticsBelongToTheirFrame) {
   PointHostDesc desc;
   desc.capacity = 10;

@@ -1,8 +1,13 @@
-// The tests' own test: linked against a library that leaves out the collect-to-resolve barrier, synchronization
-// validation must object. If it does not, no other test's silence means anything.
+// The tests' own test: linked against a library that leaves out a barrier, synchronization validation must object. If
+// it does not, no other test's silence means anything. Once without the barrier between collecting and the resolve,
+// once, with VITRAIL_TEST_LINKING, without the one after the compute pass that links.
 #include <gtest/gtest.h>
 
 #include "point_host.h"
+
+#ifndef VITRAIL_TEST_LINKING
+#define VITRAIL_TEST_LINKING VITRAIL_LINKING_FRAGMENT
+#endif
 
 namespace vitrail::tests {
 namespace {
@@ -12,6 +17,7 @@ TEST(NegativeControl, AMissingBarrierIsCaught) {
   {
     PointHostDesc desc;
     desc.capacity = 4;
+    desc.linking = VITRAIL_TEST_LINKING;
     const Point point = {0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}};
     PointHost(gpu, desc).draw(std::span(&point, 1));
   }

@@ -148,7 +148,11 @@ PointHost::PointHost(tool::Gpu& gpu, const PointHostDesc& desc)
   makeSlots();
   VitrailTargetDesc target = targetDesc();
   createTarget(target);
-  pipelines_ = &sharedPipelines(gpu, pipelinesInfo(target));
+  pipelines_ = &sharedPipelines(gpu, specialized(pipelinesInfo(), target));
+  if (!desc.strangersFor) return;
+  desc_.specialized = true;
+  target.overflow = *desc.strangersFor;
+  strangers_ = &sharedPipelines(gpu, specialized(pipelinesInfo(), target));
 }
 
 PointHost::Slot PointHost::makeSlot() const {
@@ -245,7 +249,7 @@ void PointHost::createTarget(VitrailTargetDesc& desc) {
   check(Target::create(*context_, desc, target_), "vitrailCreateTarget");
 }
 
-PointPipelinesInfo PointHost::pipelinesInfo(VitrailTargetDesc target) const {
+PointPipelinesInfo PointHost::pipelinesInfo() const {
   PointPipelinesInfo info;
   info.set = context_->descriptorSetLayout();
   info.samples = static_cast<VkSampleCountFlagBits>(desc_.samples);
@@ -254,7 +258,12 @@ PointPipelinesInfo PointHost::pipelinesInfo(VitrailTargetDesc target) const {
   info.nearestIsOne = desc_.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
   info.postDepthCoverage = postDepthCoverage_;
   info.addresses = desc_.addresses;
+  return info;
+}
+
+PointPipelinesInfo PointHost::specialized(PointPipelinesInfo info, const VitrailTargetDesc& desc) const {
   if (!desc_.specialized) return info;
+  VitrailTargetDesc target = desc;
   target.nodeFormat = desc_.specializedFor.value_or(target.nodeFormat);
   target.overflow = desc_.specializedForOverflow.value_or(target.overflow);
   target.linking = desc_.specializedForLinking.value_or(target.linking);
@@ -319,7 +328,7 @@ void PointHost::recordOpaque(VkCommandBuffer commands, Slot& slot) {
   vkCmdEndRendering(commands);
 }
 
-// Points that follow each other and cover the same samples are one draw.
+// Points that follow each other and cover the same samples, strangers or not, are one draw.
 void PointHost::recordPoints(VkCommandBuffer commands, Slot& slot, const Vertices& vertices) {
   VkRenderingAttachmentInfo depth{};
   if (hasDepth()) {
@@ -343,8 +352,13 @@ void PointHost::recordPoints(VkCommandBuffer commands, Slot& slot, const Vertice
   const std::span<const Point> points = vertices.points;
   for (std::size_t first = 0; first < points.size();) {
     std::size_t end = first + 1;
-    while (end < points.size() && ((points[end].coverage ^ points[first].coverage) & all) == 0) ++end;
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines_->points(points[first].coverage & all));
+    const Point& point = points[first];
+    const auto isAlike = [&](const Point& other) {
+      return ((other.coverage ^ point.coverage) & all) == 0 && other.stranger == point.stranger;
+    };
+    while (end < points.size() && isAlike(points[end])) ++end;
+    PointPipelines& pipelines = point.stranger ? *strangers_ : *pipelines_;
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.points(point.coverage & all));
     vkCmdDraw(commands, static_cast<std::uint32_t>(end - first), 1, static_cast<std::uint32_t>(first), 0);
     first = end;
   }

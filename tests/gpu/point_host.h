@@ -31,6 +31,7 @@ struct Point {
   std::array<float, 4> color{};
   std::uint32_t blend = VITRAIL_BLEND_OVER;
   std::uint32_t coverage = 0xff;
+  bool stranger = false; // drawn by PointHostDesc::strangersFor
 };
 
 using FloatColor = std::array<float, 4>;
@@ -58,6 +59,8 @@ struct PointHostDesc {
   std::optional<VitrailNodeFormat> specializedFor;
   std::optional<VitrailOverflow> specializedForOverflow;
   std::optional<VitrailLinking> specializedForLinking;
+  // Strangers among the points are drawn by a shader that is specialized for a target that differs in this.
+  std::optional<VitrailOverflow> strangersFor;
   bool guarded = false; // the memory is this host's, between guard words
   // The fragments that are taken to have asked for a node before the first point. `guarded` only.
   std::uint32_t requestedBefore = 0;
@@ -80,7 +83,7 @@ struct PointResult {
 class PointHost {
  public:
   // What the words before and behind the library's memory hold, as long as nobody writes there.
-  static constexpr std::uint32_t kGuard = 0xa5c35a3cU;
+  static constexpr std::uint32_t kGuard = 0xa5000023U; // as a node, of pixel 35
   static constexpr std::uint32_t kGuardWords = 1024;
 
   static constexpr std::uint32_t kFramesTogether = 2;
@@ -142,7 +145,8 @@ class PointHost {
   [[nodiscard]] VitrailViews views();
   [[nodiscard]] VitrailTargetDesc targetDesc();
   void createTarget(VitrailTargetDesc& desc);
-  [[nodiscard]] PointPipelinesInfo pipelinesInfo(VitrailTargetDesc target) const;
+  [[nodiscard]] PointPipelinesInfo pipelinesInfo() const;
+  [[nodiscard]] PointPipelinesInfo specialized(PointPipelinesInfo info, const VitrailTargetDesc& target) const;
   [[nodiscard]] Vertices upload(std::span<const Point> points) const;
   Slot& slotOf(std::uint64_t frame) { return slots_[frame % kFramesTogether]; }
 
@@ -183,6 +187,7 @@ class PointHost {
   tool::GpuBuffer guards_; // a copy of the guards for the host
   Target target_;
   PointPipelines* pipelines_ = nullptr; // shared
+  PointPipelines* strangers_ = nullptr; // of strangers; shared
   tool::Submitter submitter_;
 };
 

@@ -105,7 +105,7 @@ void LinkedList::makeSurfaces() {
   const bool coverage = options_.samples > 1 && gpu_.features().postDepthCoverage;
   const bool address = gpu_.features().poolByAddress;
   VitrailTargetDesc desc = targetDesc();
-  if (desc.linking == VITRAIL_LINKING_DEFAULT) desc.linking = context_.defaultLinking(desc);
+  desc.linking = options_.linking != VITRAIL_LINKING_DEFAULT ? options_.linking : context_.defaultLinking(desc);
   PipelineKind kind;
   kind.linking = desc.linking;
   // Where samples are tested in the resolve, depths are compared with those of the depth image.
@@ -141,7 +141,7 @@ VitrailTargetDesc LinkedList::targetDesc() const {
   desc.msaaResolve = options_.msaaResolve;
   desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
   desc.maxLayers = options_.maxLayers;
-  desc.linking = pipelines_.linking != VITRAIL_LINKING_DEFAULT ? pipelines_.linking : options_.linking;
+  desc.linking = pipelines_.linking;
   desc.overflow = VITRAIL_OVERFLOW_SKIP; // the picture is drawn again, with a larger pool or in tiles
   desc.colorFormat = PictureImages::kColorFormat;
   if (needs_.stencil) {
@@ -156,11 +156,12 @@ void LinkedList::setTarget(const MethodTarget& target) {
   if (wanted_.color != VK_NULL_HANDLE && sameTarget(target, wanted_)) return makeSurfaces();
   releaseTarget();
   wanted_ = target;
-  pipelines_.linking = VITRAIL_LINKING_DEFAULT; // may be another one for another size
   makeSurfaces();
   expected_ = 0;
   budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
-  inTiles_ = target.memoryBudget.has_value();
+  const bool linksAll =
+      pipelines_.linking == VITRAIL_LINKING_FRAGMENT || pixelsOf(target.extent) <= VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE;
+  inTiles_ = target.memoryBudget.has_value() || !linksAll;
   if (inTiles_) return; // drawTiles() knows how large the tiles are
   const std::uint64_t largest = context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
   const std::uint64_t guess = std::min({kNodesPerPixel * pixelsOf(target.extent), kLargestGuess, largest});

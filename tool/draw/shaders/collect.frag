@@ -1,8 +1,6 @@
 // Transparent surfaces: each fragment goes on its pixel's list.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-float fragmentDepth();
-#define VITRAIL_DEPTH fragmentDepth()
 #define VITRAIL_SET 2
 #include "vitrail/collect.glsl"
 
@@ -11,14 +9,17 @@ float fragmentDepth();
 // Whether depths follow from gl_FragCoord.w: with a perspective camera.
 layout(constant_id = 1) const bool kDepthFromW = false;
 
-float fragmentDepth() { return kDepthFromW ? fma(gl_FragCoord.w, frame.depth.y, frame.depth.x) : gl_FragCoord.z; }
+void collect(vec4 color, uint blend) {
+  float depth = kDepthFromW ? fma(gl_FragCoord.w, frame.depth.y, frame.depth.x) : gl_FragCoord.z;
+  vitrailCollect(color, blend, depth);
+}
 
 void main() {
   Surface surface = shadeSurface();
   if (has(FEATURE_TRANSMISSION)) {
-    vitrailCollect(reflectionOf(surface), VITRAIL_PREMULTIPLIED);
-    vitrailCollect(filterOf(surface), VITRAIL_MULTIPLY);
+    collect(reflectionOf(surface), VITRAIL_PREMULTIPLIED);
+    collect(filterOf(surface), VITRAIL_MULTIPLY);
   } else {
-    vitrailCollect(vec4(surface.color, surface.alpha), has(FEATURE_ADDITIVE) ? VITRAIL_ADDITIVE : VITRAIL_OVER);
+    collect(vec4(surface.color, surface.alpha), has(FEATURE_ADDITIVE) ? VITRAIL_ADDITIVE : VITRAIL_OVER);
   }
 }
