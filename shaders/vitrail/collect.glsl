@@ -100,22 +100,26 @@ void vitrailCallForSums() {
   vitrailControl.overflowGroupsZ = 1u;
 }
 
+#ifdef VITRAIL_BUFFER_REFERENCE
+// Takes a node: its index, or one from `capacity`, the shader's own, on. There is no test before it whether the shader
+// is one for this target, which GPUs would do for every fragment.
+uint vitrailTakeNode(uint capacity) { return atomicAdd(vitrailControl.requested, 1u); }
+
 // For a fragment whose shader was specialized for another target. The node that it was given, if any, is left as one
 // that changes nothing: who links nodes later links all of them.
 void vitrailTurnAway(uint index, uint pixelIndex) {
   if (index < vitrailParameters.capacity) {
-    atomicAdd(vitrailControl.misfits, 1u);
+    atomicAdd(vitrailControl.misfitNodes, 1u);
     VitrailLayout target = VitrailLayout(vitrailParameters.format, vitrailParameters.samples, false);
     vitrailStoreNode(index, uvec4(0u, 0u, 0u, pixelIndex & VITRAIL_PIXEL_MASK), target);
   }
   if (vitrailParameters.keepSums != 0u) vitrailCallForSums();
 }
 
-// What else the fragment that was given this index does for the counters, which is beyond `capacity`: the shader's own.
+// What else the fragment that was given this index, and no node, does for the counters. One branch round all of it,
+// which compilers keep: what stands in short ones they execute for every fragment.
 void vitrailCountMissing(uint index, uint pixelIndex, uint capacity) {
   bool unfit = capacity < vitrailParameters.capacity;
-#ifdef VITRAIL_BUFFER_REFERENCE
-  // One branch round all of it, which compilers keep: what stands in short ones they execute for every fragment.
   if (unfit || index == VITRAIL_WRAP_AT) {
     if (index == VITRAIL_WRAP_AT) {
       atomicAdd(vitrailControl.requested, 0u - VITRAIL_WRAP_STEP);
@@ -124,18 +128,25 @@ void vitrailCountMissing(uint index, uint pixelIndex, uint capacity) {
       vitrailTurnAway(index, pixelIndex);
     }
   }
-#else
-  // A loop: lavapipe executes the body of a branch for no fragment, too, and an atomic is long there.
-  uint updates = index == VITRAIL_WRAP_AT ? 2u : unfit ? 1u : 0u;
-  for (uint i = 0u; i < updates; ++i) {
-    if (index == VITRAIL_WRAP_AT) {
-      atomicAdd(vitrailControlAgain[i], i == 0u ? 0u - VITRAIL_WRAP_STEP : 1u); // requested, wraps
-    } else {
-      vitrailTurnAway(index, pixelIndex);
-    }
-  }
-#endif
 }
+#else
+// The same for lavapipe, which executes every branch and every loop's body once, for no fragment if need be, and is
+// slow where memory is reached: a fragment whose shader is for another target takes no index, and there is one atomic
+// for all else.
+uint vitrailTakeNode(uint capacity) {
+  uint index = VITRAIL_END;
+  if (capacity != 0u) index = atomicAdd(vitrailControl.requested, 1u);
+  return index;
+}
+
+void vitrailCountMissing(uint index, uint pixelIndex, uint capacity) {
+  uint updates = index == VITRAIL_WRAP_AT ? 2u : index == VITRAIL_END ? 1u : 0u;
+  for (uint i = 0u; i < updates; ++i) {
+    uint word = index == VITRAIL_END ? 2u : i; // misfits, or requested and wraps
+    atomicAdd(vitrailControlAgain[word], word == 0u ? 0u - VITRAIL_WRAP_STEP : 1u);
+  }
+}
+#endif
 
 // Adds a fragment that found no node to the sums of its pixel.
 void vitrailAddMissing(uint pixelIndex, uvec4 node, uint coverage, VitrailLayout nodes) {
@@ -196,11 +207,11 @@ void vitrailCollect(vec4 color, uint blend, float depth) {
 
   uint pixelIndex = pixel.y * vitrailParameters.width + pixel.x;
   uint capacity = vitrailCapacity();
-  uint index = atomicAdd(vitrailControl.requested, 1u);
+  uint index = vitrailTakeNode(capacity);
   if (index >= capacity) {
     vitrailCountMissing(index, pixelIndex, capacity);
     if (vitrailKeepsSums() && vitrailParameters.keepSums != 0u) { // a shader for another target looks at both
-      if (index == vitrailParameters.capacity) vitrailCallForSums();
+      if (index == vitrailParameters.capacity || index == VITRAIL_END) vitrailCallForSums();
       if (vitrailLinksLater()) node = vitrailFinish(node, nodes);
       vitrailAddMissing(pixelIndex, node, coverage, nodes);
     }

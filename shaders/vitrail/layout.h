@@ -52,10 +52,11 @@ struct VitrailNodeHdr {
 
 // What a frame counts. All zero when the collect pass starts.
 struct VitrailControl {
-  uint requested; // fragments that asked for a node: the index of the next one's, which may be beyond the pool
-  uint wraps;     // VITRAIL_WRAP_STEP of them each are not in `requested`
-  uint misfits;   // of those that got a node: fragments of shaders for another target, which are missing too
-  uint layersMax; // this and the next three are written by the resolve
+  uint requested;   // fragments that asked for a node: the index of the next one's, which may be beyond the pool
+  uint wraps;       // VITRAIL_WRAP_STEP of them each are not in `requested`
+  uint misfits;     // fragments of shaders for another target that did not ask for a node: they are missing too
+  uint misfitNodes; // nodes that such fragments were given, and left empty
+  uint layersMax;   // this and the next three are written by the resolve
   uint coveredPixels[VITRAIL_COUNTERS];
   uint cutPixels; // lists that the driver did not let it finish
   uint approximatePixels;
@@ -106,7 +107,7 @@ struct VitrailParameters {
 static_assert(sizeof(VitrailNodeStandard) == 8);
 static_assert(sizeof(VitrailNodeCompact) == 8);
 static_assert(sizeof(VitrailNodeHdr) == 16);
-static_assert(sizeof(VitrailControl) == 148);
+static_assert(sizeof(VitrailControl) == 152);
 static_assert(offsetof(VitrailControl, wraps) == 4); // collect.glsl reaches both as words
 static_assert(offsetof(VitrailControl, misfits) == 8);
 static_assert(sizeof(VitrailParameters) == 240);

@@ -44,6 +44,8 @@ void countLayers(uint layers) {
 }
 
 uint nodesInUse() { return min(control.requested, parameters.capacity); }
-bool overflowed() { return control.requested > parameters.capacity || control.misfits != 0u; }
+bool overflowed() {
+  return control.requested > parameters.capacity || (control.misfits | control.misfitNodes) != 0u;
+}
 
 #endif

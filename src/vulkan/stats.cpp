@@ -84,8 +84,8 @@ extern "C" VkResult vitrailReadStats(VitrailTarget target, uint64_t frame, Vitra
   stats->frame = frame;
   stats->nodeCapacity = nodeCapacity;
   const std::uint64_t requested = std::uint64_t{control.wraps} * vitrail::layout::VITRAIL_WRAP_STEP + control.requested;
-  stats->fragmentsRequested = requested;
-  stats->fragmentsStored = std::min<std::uint64_t>(requested, stats->nodeCapacity) - control.misfits;
+  stats->fragmentsRequested = requested + control.misfits;
+  stats->fragmentsStored = std::min<std::uint64_t>(requested, stats->nodeCapacity) - control.misfitNodes;
   stats->fragmentsMissing = stats->fragmentsRequested - stats->fragmentsStored;
   stats->cutPixels = control.cutPixels;
   stats->approximatePixels = control.approximatePixels;

@@ -490,13 +490,33 @@ TEST_F(LibraryTest, CompactDepthsAreToldApartAsStated) {
   }
 }
 
+// How collecting shaders may be: each kind turns away what does not suit it in its own way.
+struct Kind {
+  VitrailLinking linking;
+  bool addresses;
+};
+
+std::vector<Kind> kindsOf(const tool::Gpu& gpu) {
+  std::vector<Kind> kinds = {{VITRAIL_LINKING_FRAGMENT, false}, {VITRAIL_LINKING_COMPUTE, false}};
+  if (!gpu.features().bufferDeviceAddress) return kinds;
+  kinds.push_back({VITRAIL_LINKING_FRAGMENT, true});
+  kinds.push_back({VITRAIL_LINKING_COMPUTE, true});
+  return kinds;
+}
+
+std::string describe(const Kind& kind) {
+  return "linking " + std::to_string(kind.linking) + (kind.addresses ? ", by address" : ", by binding");
+}
+
 // A shader that is specialized for another target stores nothing there, and says so.
 TEST_F(LibraryTest, AShaderOfAnotherTargetStoresNothing) {
-  for (const VitrailLinking linking : kLinkings) {
+  for (const Kind& kind : kindsOf(gpu())) {
+    SCOPED_TRACE(describe(kind));
     PointHostDesc desc;
     desc.capacity = 4;
     desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
-    desc.linking = linking;
+    desc.linking = kind.linking;
+    desc.addresses = kind.addresses;
     const Point point = {0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}};
     desc.specialized = true;
     EXPECT_EQ(PointHost(gpu(), desc).draw(std::span(&point, 1)).stats.fragmentsStored, 1U);
@@ -521,13 +541,15 @@ TEST_F(LibraryTest, AShaderOfAnotherTargetStoresNothing) {
 
 // Nodes that were given to such a shader are on no list that shows: what is left of other frames in them stays unseen.
 TEST_F(LibraryTest, NodesThatNobodyWroteAreNotSeen) {
-  for (const VitrailLinking linking : kLinkings) {
+  for (const Kind& kind : kindsOf(gpu())) {
+    SCOPED_TRACE(describe(kind));
     PointHostDesc desc;
     desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
-    desc.linking = linking;
+    desc.linking = kind.linking;
+    desc.addresses = kind.addresses;
     desc.specialized = true;
     desc.specializedForLinking =
-        linking == VITRAIL_LINKING_COMPUTE ? VITRAIL_LINKING_FRAGMENT : VITRAIL_LINKING_COMPUTE;
+        kind.linking == VITRAIL_LINKING_COMPUTE ? VITRAIL_LINKING_FRAGMENT : VITRAIL_LINKING_COMPUTE;
     desc.guarded = true; // the nodes hold guard words at first
     const std::vector<Point> points = randomLists(desc, std::vector<std::uint32_t>(64, 1), 2);
     for (const std::uint32_t capacity : {30U, 200U}) {
@@ -537,6 +559,7 @@ TEST_F(LibraryTest, NodesThatNobodyWroteAreNotSeen) {
       EXPECT_EQ(result.stats.fragmentsRequested, points.size());
       EXPECT_EQ(result.stats.fragmentsStored, 0U);
       EXPECT_EQ(result.stats.exact, 0U);
+      EXPECT_EQ(result.stats.coveredPixels, 0U);
       // Every pixel has one fragment, and its sums are that.
       EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), 0x1p-13);
       EXPECT_TRUE(host.guardsUntouched());
@@ -559,6 +582,7 @@ TEST_F(LibraryTest, StrangersDoNotHideThatAFrameOverflows) {
     points[20].stranger = true;
     for (const std::uint32_t capacity : {20U, 30U}) { // it finds none, or is given one
       desc.capacity = capacity;
+      desc.addresses = gpu().features().bufferDeviceAddress && capacity == 20U;
       PointHost host(gpu(), desc);
       for (int frame = 0; frame < 2; ++frame) {
         const PointResult result = host.draw(points);

@@ -111,17 +111,18 @@ Offsets offsetsOf(const Module& module, std::uint32_t type) {
 const Offsets& controlOffsets() {
   using layout::VitrailControl;
   static const Offsets offsets = {
-      offsetof(VitrailControl, requested),         offsetof(VitrailControl, wraps),
-      offsetof(VitrailControl, misfits),           offsetof(VitrailControl, layersMax),
-      offsetof(VitrailControl, coveredPixels),     offsetof(VitrailControl, cutPixels),
-      offsetof(VitrailControl, approximatePixels), offsetof(VitrailControl, mediumLists),
-      offsetof(VitrailControl, mediumGroupsX),     offsetof(VitrailControl, mediumGroupsY),
-      offsetof(VitrailControl, mediumGroupsZ),     offsetof(VitrailControl, longLists),
-      offsetof(VitrailControl, longGroupsX),       offsetof(VitrailControl, longGroupsY),
-      offsetof(VitrailControl, longGroupsZ),       offsetof(VitrailControl, longestLists),
-      offsetof(VitrailControl, longestGroupsX),    offsetof(VitrailControl, longestGroupsY),
-      offsetof(VitrailControl, longestGroupsZ),    offsetof(VitrailControl, overflowGroupsX),
-      offsetof(VitrailControl, overflowGroupsY),   offsetof(VitrailControl, overflowGroupsZ)};
+      offsetof(VitrailControl, requested),       offsetof(VitrailControl, wraps),
+      offsetof(VitrailControl, misfits),         offsetof(VitrailControl, misfitNodes),
+      offsetof(VitrailControl, layersMax),       offsetof(VitrailControl, coveredPixels),
+      offsetof(VitrailControl, cutPixels),       offsetof(VitrailControl, approximatePixels),
+      offsetof(VitrailControl, mediumLists),     offsetof(VitrailControl, mediumGroupsX),
+      offsetof(VitrailControl, mediumGroupsY),   offsetof(VitrailControl, mediumGroupsZ),
+      offsetof(VitrailControl, longLists),       offsetof(VitrailControl, longGroupsX),
+      offsetof(VitrailControl, longGroupsY),     offsetof(VitrailControl, longGroupsZ),
+      offsetof(VitrailControl, longestLists),    offsetof(VitrailControl, longestGroupsX),
+      offsetof(VitrailControl, longestGroupsY),  offsetof(VitrailControl, longestGroupsZ),
+      offsetof(VitrailControl, overflowGroupsX), offsetof(VitrailControl, overflowGroupsY),
+      offsetof(VitrailControl, overflowGroupsZ)};
   return offsets;
 }
 

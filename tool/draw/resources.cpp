@@ -42,7 +42,8 @@ std::uint32_t memoryType(const Gpu& gpu, std::uint32_t allowed, MemoryKind kind,
 
 } // namespace
 
-Allocation::Allocation(Gpu& gpu, const VkMemoryRequirements& requirements, MemoryKind kind, const std::string& name)
+Allocation::Allocation(Gpu& gpu, const VkMemoryRequirements& requirements, MemoryKind kind, const std::string& name,
+                       bool addressed)
     : size_(requirements.size) {
   if (size_ > gpu.maxAllocation()) {
     throw GpuError(fmt::format("the {} take{} {} MiB; {} can allocate at most {} MiB at once: use a smaller {}", name,
@@ -52,6 +53,9 @@ Allocation::Allocation(Gpu& gpu, const VkMemoryRequirements& requirements, Memor
   auto info = vkStruct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
   info.allocationSize = size_;
   info.memoryTypeIndex = memoryType(gpu, requirements.memoryTypeBits, kind, name);
+  auto flags = vkStruct<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
+  flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+  if (addressed) info.pNext = &flags;
   VkDeviceMemory memory = VK_NULL_HANDLE;
   check(vkAllocateMemory(gpu.device(), &info, nullptr, &memory),
         fmt::format("allocating {} MiB for the {}", size_ >> 20U, name));
@@ -89,7 +93,7 @@ GpuBuffer::GpuBuffer(Gpu& gpu, std::uint64_t size, VkBufferUsageFlags usage, Mem
 
   VkMemoryRequirements requirements{};
   vkGetBufferMemoryRequirements(gpu.device(), buffer, &requirements);
-  allocation_ = Allocation(gpu, requirements, kind, name);
+  allocation_ = Allocation(gpu, requirements, kind, name, (usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0);
   check(vkBindBufferMemory(gpu.device(), buffer, allocation_.get(), 0), "vkBindBufferMemory");
   if (kind != MemoryKind::Device) {
     check(vkMapMemory(gpu.device(), allocation_.get(), 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");

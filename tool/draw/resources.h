@@ -19,8 +19,10 @@ enum class MemoryKind {
 class Allocation {
  public:
   Allocation() = default;
-  // Throws GpuError, also where the device cannot allocate so much at once. `name` says what it is for.
-  Allocation(Gpu& gpu, const VkMemoryRequirements& requirements, MemoryKind kind, const std::string& name);
+  // Throws GpuError, also where the device cannot allocate so much at once. `name` says what it is for. `addressed`:
+  // for a buffer that shaders reach by its address.
+  Allocation(Gpu& gpu, const VkMemoryRequirements& requirements, MemoryKind kind, const std::string& name,
+             bool addressed = false);
   Allocation(Allocation&& other) noexcept;
   Allocation& operator=(Allocation&& other) noexcept;
   ~Allocation();

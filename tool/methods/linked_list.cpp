@@ -108,8 +108,11 @@ void LinkedList::makeSurfaces() {
   desc.linking = options_.linking != VITRAIL_LINKING_DEFAULT ? options_.linking : context_.defaultLinking(desc);
   PipelineKind kind;
   kind.linking = desc.linking;
-  // Where samples are tested in the resolve, depths are compared with those of the depth image.
-  kind.depthFromW = source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
+  // To spare the fragment shaders of GPUs; Mesa's CPU driver takes longer. Where samples are tested in the resolve,
+  // depths are compared with those of the depth image.
+  const bool isCpu = gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const bool spares = !isCpu || kind.linking == VITRAIL_LINKING_COMPUTE;
+  kind.depthFromW = spares && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
   if (surfaces_ && kind == pipelines_) return;
   pipelines_ = kind;
   const VitrailSpecialization specialization = context_.collectSpecialization(desc);
