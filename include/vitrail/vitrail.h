@@ -390,10 +390,9 @@ VITRAIL_API VkDescriptorSet vitrailTargetDescriptorSet(VitrailTarget target);
 /* Optional: specialization constants for the host's collecting fragment shaders, which fix the node format, the sample
  * count, whether fragments without a node are summed (VitrailOverflow) and who links (VitrailLinking). With
  * VITRAIL_LINKING_DEFAULT the extent and areaPixels must be those that the target is made with; for a target that was
- * resized set what vitrailTargetLinking() says. Without them the shader reads all of it from
- * the target and has code for everything; with them it is smaller, which drivers that execute both sides of every
- * branch repay most. A shader that was specialized for another target stores nothing, and its fragments count as
- * missing. */
+ * resized set what vitrailTargetLinking() says. Without the constants the shader reads all of it from the target and
+ * has code for everything; with them it is smaller, which drivers that execute both sides of every branch repay most.
+ * A shader that was specialized for another target stores nothing, and its fragments count as missing. */
 typedef struct VitrailSpecialization {
   VkSpecializationMapEntry entries[4]; /* ids VITRAIL_CONSTANT_ID (default 1700) and the next three */
   uint32_t data[4];

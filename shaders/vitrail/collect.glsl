@@ -101,8 +101,8 @@ void vitrailCallForSums() {
 }
 
 #ifdef VITRAIL_BUFFER_REFERENCE
-// Takes a node: its index, or one from `capacity`, the shader's own, on. There is no test before it whether the shader
-// is one for this target, which GPUs would do for every fragment.
+// Takes a node: its index, or where there is none one from `capacity` on, which is the shader's own. Whether the shader
+// suits the target is not asked before: GPUs were seen to take longer for that.
 uint vitrailTakeNode(uint capacity) { return atomicAdd(vitrailControl.requested, 1u); }
 
 // For a fragment whose shader was specialized for another target. The node that it was given, if any, is left as one
@@ -130,9 +130,9 @@ void vitrailCountMissing(uint index, uint pixelIndex, uint capacity) {
   }
 }
 #else
-// The same for lavapipe, which executes every branch and every loop's body once, for no fragment if need be, and is
-// slow where memory is reached: a fragment whose shader is for another target takes no index, and there is one atomic
-// for all else.
+// The same where the pool is reached by its binding, as on lavapipe, which executes every branch and every loop's body
+// once, for no fragment if need be, and is slow where memory is reached: a fragment whose shader is for another target
+// takes no index, and there is one atomic for all else.
 uint vitrailTakeNode(uint capacity) {
   uint index = VITRAIL_END;
   if (capacity != 0u) index = atomicAdd(vitrailControl.requested, 1u);

@@ -50,9 +50,9 @@ extern "C" void vitrailBarriers(VitrailTarget target, VitrailBarrierPoint point,
   const Storage& storage = target->storage;
   *barriers = {};
   if (point == VITRAIL_BARRIER_BEFORE_CLEAR) {
-    // Writers: the previous frame's fragment shaders (lists, sums), its resolve (counters, sorted lists), its clear and
-    // its copy of the counters. Its readers, the resolve with its indirect dispatches and that copy, are waited for
-    // too. Writer here: the clear.
+    // Writers: the previous frame's fragment shaders (lists, sums), its linking and its resolve (counters, lists), its
+    // clear and its copy of the counters. Its readers, the resolve with its indirect dispatches and that copy, are
+    // waited for too. Writer here: the clear.
     barriers->source = VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT |
                        VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
     barriers->destination = VK_PIPELINE_STAGE_TRANSFER_BIT;
@@ -61,9 +61,9 @@ extern "C" void vitrailBarriers(VitrailTarget target, VitrailBarrierPoint point,
     barriers->buffers[barriers->count++] = bufferBarrier(target->stats.buffer, 0, VK_WHOLE_SIZE,
                                                          VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
   } else if (point == VITRAIL_BARRIER_BEFORE_COLLECT) {
-    // Writer: the clear. Readers and writers: vitrailCollect() in fragment shaders, and the resolve, which sees the
-    // cleared lists of pixels that no fragment reaches. The nodes of the previous frame, written by its fragment
-    // shaders and its resolve, may now be overwritten, and so may its lists of deep pixels.
+    // Writer: the clear. Readers and writers: vitrailCollect() in fragment shaders, linking, and the resolve, which
+    // sees the cleared lists of pixels that no fragment reaches. The nodes of the previous frame, written by its
+    // fragment shaders, its linking and its resolve, may now be overwritten, and so may its lists of deep pixels.
     barriers->source =
         VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
     barriers->destination = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
@@ -71,8 +71,9 @@ extern "C" void vitrailBarriers(VitrailTarget target, VitrailBarrierPoint point,
         storageBarrier(storage, VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_WRITE_BIT,
                        VK_ACCESS_UNIFORM_READ_BIT | kShaderReadWrite);
   } else {
-    // Writer: vitrailCollect() in fragment shaders. Readers: the resolve, which also sorts long lists in their nodes
-    // and adds to the counters, and the command processor, which reads whether the frame overflowed.
+    // Writer: vitrailCollect() in fragment shaders. Readers: linking, which writes nodes and heads, the resolve, which
+    // also sorts long lists in their nodes and adds to the counters, and the command processor, which reads whether the
+    // frame overflowed.
     barriers->source = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
     barriers->destination = VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT |
                             VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;

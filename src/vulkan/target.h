@@ -25,7 +25,7 @@ struct StatsSlot {
 };
 static_assert(sizeof(StatsSlot) == 168);
 
-// The pipelines of a target's resolve; null where its kind does not need one.
+// The pipelines of a target, from linking to the resolve; null where its kind does not need one.
 struct ResolvePipelines {
   VkPipeline link = VK_NULL_HANDLE;
   VkPipeline shortLists = VK_NULL_HANDLE;
