@@ -394,8 +394,8 @@ VITRAIL_API VkDescriptorSet vitrailTargetDescriptorSet(VitrailTarget target);
  * has code for everything; with them it is smaller, which drivers that execute both sides of every branch repay most.
  * A shader that was specialized for another target stores nothing, and its fragments count as missing. */
 typedef struct VitrailSpecialization {
-  VkSpecializationMapEntry entries[4]; /* ids VITRAIL_CONSTANT_ID (default 1700) and the next three */
-  uint32_t data[4];
+  VkSpecializationMapEntry entries[5]; /* ids VITRAIL_CONSTANT_ID (default 1700) and the next four */
+  uint32_t data[5];
 } VitrailSpecialization;
 
 VITRAIL_API void vitrailCollectSpecialization(VitrailContext context, const VitrailTargetDesc* desc,

@@ -133,12 +133,12 @@ VkResult checkMemory(VitrailContext context, const VitrailTargetDesc& desc) {
   if (desc.linking != VITRAIL_LINKING_FRAGMENT && desc.linking != VITRAIL_LINKING_COMPUTE) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED, "linking %d is none of VitrailLinking", desc.linking);
   }
-  static_assert(VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE == layout::VITRAIL_PIXELS_TO_LINK);
+  static_assert(VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE == layout::VITRAIL_LOOSE_PIXELS);
   if (desc.linking == VITRAIL_LINKING_COMPUTE && desc.areaPixels > VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED,
                     "an area of %u pixels: VITRAIL_LINKING_COMPUTE takes up to %u at once; make the target with "
                     "VITRAIL_LINKING_FRAGMENT, or draw in tiles",
-                    desc.areaPixels, layout::VITRAIL_PIXELS_TO_LINK);
+                    desc.areaPixels, layout::VITRAIL_LOOSE_PIXELS);
   }
   const std::uint64_t perPixel =
       std::max<std::uint64_t>(headBytes(desc.areaPixels), keepsSums(desc) ? sumBytes(desc.areaPixels) : 0);

@@ -47,13 +47,16 @@ layout::VitrailParameters parametersOf(const VitrailTarget_T& target) {
   parameters.samples = target.desc.samples;
   parameters.nearestIsOne = target.desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE ? 1 : 0;
   parameters.keepSums = target.keepSums ? 1 : 0;
-  parameters.unlinked = target.desc.linking == VITRAIL_LINKING_COMPUTE ? 1 : 0;
+  parameters.loose = target.desc.linking == VITRAIL_LINKING_COMPUTE ? 1 : 0;
+  const bool binds = target.storage.layout.nodes.size <= target.context->limits.storageBufferRange;
+  parameters.widthByBinding = binds ? parameters.width : 0;
+  parameters.widthByAddress = target.storage.nodesAddress != 0 ? parameters.width : 0;
   parameters.nodesLow = static_cast<std::uint32_t>(target.storage.nodesAddress);
   parameters.nodesHigh = static_cast<std::uint32_t>(target.storage.nodesAddress >> 32U);
   std::array<std::uint32_t, VITRAIL_LAYOUTS> capacities{};
   static_assert(sizeof(capacities) == sizeof(parameters.capacities));
-  capacities.at(VITRAIL_LAYOUT(parameters.format, parameters.samples, parameters.keepSums, parameters.unlinked)) =
-      parameters.capacity;
+  capacities.at(VITRAIL_LAYOUT(parameters.format, parameters.samples, parameters.keepSums, parameters.loose,
+                               parameters.userWords)) = parameters.capacity;
   std::memcpy(parameters.capacities, capacities.data(), sizeof(capacities));
   return parameters;
 }
@@ -92,21 +95,27 @@ void clear(VkCommandBuffer commandBuffer, VitrailTarget_T& target) {
                    sizeof(StatsSlot::tag), 0); // the slot's old frame is gone
 }
 
-// Puts the nodes on their lists, where the collecting shader did not.
-void linkNodes(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
-  dispatchNodes(commandBuffer, target, target.pipelines.link);
+// How much the passes behind have to do; with it, nodes that the collecting shader left loose go on their lists.
+void prepare(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
+  if (target.pipelines.buildLists != VK_NULL_HANDLE) {
+    dispatchNodes(commandBuffer, target, target.pipelines.buildLists);
+  } else {
+    dispatchOne(commandBuffer, target, target.pipelines.prepare);
+  }
 #ifndef VITRAIL_TEST_OMIT_LINKED_BARRIER // the negative control again
-  // Writer: the linking. Readers: sorting and the resolve, which link nodes anew, and add to the counters.
+  // Writer: the dispatch. Readers: the command processor, and sorting and the resolve, which link nodes anew and add to
+  // the counters.
   recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
-                {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT});
+                {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                 VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT});
 #endif
 }
 
 // For a fragment resolve: lists that are longer than it sorts itself are sorted where they lie.
 void sortLongLists(VkCommandBuffer commandBuffer, const VitrailTarget_T& target) {
-  dispatchPixels(commandBuffer, target, target.pipelines.sortFind);
+  dispatchIndirect(commandBuffer, target, target.pipelines.sortFind, offsetof(layout::VitrailControl, pixelGroupsX));
   betweenDispatches(commandBuffer, target);
-  dispatchIndirect(commandBuffer, target, target.pipelines.sortLong, offsetof(layout::VitrailControl, longGroupsX));
+  dispatchIndirect(commandBuffer, target, target.pipelines.sortLong, classGroups(VITRAIL_CLASS_LONG));
   // Writers: the search and the sorting. Reader: the resolve in fragment shaders, which adds to the counters.
   recordBarrier(commandBuffer, target, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
                 {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT});
@@ -128,8 +137,7 @@ extern "C" void vitrailCmdCollected(VkCommandBuffer commandBuffer, VitrailTarget
 #ifndef VITRAIL_TEST_OMIT_COLLECTED_BARRIER // the negative control of the tests: they must notice that it is missing
   vitrail::recordBarriers(commandBuffer, target, VITRAIL_BARRIER_COLLECTED);
 #endif
-  if (target->pipelines.link == VK_NULL_HANDLE && target->isCompute()) return;
   vitrail::bindTargetSet(commandBuffer, *target);
-  if (target->pipelines.link != VK_NULL_HANDLE) vitrail::linkNodes(commandBuffer, *target);
+  vitrail::prepare(commandBuffer, *target);
   if (!target->isCompute()) vitrail::sortLongLists(commandBuffer, *target);
 }

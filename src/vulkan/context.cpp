@@ -61,7 +61,7 @@ void readLimits(VitrailContext_T& context, const VkPhysicalDeviceProperties& dev
   }
 }
 
-// What src/shaders/resolve_group.comp asks for.
+// What src/kernels/entry/resolve_group.comp asks for.
 bool exchangesInGroups(const VkPhysicalDeviceSubgroupProperties& subgroups) {
   return (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0 &&
          (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT) != 0 && subgroups.subgroupSize >= 8;
@@ -100,25 +100,26 @@ VkResult createSetLayout(const VitrailContext_T& context, std::span<const VkDesc
 }
 
 VkResult createSetLayouts(VitrailContext_T& context) {
-  std::array<VkDescriptorSetLayoutBinding, kBindingCount> buffers{};
-  for (std::uint32_t i = 0; i < kBindingCount; ++i) {
+  std::array<VkDescriptorSetLayoutBinding, VITRAIL_BINDING_LONG_LISTS + 1> buffers{};
+  for (std::uint32_t i = 0; i < buffers.size(); ++i) {
     buffers[i].binding = i;
     buffers[i].descriptorType =
-        i == kParametersBinding ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        i == VITRAIL_BINDING_PARAMETERS ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     buffers[i].descriptorCount = 1;
     buffers[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-    if (i != kMediumListsBinding && i != kLongListsBinding) buffers[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
+    if (i < VITRAIL_BINDING_MEDIUM_LISTS) buffers[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
   }
   VkResult result = createSetLayout(context, buffers, "vitrail target set layout", &context.setLayout);
   if (result != VK_SUCCESS) return result;
 
-  std::array<VkDescriptorSetLayoutBinding, kViewBindingCount> images{};
-  for (std::uint32_t i = 0; i < kViewBindingCount; ++i) {
+  std::array<VkDescriptorSetLayoutBinding, VITRAIL_VIEW_BINDINGS> images{};
+  for (std::uint32_t i = 0; i < VITRAIL_VIEW_BINDINGS; ++i) {
     images[i].binding = i;
-    images[i].descriptorType = i == kColorBinding ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    images[i].descriptorType =
+        i == VITRAIL_VIEW_BINDING_COLOR ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
     images[i].descriptorCount = 1;
     images[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-    if (i != kColorBinding) images[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
+    if (i != VITRAIL_VIEW_BINDING_COLOR) images[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
   }
   return createSetLayout(context, images, "vitrail view set layout", &context.viewSetLayout);
 }

@@ -9,25 +9,10 @@
 #include "dispatch.h"
 #include "log.h"
 #include "pipelines.h"
+#include "vitrail/bindings.h"
 #include "vitrail/vitrail.h"
 
 namespace vitrail {
-
-// The bindings of the target's descriptor set, as shaders/vitrail/collect.glsl and src/shaders name them.
-enum Binding : std::uint32_t {
-  kParametersBinding,
-  kControlBinding,
-  kHeadsBinding,
-  kNodesBinding,
-  kSumsBinding,
-  kMediumListsBinding,
-  kLongListsBinding,
-  kBindingCount
-};
-
-// The bindings of the set of images, one set for each of a target's views, as src/shaders/samples.glsl and picture.glsl
-// name them.
-enum ViewBinding : std::uint32_t { kColorBinding, kOpaqueBinding, kDepthBinding, kViewBindingCount };
 
 struct Limits {
   std::uint64_t storageBufferRange = 0;

@@ -22,7 +22,7 @@ namespace vitrail {
   X(CmdCopyBuffer)                  \
   X(CmdDispatch)                    \
   X(CmdDispatchIndirect)            \
-  X(CmdDraw)                        \
+  X(CmdDrawIndirect)                \
   X(CmdFillBuffer)                  \
   X(CmdPipelineBarrier)             \
   X(CmdSetScissor)                  \

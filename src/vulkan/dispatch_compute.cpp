@@ -8,9 +8,7 @@ namespace vitrail {
 
 namespace {
 
-constexpr std::uint32_t kGroupSide = 8; // the local size of the kernels with one thread a pixel, in both directions
-constexpr std::uint32_t kLinkGroupNodes = 64;    // the local size of link.comp
-constexpr std::uint32_t kMostLinkGroups = 32768; // more nodes than that are several a thread
+constexpr std::uint32_t kMostNodeGroups = 32768; // more nodes than that are several a thread
 
 void bindSet(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, std::uint32_t number, VkDescriptorSet set) {
   target.context->vk.CmdBindDescriptorSets(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, target.context->resolveLayout,
@@ -27,19 +25,17 @@ void bindViewSet(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, s
   bindSet(commandBuffer, target, 1, target.storage.viewSets[view]);
 }
 
-void dispatchPixels(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline) {
+void dispatchOne(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline) {
   const Dispatch& vk = target.context->vk;
-  const VkExtent2D extent = target.area.extent;
   vk.CmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-  vk.CmdDispatch(commandBuffer, (extent.width + kGroupSide - 1) / kGroupSide,
-                 (extent.height + kGroupSide - 1) / kGroupSide, 1);
+  vk.CmdDispatch(commandBuffer, 1, 1, 1);
 }
 
 void dispatchNodes(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline) {
   const Dispatch& vk = target.context->vk;
-  const std::uint32_t groups = target.storage.nodeCapacity / kLinkGroupNodes + 1;
+  const std::uint32_t groups = target.storage.nodeCapacity / kGroupNodes + 1;
   vk.CmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-  vk.CmdDispatch(commandBuffer, std::min(groups, kMostLinkGroups), 1, 1);
+  vk.CmdDispatch(commandBuffer, std::min(groups, kMostNodeGroups), 1, 1);
 }
 
 void dispatchIndirect(VkCommandBuffer commandBuffer, const VitrailTarget_T& target, VkPipeline pipeline,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 
 #include "context.h"
 
@@ -22,29 +23,7 @@ VkSpecializationInfo specializationInfo(const Specialization& constants) {
   return {static_cast<std::uint32_t>(kConstants.size()), kConstants.data(), sizeof(constants), &constants};
 }
 
-const char* kernelName(Kernel kernel) {
-  switch (kernel) {
-    case Kernel::Resolve:
-      return "vitrail resolve";
-    case Kernel::ResolveMedium:
-      return "vitrail resolve medium";
-    case Kernel::ResolveGroup:
-      return "vitrail resolve group";
-    case Kernel::ResolveLong:
-      return "vitrail resolve long";
-    case Kernel::ResolveOverflow:
-      return "vitrail resolve overflow";
-    case Kernel::Link:
-      return "vitrail link";
-    case Kernel::SortFind:
-      return "vitrail sort find";
-    case Kernel::SortLong:
-      return "vitrail sort long";
-    case Kernel::ClearSums:
-      break;
-  }
-  return "vitrail clear sums";
-}
+std::string debugName(Kernel kernel) { return std::string("vitrail ") + kernelName(kernel); }
 
 // A shader module for as long as a pipeline is being made.
 class Module {
@@ -82,9 +61,9 @@ class Module {
 
 VkResult createComputePipeline(const VitrailContext_T& context, const ComputeKey& key, VkPipeline* pipeline) {
   Module shader(context);
-  const char* name = kernelName(key.kernel);
+  const std::string name = debugName(key.kernel);
   VkResult result =
-      shader.create(kernelCode(key.kernel, key.color, key.multisampled, key.byAddress, key.networks), name);
+      shader.create(kernelCode(key.kernel, key.color, key.multisampled, key.byAddress, key.networks), name.c_str());
   if (result != VK_SUCCESS) return result;
   const VkSpecializationInfo constants = specializationInfo(key.constants);
   VkComputePipelineCreateInfo info{};
@@ -92,7 +71,7 @@ VkResult createComputePipeline(const VitrailContext_T& context, const ComputeKey
   info.stage = shader.stage(VK_SHADER_STAGE_COMPUTE_BIT, &constants);
   info.layout = context.resolveLayout;
   result = context.vk.CreateComputePipelines(context.device, context.cache, 1, &info, context.allocator, pipeline);
-  if (result == VK_SUCCESS) context.name(VK_OBJECT_TYPE_PIPELINE, *pipeline, name);
+  if (result == VK_SUCCESS) context.name(VK_OBJECT_TYPE_PIPELINE, *pipeline, name.c_str());
   return result;
 }
 
@@ -101,7 +80,7 @@ VkPipelineColorBlendAttachmentState blendState(FragmentResolve resolve) {
   VkPipelineColorBlendAttachmentState state{};
   state.colorWriteMask =
       VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  if (resolve == FragmentResolve::PerPixel) return state;
+  if (resolve == FragmentResolve::PerPixel || resolve == FragmentResolve::Plain) return state;
   const bool dual = resolve == FragmentResolve::SingleDual || resolve == FragmentResolve::PerSampleDual ||
                     resolve == FragmentResolve::PerSampleDualDepth;
   state.blendEnable = VK_TRUE;
@@ -129,7 +108,7 @@ VkResult computePipeline(VitrailContext_T& context, const ComputeKey& key, VkPip
   VkPipeline& kept = context.pipelines[key];
   if (kept == VK_NULL_HANDLE) {
     const VkResult result = createComputePipeline(context, key, &kept);
-    if (result != VK_SUCCESS) return context.log.fail(result, "%s: no pipeline", kernelName(key.kernel));
+    if (result != VK_SUCCESS) return context.log.fail(result, "%s: no pipeline", debugName(key.kernel).c_str());
   }
   *pipeline = kept;
   return VK_SUCCESS;

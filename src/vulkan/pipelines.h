@@ -7,12 +7,12 @@
 
 #include <vulkan/vulkan_core.h>
 
-#include "shaders/shader_code.h"
+#include "kernels/kernels.h"
 #include "vitrail/vitrail.h"
 
 namespace vitrail {
 
-// The specialization constants of src/shaders/target.glsl, in the order of their ids.
+// The specialization constants of src/kernels/target.glsl, in the order of their ids.
 struct Specialization {
   std::uint32_t format = 0;
   std::uint32_t samples = 1;

@@ -12,15 +12,18 @@ void resolveByCompute(VkCommandBuffer commandBuffer, VitrailTarget_T& target, st
   const ResolvePipelines& pipelines = target.pipelines;
   bindTargetSet(commandBuffer, target);
   bindViewSet(commandBuffer, target, view);
-  dispatchPixels(commandBuffer, target, pipelines.shortLists);
+  dispatchIndirect(commandBuffer, target, pipelines.shortLists, offsetof(layout::VitrailControl, pixelGroupsX));
+  if (pipelines.plain != VK_NULL_HANDLE) { // instead: no barrier
+    dispatchIndirect(commandBuffer, target, pipelines.plain, offsetof(layout::VitrailControl, plainGroupsX));
+  }
   const auto next = [&](VkPipeline pipeline, std::size_t counter) {
     if (pipeline == VK_NULL_HANDLE) return;
     betweenDispatches(commandBuffer, target);
     dispatchIndirect(commandBuffer, target, pipeline, counter);
   };
-  next(pipelines.mediumLists, offsetof(layout::VitrailControl, mediumGroupsX));
-  next(pipelines.longLists, offsetof(layout::VitrailControl, longGroupsX));
-  next(pipelines.longestLists, offsetof(layout::VitrailControl, longestGroupsX));
+  next(pipelines.mediumLists, classGroups(VITRAIL_CLASS_MEDIUM));
+  next(pipelines.longLists, classGroups(VITRAIL_CLASS_LONG));
+  next(pipelines.longestLists, classGroups(VITRAIL_CLASS_LONGEST));
   next(pipelines.overflow, offsetof(layout::VitrailControl, overflowGroupsX));
   target.storage.sumsAreClear = true;
 }
@@ -34,7 +37,6 @@ void resolveByFragments(VkCommandBuffer commandBuffer, const VitrailTarget_T& ta
                             static_cast<float>(area.extent.height),
                             0.0F,
                             1.0F};
-  context.vk.CmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines.fragment);
   const bool hasView = view < target.storage.viewCount;
   const std::array<VkDescriptorSet, 2> sets = {target.storage.set,
                                                hasView ? target.storage.viewSets[view] : VK_NULL_HANDLE};
@@ -42,7 +44,15 @@ void resolveByFragments(VkCommandBuffer commandBuffer, const VitrailTarget_T& ta
                                    hasView ? 2 : 1, sets.data(), 0, nullptr);
   context.vk.CmdSetViewport(commandBuffer, 0, 1, &viewport);
   context.vk.CmdSetScissor(commandBuffer, 0, 1, &area);
-  context.vk.CmdDraw(commandBuffer, 3, 1, 0, 0);
+  const auto draw = [&](VkPipeline pipeline, std::size_t arguments) {
+    if (pipeline == VK_NULL_HANDLE) return;
+    context.vk.CmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    const Storage& storage = target.storage;
+    context.vk.CmdDrawIndirect(commandBuffer, storage.buffer,
+                               storage.offset + storage.layout.control.offset + arguments, 1, 0);
+  };
+  draw(target.pipelines.fragment, offsetof(layout::VitrailControl, drawVertices));
+  draw(target.pipelines.fragmentPlain, offsetof(layout::VitrailControl, plainVertices));
 }
 
 } // namespace

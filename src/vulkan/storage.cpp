@@ -9,7 +9,7 @@ namespace {
 VkResult createDescriptorPool(const VitrailContext_T& context, Storage& storage) {
   const std::array<VkDescriptorPoolSize, 4> sizes = {
       VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
-      VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kBindingCount - 1},
+      VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VITRAIL_BINDING_LONG_LISTS},
       VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, std::max(storage.viewCount, 1U)},
       VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 2 * std::max(storage.viewCount, 1U)},
   };
@@ -25,29 +25,30 @@ void writeBufferSet(const VitrailContext_T& context, const Storage& storage) {
   const auto part = [&](const StoragePart& p) {
     return VkDescriptorBufferInfo{storage.buffer, storage.offset + p.offset, p.size};
   };
-  std::array<VkDescriptorBufferInfo, kBindingCount> buffers = {
+  std::array<VkDescriptorBufferInfo, VITRAIL_BINDING_LONG_LISTS + 1> buffers = {
       part(storage.layout.parameters), part(storage.layout.control), part(storage.layout.heads),
       part(storage.layout.nodes),      part(storage.layout.sums),    part(storage.layout.mediumLists),
       part(storage.layout.longLists),
   };
   // Shaders that reach the pool by its address do not look at its binding, which cannot name all of a large one.
-  buffers[kNodesBinding].range = std::min(buffers[kNodesBinding].range, context.limits.storageBufferRange);
-  std::array<VkWriteDescriptorSet, kBindingCount> writes{};
-  for (std::uint32_t i = 0; i < kBindingCount; ++i) {
+  buffers[VITRAIL_BINDING_NODES].range =
+      std::min(buffers[VITRAIL_BINDING_NODES].range, context.limits.storageBufferRange);
+  std::array<VkWriteDescriptorSet, buffers.size()> writes{};
+  for (std::uint32_t i = 0; i < buffers.size(); ++i) {
     writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     writes[i].dstSet = storage.set;
     writes[i].dstBinding = i;
     writes[i].descriptorCount = 1;
     writes[i].descriptorType =
-        i == kParametersBinding ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        i == VITRAIL_BINDING_PARAMETERS ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     writes[i].pBufferInfo = &buffers[i];
   }
-  context.vk.UpdateDescriptorSets(context.device, kBindingCount, writes.data(), 0, nullptr);
+  context.vk.UpdateDescriptorSets(context.device, static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }
 
 void writeViewSet(const VitrailContext_T& context, VkDescriptorSet set, const VitrailViews& views, std::uint32_t view) {
-  std::array<VkDescriptorImageInfo, kViewBindingCount> images{};
-  std::array<VkWriteDescriptorSet, kViewBindingCount> writes{};
+  std::array<VkDescriptorImageInfo, VITRAIL_VIEW_BINDINGS> images{};
+  std::array<VkWriteDescriptorSet, VITRAIL_VIEW_BINDINGS> writes{};
   std::uint32_t count = 0;
   const auto add = [&](std::uint32_t binding, VkImageView image, VkImageLayout layout) {
     images[count] = {VK_NULL_HANDLE, image, layout};
@@ -56,16 +57,17 @@ void writeViewSet(const VitrailContext_T& context, VkDescriptorSet set, const Vi
     writes[count].dstBinding = binding;
     writes[count].descriptorCount = 1;
     writes[count].descriptorType =
-        binding == kColorBinding ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+        binding == VITRAIL_VIEW_BINDING_COLOR ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
     writes[count].pImageInfo = &images[count];
     ++count;
   };
-  if (views.color != nullptr) add(kColorBinding, views.color[view], VK_IMAGE_LAYOUT_GENERAL);
-  if (views.opaque != nullptr) add(kOpaqueBinding, views.opaque[view], VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  if (views.color != nullptr) add(VITRAIL_VIEW_BINDING_COLOR, views.color[view], VK_IMAGE_LAYOUT_GENERAL);
+  if (views.opaque != nullptr)
+    add(VITRAIL_VIEW_BINDING_OPAQUE, views.opaque[view], VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   if (views.depth != nullptr) {
-    add(kDepthBinding, views.depth[view], VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+    add(VITRAIL_VIEW_BINDING_DEPTH, views.depth[view], VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
   } else if (views.opaque != nullptr) { // nobody looks at it, but shaders name it
-    add(kDepthBinding, views.opaque[view], VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    add(VITRAIL_VIEW_BINDING_DEPTH, views.opaque[view], VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   }
   context.vk.UpdateDescriptorSets(context.device, count, writes.data(), 0, nullptr);
 }

@@ -61,6 +61,7 @@ VkResult findComputePipelines(VitrailTarget_T& target) {
   };
   const bool capped = target.desc.maxLayers != 0 && target.desc.maxLayers <= layout::VITRAIL_SHORT_LIST;
   VkResult result = find(Kernel::Resolve, &target.pipelines.shortLists);
+  if (result == VK_SUCCESS && key.multisampled) result = find(Kernel::ResolvePlain, &target.pipelines.plain);
   const auto findGroup = [&](std::uint32_t group, VkPipeline* pipeline) {
     if (result != VK_SUCCESS) return;
     key.constants.group = group;
@@ -113,7 +114,10 @@ VkResult createFragmentPipelines(VitrailTarget_T& target) {
   info.scopeSamples = info.resolve == FragmentResolve::PerPixel ? VK_SAMPLE_COUNT_1_BIT : target.desc.samples;
   info.colorFormat = target.desc.colorFormat;
   info.scope = target.desc.scope;
-  return createFragmentPipeline(context, info, &target.pipelines.fragment);
+  result = createFragmentPipeline(context, info, &target.pipelines.fragment);
+  if (result != VK_SUCCESS || info.resolve != FragmentResolve::PerPixel) return result;
+  info.resolve = FragmentResolve::Plain;
+  return createFragmentPipeline(context, info, &target.pipelines.fragmentPlain);
 }
 
 VkResult createStats(VitrailTarget_T& target) {
@@ -128,15 +132,15 @@ VkResult createStats(VitrailTarget_T& target) {
   return VK_SUCCESS;
 }
 
-VkResult findLinkPipeline(VitrailTarget_T& target) {
-  if (target.desc.linking != VITRAIL_LINKING_COMPUTE) return VK_SUCCESS;
+VkResult findPreparePipeline(VitrailTarget_T& target) {
+  const bool builds = target.desc.linking == VITRAIL_LINKING_COMPUTE;
   ComputeKey key;
-  key.kernel = Kernel::Link;
+  key.kernel = builds ? Kernel::BuildLists : Kernel::Prepare;
   key.byAddress = target.context->has(VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS);
   key.networks = false;
   key.constants.format = target.constants.format;
   key.constants.samples = target.constants.samples;
-  return computePipeline(*target.context, key, &target.pipelines.link);
+  return computePipeline(*target.context, key, builds ? &target.pipelines.buildLists : &target.pipelines.prepare);
 }
 
 // `desc` has passed checkTarget().
@@ -150,7 +154,7 @@ VkResult build(VitrailTarget_T& target, const VitrailTargetDesc& desc) {
     target.desc.nodeCapacity = std::min(desc.nodeCapacity, budgetCapacity(target.context, desc, desc.areaPixels));
   }
   VkResult result = target.isCompute() ? findComputePipelines(target) : createFragmentPipelines(target);
-  if (result == VK_SUCCESS) result = findLinkPipeline(target);
+  if (result == VK_SUCCESS) result = findPreparePipeline(target);
   if (result == VK_SUCCESS) result = createStats(target);
   if (result == VK_SUCCESS) {
     result = target.storage.create(*target.context, storageInfo(target, target.desc.nodeCapacity));
@@ -255,6 +259,7 @@ extern "C" void vitrailDestroyTarget(VitrailTarget target) {
   target->storage.destroy(context);
   target->stats.destroy(context);
   context.vk.DestroyPipeline(context.device, target->pipelines.fragment, context.allocator);
+  context.vk.DestroyPipeline(context.device, target->pipelines.fragmentPlain, context.allocator);
 }
 
 extern "C" VkResult vitrailResizeTarget(VitrailTarget target, const VitrailResizeInfo* info) {
@@ -311,6 +316,7 @@ extern "C" void vitrailCollectSpecialization(VitrailContext context, const Vitra
   const VitrailLinking linking =
       desc->linking != VITRAIL_LINKING_DEFAULT ? desc->linking : vitrailDefaultLinking(context, desc);
   specialization->data[3] = linking == VITRAIL_LINKING_COMPUTE ? 1 : 0;
+  specialization->data[4] = 0;
   for (std::uint32_t i = 0; i < std::size(specialization->data); ++i) {
     specialization->entries[i] = {kFirstId + i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)),
                                   sizeof(std::uint32_t)};

@@ -23,12 +23,14 @@ struct StatsSlot {
   std::uint32_t sumsCleared;  // VitrailTarget_T::sumsCleared of the frame; read without the tag
   std::uint64_t tag;          // frame + 1, so that a slot never written names no frame
 };
-static_assert(sizeof(StatsSlot) == 168);
+static_assert(sizeof(StatsSlot) == 224);
 
-// The pipelines of a target, from linking to the resolve; null where its kind does not need one.
+// The pipelines of a target, from building lists to the resolve; null where its kind does not need one.
 struct ResolvePipelines {
-  VkPipeline link = VK_NULL_HANDLE;
+  VkPipeline prepare = VK_NULL_HANDLE;
+  VkPipeline buildLists = VK_NULL_HANDLE;
   VkPipeline shortLists = VK_NULL_HANDLE;
+  VkPipeline plain = VK_NULL_HANDLE;
   VkPipeline mediumLists = VK_NULL_HANDLE;
   VkPipeline longLists = VK_NULL_HANDLE;
   VkPipeline longestLists = VK_NULL_HANDLE;
@@ -36,7 +38,8 @@ struct ResolvePipelines {
   VkPipeline sortFind = VK_NULL_HANDLE;
   VkPipeline sortLong = VK_NULL_HANDLE;
   VkPipeline clearSums = VK_NULL_HANDLE;
-  VkPipeline fragment = VK_NULL_HANDLE; // the target's own
+  VkPipeline fragment = VK_NULL_HANDLE; // the target's own, as the next one
+  VkPipeline fragmentPlain = VK_NULL_HANDLE;
 };
 
 // Memory that frames up to `lastFrame` use.

@@ -132,7 +132,7 @@ tool::Unique<VkPipeline> PointPipelines::make(bool points, std::uint32_t mask) c
   const auto vertexShader =
       makeShader(gpu_.device(), points ? std::span<const std::uint32_t>(shaders::points_vert) : shaders::opaque_vert);
   const auto fragmentShader = makeShader(gpu_.device(), points ? pointsShader() : shaders::opaque_frag);
-  std::array<VkSpecializationMapEntry, 4> entries{};
+  std::array<VkSpecializationMapEntry, 5> entries{};
   for (std::uint32_t i = 0; i < entries.size(); ++i) entries[i] = {info_.firstConstant + i, 4 * i, 4};
   const VkSpecializationInfo constants{entries.size(), entries.data(), sizeof(info_.constants), info_.constants.data()};
   std::array<VkPipelineShaderStageCreateInfo, 2> stages{};

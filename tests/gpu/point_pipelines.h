@@ -30,7 +30,7 @@ struct PointPipelinesInfo {
   bool postDepthCoverage = false; // as the points' shader is compiled
   bool addresses = false;
   bool specialized = false; // the points' shader is, by these constants
-  std::array<std::uint32_t, 4> constants{};
+  std::array<std::uint32_t, 5> constants{};
   std::uint32_t firstConstant = 0;
 
   auto operator<=>(const PointPipelinesInfo&) const = default;

@@ -11,7 +11,7 @@ layout(local_size_x = 32) in; // LONG_GROUP_LISTS
 
 void main() {
   uint slot = deepGroup() * LONG_GROUP_LISTS + gl_LocalInvocationIndex;
-  if (slot >= min(control.longLists, longPixels.length())) return;
+  if (slot >= min(control.classes[VITRAIL_CLASS_LONG].count, longPixels.length())) return;
   uint pixelIndex = longPixels[slot];
   VitrailSorted sorted = vitrailSortLong(heads[pixelIndex], nodesInUse());
   heads[pixelIndex] = sorted.head;

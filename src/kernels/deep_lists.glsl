@@ -6,15 +6,15 @@
 #include "target.glsl"
 
 #ifdef VITRAIL_GROUPS
-// Lists that one invocation takes: control.mediumLists pixels.
-layout(set = 0, binding = 5, std430) buffer MediumListsBlock { uint mediumPixels[]; };
+// Lists that one invocation takes: the pixels of VITRAIL_CLASS_MEDIUM.
+layout(set = 0, binding = VITRAIL_BINDING_MEDIUM_LISTS, std430) buffer MediumListsBlock { uint mediumPixels[]; };
 // Lists that groups of invocations take: the pixel, and where the second part begins and those after it
-// (vitrail/parts.glsl). From the front control.longLists for groups of 4, one element each; from the end
-// control.longestLists for groups of 8, or of any length, two elements each. A pool has not the nodes for so many that
+// (vitrail/parts.glsl). From the front VITRAIL_CLASS_LONG for groups of 4, one element each; from the end
+// VITRAIL_CLASS_LONGEST for groups of 8, or of any length, two elements each. A pool has not the nodes for so many that
 // they meet.
-layout(set = 0, binding = 6, std430) buffer LongListsBlock { uvec4 longLists[]; };
+layout(set = 0, binding = VITRAIL_BINDING_LONG_LISTS, std430) buffer LongListsBlock { uvec4 longLists[]; };
 #else
-layout(set = 0, binding = 6, std430) buffer LongListsBlock { uint longPixels[]; }; // control.longLists of them
+layout(set = 0, binding = VITRAIL_BINDING_LONG_LISTS, std430) buffer LongListsBlock { uint longPixels[]; };
 #endif
 
 // The work groups of those dispatches in a row: the least that maxComputeWorkGroupCount may be, rounded down.
@@ -27,25 +27,17 @@ const uint LONGEST_GROUP_LISTS = 16u;
 // The number of this work group in a dispatch over lists.
 uint deepGroup() { return gl_WorkGroupID.y * GROUPS_IN_ROW + gl_WorkGroupID.x; }
 
-// Defines a function that takes a number for a list that is left to a later dispatch, and makes that one large enough.
-// A macro, because memory that atomics change cannot be a parameter.
-#define COUNT_LISTS(name, groupLists, lists, groupsX, groupsY, groupsZ) \
-  uint name() { \
-    uint slot = atomicAdd(control.lists, 1u); \
-    if (slot % groupLists == 0u) { \
-      uint group = slot / groupLists; \
-      atomicMax(control.groupsX, min(group + 1u, GROUPS_IN_ROW)); \
-      atomicMax(control.groupsY, group / GROUPS_IN_ROW + 1u); \
-      atomicMax(control.groupsZ, 1u); \
-    } \
-    return slot; \
+// Takes a number for a list that is left to a later dispatch, and makes that one large enough.
+uint classSlot(uint number, uint groupLists) {
+  uint slot = atomicAdd(control.classes[number].count, 1u);
+  if (slot % groupLists == 0u) {
+    uint group = slot / groupLists;
+    atomicMax(control.classes[number].groupsX, min(group + 1u, GROUPS_IN_ROW));
+    atomicMax(control.classes[number].groupsY, group / GROUPS_IN_ROW + 1u);
+    atomicMax(control.classes[number].groupsZ, 1u);
   }
-COUNT_LISTS(longSlot, LONG_GROUP_LISTS, longLists, longGroupsX, longGroupsY, longGroupsZ)
-#ifdef VITRAIL_GROUPS
-COUNT_LISTS(mediumSlot, MEDIUM_GROUP_LISTS, mediumLists, mediumGroupsX, mediumGroupsY, mediumGroupsZ)
-COUNT_LISTS(longestSlot, LONGEST_GROUP_LISTS, longestLists, longestGroupsX, longestGroupsY, longestGroupsZ)
-#endif
-#undef COUNT_LISTS
+  return slot;
+}
 
 // Whether there is room for a list. Where there is none, lists are corrupt: the pool has not the nodes for so many.
 bool hasRoom(uint end, uint length) {
@@ -55,12 +47,12 @@ bool hasRoom(uint end, uint length) {
 
 #ifdef VITRAIL_GROUPS
 void leaveMedium(uint pixelIndex) {
-  uint slot = mediumSlot();
+  uint slot = classSlot(VITRAIL_CLASS_MEDIUM, MEDIUM_GROUP_LISTS);
   if (hasRoom(slot + 1u, mediumPixels.length())) mediumPixels[slot] = pixelIndex;
 }
 
 void leaveLong(uint pixelIndex, uvec3 near) {
-  uint slot = longSlot();
+  uint slot = classSlot(VITRAIL_CLASS_LONG, LONG_GROUP_LISTS);
   if (hasRoom(slot + 1u, longLists.length())) longLists[slot] = uvec4(pixelIndex, near);
 }
 
@@ -68,14 +60,14 @@ void leaveLong(uint pixelIndex, uvec3 near) {
 uint longestElement(uint slot) { return longLists.length() - 2u * (slot + 1u); }
 
 void leaveLongest(uint pixelIndex, uvec3 near, uvec4 far) {
-  uint slot = longestSlot();
+  uint slot = classSlot(VITRAIL_CLASS_LONGEST, LONGEST_GROUP_LISTS);
   if (!hasRoom(2u * (slot + 1u), longLists.length())) return;
   longLists[longestElement(slot)] = uvec4(pixelIndex, near);
   longLists[longestElement(slot) + 1u] = far;
 }
 #else
 void leaveLong(uint pixelIndex) {
-  uint slot = longSlot();
+  uint slot = classSlot(VITRAIL_CLASS_LONG, LONG_GROUP_LISTS);
   if (hasRoom(slot + 1u, longPixels.length())) longPixels[slot] = pixelIndex;
 }
 #endif

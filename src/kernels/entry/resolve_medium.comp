@@ -8,7 +8,7 @@ layout(local_size_x = 128) in; // MEDIUM_GROUP_LISTS
 
 void main() {
   uint slot = deepGroup() * MEDIUM_GROUP_LISTS + gl_LocalInvocationIndex;
-  if (slot >= min(control.mediumLists, mediumPixels.length())) return;
+  if (slot >= min(control.classes[VITRAIL_CLASS_MEDIUM].count, mediumPixels.length())) return;
   uint pixelIndex = mediumPixels[slot];
   beginPixel(imagePixel(pixelIndex));
   writeDeepPixel(pixelIndex, vitrailResolveMedium(heads[pixelIndex], nodesInUse()));

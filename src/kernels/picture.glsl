@@ -8,7 +8,7 @@
 #include "samples.glsl"
 #include "vitrail/resolve.glsl"
 
-layout(set = 1, binding = 0, VITRAIL_COLOR_FORMAT) uniform image2D colorImage;
+layout(set = 1, binding = VITRAIL_VIEW_BINDING_COLOR, VITRAIL_COLOR_FORMAT) uniform image2D colorImage;
 
 uvec2 imagePixel(uint pixelIndex) {
   return uvec2(parameters.x + pixelIndex % parameters.width, parameters.y + pixelIndex / parameters.width);

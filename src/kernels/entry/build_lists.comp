@@ -1,17 +1,19 @@
-// After the fragments have been collected, where their shader does not link them (VitrailLinking): puts every node on
-// the list of its pixel and finishes it. One thread a node, or several nodes where there are more than threads.
+// After the fragments have been collected, where their shader left the nodes loose (VitrailListBuild): puts every node
+// on the list of its pixel and finishes it. One thread a node, or several nodes where there are more than threads. Also
+// does what prepare.comp does.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "target.glsl"
-#include "vitrail/unlinked.glsl"
+#include "arguments.glsl"
+#include "vitrail/loose.glsl"
 
-layout(local_size_x = 64) in; // kLinkGroupNodes of dispatch_compute.cpp
+layout(local_size_x = 64) in; // kGroupNodes of kernels.h
 
 // Whether a node was given to a fragment that left nothing in it (vitrail/collect.glsl): no other is empty but for the
 // pixel, since a fragment without alpha is stored only where its blend mode is not 0.
 bool isTurnedAway(uvec4 node) { return (node.x | node.y | node.z | (node.w & ~VITRAIL_PIXEL_MASK)) == 0u; }
 
 void main() {
+  if (gl_GlobalInvocationID.x == 0u) writeArguments();
   uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   uint nodes = nodesInUse();
   for (uint index = gl_GlobalInvocationID.x; index < nodes; index += threads) {

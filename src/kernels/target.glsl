@@ -9,6 +9,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 #endif
 
+#include "vitrail/bindings.h"
 #include "vitrail/layout.h"
 
 layout(constant_id = 0) const uint kFormat = VITRAIL_FORMAT_STANDARD;
@@ -21,17 +22,16 @@ layout(constant_id = 5) const uint kGroup = 4u;        // resolve_group.comp: in
 // Lists need no sorting where only their nearest fragments are kept.
 const bool kCapped = kMaxLayers != 0u && kMaxLayers <= VITRAIL_SHORT_LIST;
 
-layout(set = 0, binding = 0, std140) uniform ParametersBlock { VitrailParameters parameters; };
-layout(set = 0, binding = 1, std430) buffer ControlBlock { VitrailControl control; };
-layout(set = 0, binding = 2, std430) buffer HeadsBlock { uint heads[]; };
-layout(set = 0, binding = 4, std430) buffer SumsBlock { uint pixelSums[]; };
+layout(set = 0, binding = VITRAIL_BINDING_PARAMETERS, std140) uniform ParametersBlock { VitrailParameters parameters; };
+layout(set = 0, binding = VITRAIL_BINDING_CONTROL, std430) buffer ControlBlock { VitrailControl control; };
+layout(set = 0, binding = VITRAIL_BINDING_HEADS, std430) buffer HeadsBlock { uint heads[]; };
+layout(set = 0, binding = VITRAIL_BINDING_SUMS, std430) buffer SumsBlock { uint pixelSums[]; };
 
 uint vitrailPoolCapacity() { return parameters.capacity; }
 #ifdef VITRAIL_BUFFER_REFERENCE
 uvec2 vitrailPoolAddress() { return uvec2(parameters.nodesLow, parameters.nodesHigh); }
 #endif
 #define VITRAIL_POOL_SET 0
-#define VITRAIL_POOL_BINDING 3
 #include "vitrail/pool.glsl"
 
 VitrailLayout vitrailNodes() { return VitrailLayout(kFormat, kSamples, kNearestIsOne); }

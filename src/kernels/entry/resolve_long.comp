@@ -8,8 +8,11 @@ layout(local_size_x = 32) in; // LONG_GROUP_LISTS
 
 void main() {
   uint slot = deepGroup() * LONG_GROUP_LISTS + gl_LocalInvocationIndex;
-  if (slot >= min(control.longLists, longPixels.length())) return;
+  if (slot >= min(control.classes[VITRAIL_CLASS_LONG].count, longPixels.length())) return;
   uint pixelIndex = longPixels[slot];
   beginPixel(imagePixel(pixelIndex));
-  writeDeepPixel(pixelIndex, vitrailResolveLong(heads[pixelIndex], nodesInUse()));
+  uint head = heads[pixelIndex];
+  VitrailResolved r = vitrailResolveLong(head, nodesInUse());
+  heads[pixelIndex] = head;
+  writeDeepPixel(pixelIndex, r);
 }

@@ -23,8 +23,8 @@ bool isGroup() {
 
 // Lists of this dispatch.
 uint groupLists() {
-  if (kGroup == 4u) return min(control.longLists, longLists.length());
-  return min(control.longestLists, longLists.length() / 2u);
+  if (kGroup == 4u) return min(control.classes[VITRAIL_CLASS_LONG].count, longLists.length());
+  return min(control.classes[VITRAIL_CLASS_LONGEST].count, longLists.length() / 2u);
 }
 
 // A word of a list: 0 is its pixel, the others are where its second part begins and those after it.
@@ -45,6 +45,9 @@ void main() {
   r.complete = false;
   if (isGroup()) r = vitrailResolveGroup(lane, kGroup, start, nodesInUse());
   if (lane != 0u) return;
-  if (!r.complete) r = vitrailResolveLong(start, nodesInUse());
+  if (!r.complete) {
+    r = vitrailResolveLong(start, nodesInUse());
+    heads[pixelIndex] = start;
+  }
   writeDeepPixel(pixelIndex, r);
 }

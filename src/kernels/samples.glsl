@@ -9,7 +9,7 @@
 #include "target.glsl"
 
 #if defined(VITRAIL_MULTISAMPLED) || defined(VITRAIL_TEST_DEPTH)
-layout(set = 1, binding = 2) uniform texture2DMS depthImage;
+layout(set = 1, binding = VITRAIL_VIEW_BINDING_DEPTH) uniform texture2DMS depthImage;
 
 // Whether a fragment lies behind the opaque scene at a sample, both rounded alike.
 bool isHidden(uvec4 key, ivec2 pixel, int number) {
@@ -20,7 +20,7 @@ bool isHidden(uvec4 key, ivec2 pixel, int number) {
 
 #ifdef VITRAIL_MULTISAMPLED
 #define VITRAIL_ACCUMULATORS 8
-layout(set = 1, binding = 1) uniform texture2DMS opaqueImage;
+layout(set = 1, binding = VITRAIL_VIEW_BINDING_OPAQUE) uniform texture2DMS opaqueImage;
 
 ivec2 shownPixel; // the pixel that this invocation resolves
 

@@ -1,4 +1,5 @@
-// Nodes as they are collected where a compute pass links them (VitrailLinking): what fragment shaders spare themselves.
+// Nodes as they are collected where a compute pass builds the lists (VitrailListBuild): what fragment shaders spare
+// themselves.
 // In place of `next` they hold the number of their pixel. In `standard` at 1 sample, where `next` has 32 bits, that
 // leaves 8 of them for alpha, and so 32 in another word for a colour that is not on the sRGB curve yet:
 //
@@ -8,15 +9,15 @@
 // A channel is the float of value + 2^-7, of which 3 bits of exponent and the first 8 bits of fraction (blue 7) are
 // kept: no more than 0.22 steps of the 8 bits on the sRGB curve (blue 0.44) are lost anywhere, so that such colours
 // come through unchanged. No resources, as node.glsl.
-#ifndef VITRAIL_UNLINKED_GLSL
-#define VITRAIL_UNLINKED_GLSL
+#ifndef VITRAIL_LOOSE_GLSL
+#define VITRAIL_LOOSE_GLSL
 
 #include "node.glsl"
 
-const uint VITRAIL_PIXEL_MASK = VITRAIL_PIXELS_TO_LINK - 1u;
+const uint VITRAIL_PIXEL_MASK = VITRAIL_LOOSE_PIXELS - 1u;
 const float VITRAIL_COLOR_BIAS = 0.0078125; // 2^-7; its bits are 0 where those of the colour are cut out
 
-// Whether more than the link is to be done.
+// Whether more than the link is to be done when such a node is put on its list.
 bool vitrailIsRaw(VitrailLayout nodes) {
   return nodes.format == VITRAIL_FORMAT_STANDARD && nodes.samples == 1u;
 }
@@ -35,7 +36,7 @@ vec3 vitrailRawColor(uint word) {
   return mix(min(color, 1.0), vec3(0.0), equal(bits, uvec3(0u)));
 }
 
-// In 8 bits a channel, 0 above them. `precise`: a fragment is finished where it is linked or, if it found no node,
+// In 8 bits a channel, 0 above them. `precise`: a fragment is finished where its list is built or, if it found no node,
 // where it is collected, and both must give the same bits.
 uint vitrailFinishColor(uint word) {
   vec3 linear = vitrailRawColor(word);
@@ -47,7 +48,7 @@ uint vitrailFinishColor(uint word) {
 }
 
 // The node of a fragment, with 0 where its pixel goes. False: it would change nothing, and is not stored.
-bool vitrailPackUnlinked(vec4 color, uint blend, float depth, uint coverage, VitrailLayout nodes, out uvec4 node) {
+bool vitrailPackLoose(vec4 color, uint blend, float depth, uint coverage, VitrailLayout nodes, out uvec4 node) {
   if (!vitrailIsRaw(nodes)) return vitrailPack(color, blend, depth, coverage, nodes, node);
   uint alpha = vitrailQuantize(vitrailSaturate(color), vec4(255.0)).a;
   uint depthWord = vitrailDepthBits(depth, nodes.nearestIsOne) | blend << 30;
