@@ -14,6 +14,9 @@ struct uvec2 {
 struct uvec4 {
   uint x, y, z, w;
 };
+struct vec4 {
+  float x, y, z, w;
+};
 #endif
 
 // One stored fragment in each node format. They are vectors because a GPU stores one at once: collecting was seen to
@@ -130,7 +133,44 @@ struct VitrailParameters {
   uvec4 capacities[VITRAIL_LAYOUTS / 4];
 };
 
+// One fragment of a sorted list, as it was stored: what shaders that walk lists are given (list.glsl), and what copied
+// lists hold.
+struct VitrailLayer {
+  vec4 color; // linear colour and alpha, as vitrailCollect() took them
+  float depth;
+  uint blend;    // VITRAIL_OVER, VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY
+  uint coverage; // one bit a sample; 1 with one sample
+  uint word;     // the host's; 0 where nodes carry none
+};
+
+// Copied lists: a buffer that holds, one behind the other,
+//
+//   VitrailCopy         the first six words written by the host before the copy: x, y, width, height, capacity and 0s
+//   VitrailCopiedList   one a pixel of the rectangle, row by row
+//   VitrailLayer        from element VITRAIL_COPY_FIRST_LAYER(width * height) on, which is 32 times that many bytes:
+//                       `capacity` of them. Those of a list lie together in order, nearest first; fragments that are
+//                       alike in all else are in the order of their words. Lists follow each other in any order.
+struct VitrailCopy {
+  uint x; // the rectangle, in pixels of the target; what of it lies outside of the frame's area has empty lists
+  uint y;
+  uint width;
+  uint height;
+  uint capacity;  // layers that the buffer has room for
+  uint requested; // layers that all lists of the rectangle have: more than `capacity` where some found no room
+  uint cut;       // lists that the driver did not let it finish
+  uint _reserved;
+};
+struct VitrailCopiedList {
+  uint first; // its first layer, from VITRAIL_COPY_FIRST_LAYER on; VITRAIL_END: there was no room, none was copied
+  uint count; // its layers; with VITRAIL_COPY_CUT in it the list has more than these
+};
+#define VITRAIL_COPY_CUT 0x80000000u
+#define VITRAIL_COPY_FIRST_LAYER(pixels) (1u + ((pixels) + 3u) / 4u)
+
 #ifdef __cplusplus
+static_assert(sizeof(VitrailLayer) == 32);
+static_assert(sizeof(VitrailCopy) == 32);      // a layer's
+static_assert(sizeof(VitrailCopiedList) == 8); // a quarter of a layer's
 static_assert(sizeof(VitrailNodeStandard) == 8);
 static_assert(sizeof(VitrailNodeCompact) == 8);
 static_assert(sizeof(VitrailNodeHdr) == 16);

@@ -10,7 +10,8 @@
 // Before the include, a shader defines
 //
 //   VitrailLayout vitrailNodes()   how the nodes are stored; constants, so that what is not needed falls away
-//   uvec4 vitrailLoadNode(uint index, VitrailLayout nodes)              vitrail/pool.glsl has it
+//   uvec4 vitrailLoadNode(uint index, VitrailLayout nodes)   vitrail/pool.glsl has it
+//   uint vitrailWordOf(uint index)                           with VITRAIL_SORT_WORDS: the host's word of a node
 #ifndef VITRAIL_WALK_GLSL
 #define VITRAIL_WALK_GLSL
 
