@@ -26,7 +26,7 @@ struct NodeCoding {
   std::uint32_t format = layout::VITRAIL_FORMAT_STANDARD;
   std::uint32_t samples = 1; // 1, 2, 4, 8
   bool nearestIsOne = false;
-  // VITRAIL_LINKING_COMPUTE: on their way into `standard` nodes at 1 sample colours are rounded once more
+  // VITRAIL_LIST_BUILD_COMPUTE: on their way into `standard` nodes at 1 sample colours are rounded once more
   // (shaders/vitrail/unlinked.glsl).
   bool linkedByCompute = false;
 };

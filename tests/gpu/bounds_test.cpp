@@ -28,7 +28,7 @@ TEST_F(BoundsTest, CapacitiesAroundTheNeedCountWhatIsMissing) {
       PointHostDesc desc;
       desc.samples = samples;
       desc.nodes = format;
-      desc.linking = format == VITRAIL_NODE_COMPACT ? VITRAIL_LINKING_FRAGMENT : VITRAIL_LINKING_COMPUTE;
+      desc.listBuild = format == VITRAIL_NODE_COMPACT ? VITRAIL_LIST_BUILD_FRAGMENT : VITRAIL_LIST_BUILD_COMPUTE;
       desc.guarded = true;
       PointVariety variety;
       variety.coverage = samples > 1;
@@ -68,7 +68,7 @@ TEST_F(BoundsTest, RequestsBeyond32BitsAreCountedAndTakeNoNode) {
     desc.guarded = true;
     desc.capacity = 8;
     desc.overflow = overflow;
-    desc.linking = overflow == VITRAIL_OVERFLOW_SKIP ? VITRAIL_LINKING_COMPUTE : VITRAIL_LINKING_FRAGMENT;
+    desc.listBuild = overflow == VITRAIL_OVERFLOW_SKIP ? VITRAIL_LIST_BUILD_COMPUTE : VITRAIL_LIST_BUILD_FRAGMENT;
     desc.requestedBefore = layout::VITRAIL_WRAP_AT - 7;
     const std::vector<Point> points = randomLists(desc, {0, 1, 2, 17, 40, 100}, 3);
     PointHost host(gpu(), desc);
@@ -191,7 +191,7 @@ TEST_F(BoundsTest, ColoursBetweenStepsOverflowAlike) {
   for (const bool addresses : {false, true}) {
     if (addresses && !gpu().features().bufferDeviceAddress) continue;
     PointHostDesc desc;
-    desc.linking = VITRAIL_LINKING_COMPUTE;
+    desc.listBuild = VITRAIL_LIST_BUILD_COMPUTE;
     desc.addresses = addresses;
     desc.width = 64;
     desc.height = 64;
@@ -214,7 +214,7 @@ TEST_F(BoundsTest, OtherBlendModesOverflowToo) {
   for (const VitrailNodeFormat format : nodeFormats(1)) {
     PointHostDesc desc;
     desc.nodes = format;
-    desc.linking = format == VITRAIL_NODE_STANDARD ? VITRAIL_LINKING_COMPUTE : VITRAIL_LINKING_FRAGMENT;
+    desc.listBuild = format == VITRAIL_NODE_STANDARD ? VITRAIL_LIST_BUILD_COMPUTE : VITRAIL_LIST_BUILD_FRAGMENT;
     desc.behind = {0.5F, 0.5F, 0.5F, 1.0F};
     PointVariety variety;
     variety.blendModes = true;

@@ -31,7 +31,7 @@ std::vector<std::uint32_t> manyLengths(std::initializer_list<std::uint32_t> long
   return lengths;
 }
 
-constexpr std::array kLinkings{VITRAIL_LINKING_FRAGMENT, VITRAIL_LINKING_COMPUTE};
+constexpr std::array kLinkings{VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE};
 
 void expectLikeReference(const PointResult& result, const Expected& expected, double tolerance = kBlendTolerance) {
   EXPECT_LT(largestError(result.pixels, expected.pixels), tolerance);
@@ -306,11 +306,11 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // A colour that rounds to black: on the way, to something else.
 constexpr float kFaint = 1.4e-4F;
 
-void expectHostileColoursApart(tool::Gpu& gpu, VitrailNodeFormat format, VitrailLinking linking) {
+void expectHostileColoursApart(tool::Gpu& gpu, VitrailNodeFormat format, VitrailListBuild linking) {
   const float brightest = format == VITRAIL_NODE_HDR ? 65504.0F : 1.0F;
   PointHostDesc desc;
   desc.nodes = format;
-  desc.linking = linking;
+  desc.listBuild = linking;
   desc.behind = {0.5F, 0.5F, 0.5F, 1.0F};
   const std::vector<Point> points = {
       {0, 0, 0.5F, {kNan, 0.5F, 0.5F, 1.0F}},
@@ -337,7 +337,7 @@ void expectHostileColoursApart(tool::Gpu& gpu, VitrailNodeFormat format, Vitrail
 
 TEST_F(LibraryTest, HostileColoursStayInTheirPixel) {
   for (const VitrailNodeFormat format : nodeFormats(1)) {
-    for (const VitrailLinking linking : kLinkings) {
+    for (const VitrailListBuild linking : kLinkings) {
       SCOPED_TRACE("format " + std::to_string(format) + ", linking " + std::to_string(linking));
       expectHostileColoursApart(gpu(), format, linking);
     }
@@ -369,10 +369,10 @@ struct Rounding {
   double alpha = 0.0;
 };
 
-Rounding roundingOf(VitrailNodeFormat format, std::uint32_t samples, VitrailLinking linking) {
+Rounding roundingOf(VitrailNodeFormat format, std::uint32_t samples, VitrailListBuild linking) {
   switch (format) {
     case VITRAIL_NODE_STANDARD:
-      if (linking == VITRAIL_LINKING_COMPUTE && samples == 1) return {{0.7 / 255, 0.7 / 255, 0.9 / 255}, 0.5 / 255};
+      if (linking == VITRAIL_LIST_BUILD_COMPUTE && samples == 1) return {{0.7 / 255, 0.7 / 255, 0.9 / 255}, 0.5 / 255};
       return {{0.5 / 255, 0.5 / 255, 0.5 / 255}, 0.5 / 255};
     case VITRAIL_NODE_COMPACT:
       if (samples > 1) return {{0.5 / 31, 0.5 / 31, 0.5 / 31}, 0.5 / 31};
@@ -400,7 +400,7 @@ void expectStatedRounding(tool::Gpu& gpu, PointHostDesc desc) {
   }
   desc.capacity = static_cast<std::uint32_t>(points.size());
   const PointResult result = PointHost(gpu, desc).draw(points);
-  const Rounding rounding = roundingOf(desc.nodes, desc.samples, desc.linking);
+  const Rounding rounding = roundingOf(desc.nodes, desc.samples, desc.listBuild);
   for (std::uint32_t i = 0; i < kValues; ++i) {
     for (unsigned c = 0; c < 3; ++c) {
       const double got = result.pixels[i][c];
@@ -419,13 +419,13 @@ TEST_F(LibraryTest, ColourAndAlphaKeepTheirStatedRounding) {
   counts.insert(counts.begin(), 1);
   for (const std::uint32_t samples : counts) {
     for (const VitrailNodeFormat format : nodeFormats(samples)) {
-      for (const VitrailLinking linking : kLinkings) {
+      for (const VitrailListBuild linking : kLinkings) {
         SCOPED_TRACE(std::to_string(samples) + " samples, format " + std::to_string(format) + ", linking " +
                      std::to_string(linking));
         PointHostDesc desc;
         desc.nodes = format;
         desc.samples = samples;
-        desc.linking = linking;
+        desc.listBuild = linking;
         expectStatedRounding(gpu(), desc);
       }
     }
@@ -436,7 +436,7 @@ TEST_F(LibraryTest, ColourAndAlphaKeepTheirStatedRounding) {
 // steps as they are.
 TEST_F(LibraryTest, ColoursThatComputeEncodesAreRoundedAsTheReferenceDoes) {
   PointHostDesc desc;
-  desc.linking = VITRAIL_LINKING_COMPUTE;
+  desc.listBuild = VITRAIL_LIST_BUILD_COMPUTE;
   desc.width = 256;
   desc.height = 33;
   std::vector<Point> points;
@@ -492,20 +492,20 @@ TEST_F(LibraryTest, CompactDepthsAreToldApartAsStated) {
 
 // How collecting shaders may be: each kind turns away what does not suit it in its own way.
 struct Kind {
-  VitrailLinking linking;
+  VitrailListBuild linking;
   bool addresses;
 };
 
 std::vector<Kind> kindsOf(const tool::Gpu& gpu) {
-  std::vector<Kind> kinds = {{VITRAIL_LINKING_FRAGMENT, false}, {VITRAIL_LINKING_COMPUTE, false}};
+  std::vector<Kind> kinds = {{VITRAIL_LIST_BUILD_FRAGMENT, false}, {VITRAIL_LIST_BUILD_COMPUTE, false}};
   if (!gpu.features().bufferDeviceAddress) return kinds;
-  kinds.push_back({VITRAIL_LINKING_FRAGMENT, true});
-  kinds.push_back({VITRAIL_LINKING_COMPUTE, true});
+  kinds.push_back({VITRAIL_LIST_BUILD_FRAGMENT, true});
+  kinds.push_back({VITRAIL_LIST_BUILD_COMPUTE, true});
   return kinds;
 }
 
 std::string describe(const Kind& kind) {
-  return "linking " + std::to_string(kind.linking) + (kind.addresses ? ", by address" : ", by binding");
+  return "linking " + std::to_string(kind.listBuild) + (kind.addresses ? ", by address" : ", by binding");
 }
 
 // A shader that is specialized for another target stores nothing there, and says so.
@@ -515,7 +515,7 @@ TEST_F(LibraryTest, AShaderOfAnotherTargetStoresNothing) {
     PointHostDesc desc;
     desc.capacity = 4;
     desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
-    desc.linking = kind.linking;
+    desc.listBuild = kind.listBuild;
     desc.addresses = kind.addresses;
     const Point point = {0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}};
     desc.specialized = true;
@@ -545,11 +545,11 @@ TEST_F(LibraryTest, NodesThatNobodyWroteAreNotSeen) {
     SCOPED_TRACE(describe(kind));
     PointHostDesc desc;
     desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
-    desc.linking = kind.linking;
+    desc.listBuild = kind.listBuild;
     desc.addresses = kind.addresses;
     desc.specialized = true;
     desc.specializedForLinking =
-        kind.linking == VITRAIL_LINKING_COMPUTE ? VITRAIL_LINKING_FRAGMENT : VITRAIL_LINKING_COMPUTE;
+        kind.listBuild == VITRAIL_LIST_BUILD_COMPUTE ? VITRAIL_LIST_BUILD_FRAGMENT : VITRAIL_LIST_BUILD_COMPUTE;
     desc.guarded = true; // the nodes hold guard words at first
     const std::vector<Point> points = randomLists(desc, std::vector<std::uint32_t>(64, 1), 2);
     for (const std::uint32_t capacity : {30U, 200U}) {
@@ -600,7 +600,7 @@ TEST_F(LibraryTest, ShadersForTheDefaultLinkingSuitTheirTarget) {
   PointHostDesc desc;
   desc.width = 16;
   desc.height = 8;
-  desc.linking = VITRAIL_LINKING_DEFAULT;
+  desc.listBuild = VITRAIL_LIST_BUILD_DEFAULT;
   desc.specialized = true;
   const std::vector<Point> points = randomLists(desc, {0, 1, 5, 20, 3}, 7);
   desc.capacity = static_cast<std::uint32_t>(points.size());
@@ -608,18 +608,18 @@ TEST_F(LibraryTest, ShadersForTheDefaultLinkingSuitTheirTarget) {
   const Expected expected = expectedFrame(desc, points);
   expectLikeReference(host.draw(points), expected);
 
-  VitrailTargetDesc described{};
+  VitrailVkTargetDesc described{};
   described.extent = {desc.width, desc.height};
-  const VitrailLinking linking = host.context().defaultLinking(described);
-  EXPECT_EQ(host.target().linking(), linking);
+  const VitrailListBuild linking = host.context().defaultListBuild(described);
+  EXPECT_EQ(host.target().listBuild(), linking);
   described.extent = {4096, 4097};
-  EXPECT_EQ(host.context().defaultLinking(described), VITRAIL_LINKING_FRAGMENT);
-  if (linking != VITRAIL_LINKING_COMPUTE) return;
+  EXPECT_EQ(host.context().defaultListBuild(described), VITRAIL_LIST_BUILD_FRAGMENT);
+  if (linking != VITRAIL_LIST_BUILD_COMPUTE) return;
   // It stays what it is, also where another would be made otherwise.
-  VitrailResizeInfo resize{};
+  VitrailVkResizeInfo resize{};
   resize.frame = 1;
   resize.extent = described.extent;
-  EXPECT_EQ(vitrailResizeTarget(host.target().handle(), &resize), VK_ERROR_INITIALIZATION_FAILED);
+  EXPECT_EQ(vitrailVkResizeTarget(host.target().handle(), &resize), VK_ERROR_INITIALIZATION_FAILED);
   expectLikeReference(host.draw(points), expected);
 }
 

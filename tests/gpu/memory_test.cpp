@@ -181,7 +181,7 @@ std::vector<FloatColor> drawTiles(tool::Gpu& gpu, PointHostDesc desc, VitrailTil
   TilePlan plan;
   const Context& context = sharedContext(gpu, 0);
   EXPECT_EQ(TilePlan::create(context, planDesc, plan), VK_SUCCESS);
-  VitrailTargetDesc target{};
+  VitrailVkTargetDesc target{};
   plan.prepare(target);
   desc.capacity = target.nodeCapacity;
   desc.areaPixels = target.areaPixels;
@@ -259,7 +259,7 @@ TEST_F(MemoryTest, BoundsAndCountsMakeFewerTiles) {
 
 TEST_F(MemoryTest, APixelThatFitsNoBudgetIsAnErrorWithTheBytes) {
   std::string reason;
-  VitrailContextDesc contextDesc{};
+  VitrailVkContextDesc contextDesc{};
   contextDesc.instance = gpu().instance();
   contextDesc.physicalDevice = gpu().physicalDevice();
   contextDesc.device = gpu().device();
@@ -307,13 +307,13 @@ TEST_F(MemoryTest, BarriersAsDataNameTheTargetsBuffers) {
   PointHostDesc desc = squareHost();
   desc.capacity = 10;
   const PointHost host(gpu(), desc);
-  for (const VitrailBarrierPoint point :
-       {VITRAIL_BARRIER_BEFORE_CLEAR, VITRAIL_BARRIER_BEFORE_COLLECT, VITRAIL_BARRIER_COLLECTED}) {
-    const VitrailBarriers barriers = host.target().barriers(point);
+  for (const VitrailVkBarrierPoint point :
+       {VITRAIL_VK_BARRIER_BEFORE_CLEAR, VITRAIL_VK_BARRIER_BEFORE_COLLECT, VITRAIL_VK_BARRIER_COLLECTED}) {
+    const VitrailVkBarriers barriers = host.target().barriers(point);
     EXPECT_NE(barriers.source, 0U);
     EXPECT_NE(barriers.destination, 0U);
     ASSERT_GE(barriers.count, 1U);
-    ASSERT_LE(barriers.count, std::uint32_t{VITRAIL_MAX_BARRIERS});
+    ASSERT_LE(barriers.count, std::uint32_t{VITRAIL_VK_MAX_BARRIERS});
     for (std::uint32_t i = 0; i < barriers.count; ++i) {
       EXPECT_EQ(barriers.buffers[i].sType, VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER);
       EXPECT_TRUE(barriers.buffers[i].buffer != VK_NULL_HANDLE);
@@ -325,7 +325,7 @@ TEST_F(MemoryTest, BarriersAsDataNameTheTargetsBuffers) {
 class RefusedTest : public MemoryTest {
  protected:
   void SetUp() override {
-    VitrailContextDesc desc{};
+    VitrailVkContextDesc desc{};
     desc.instance = gpu().instance();
     desc.physicalDevice = gpu().physicalDevice();
     desc.device = gpu().device();
@@ -339,7 +339,7 @@ class RefusedTest : public MemoryTest {
     desc_.views.color = &view_; // never reached
   }
 
-  void expectRefused(const VitrailTargetDesc& desc, VkResult code, const char* word) {
+  void expectRefused(const VitrailVkTargetDesc& desc, VkResult code, const char* word) {
     reason_.clear();
     Target target;
     EXPECT_EQ(Target::create(context_, desc, target), code) << word;
@@ -350,18 +350,18 @@ class RefusedTest : public MemoryTest {
   std::string reason_;
   Context context_;
   VkImageView view_ = VK_NULL_HANDLE;
-  VitrailTargetDesc desc_{};
+  VitrailVkTargetDesc desc_{};
 };
 
 TEST_F(RefusedTest, ContextsWithoutWhatTheyNeed) {
-  VitrailContextDesc desc{};
-  VitrailContext none = nullptr;
-  EXPECT_EQ(vitrailCreateContext(&desc, &none), VK_ERROR_INITIALIZATION_FAILED);
+  VitrailVkContextDesc desc{};
+  VitrailVkContext none = nullptr;
+  EXPECT_EQ(vitrailVkCreateContext(&desc, &none), VK_ERROR_INITIALIZATION_FAILED);
   EXPECT_EQ(none, nullptr);
 }
 
 TEST_F(RefusedTest, WrongFields) {
-  VitrailTargetDesc desc = desc_;
+  VitrailVkTargetDesc desc = desc_;
   desc.extent.width = 0;
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "extent");
   desc = desc_;
@@ -377,7 +377,7 @@ TEST_F(RefusedTest, WrongFields) {
   desc.overflow = static_cast<VitrailOverflow>(5);
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "overflow");
   desc = desc_;
-  desc.linking = static_cast<VitrailLinking>(4);
+  desc.listBuild = static_cast<VitrailListBuild>(4);
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "linking");
   desc = desc_;
   desc.resolve = static_cast<VitrailResolve>(9);
@@ -391,10 +391,10 @@ TEST_F(RefusedTest, WrongFields) {
 }
 
 TEST_F(RefusedTest, ViewsThatAreMissing) {
-  VitrailTargetDesc desc = desc_;
+  VitrailVkTargetDesc desc = desc_;
   desc.views.count = 0;
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "views.color");
-  desc.views.count = VITRAIL_MAX_COLOR_VIEWS + 1;
+  desc.views.count = VITRAIL_MAX_VIEWS + 1;
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "views");
   const std::vector<std::uint32_t> counts = sampleCounts(gpu());
   if (counts.empty()) return;
@@ -406,7 +406,7 @@ TEST_F(RefusedTest, ViewsThatAreMissing) {
 }
 
 TEST_F(RefusedTest, WhatTheDeviceOrTheContextDoesNotOffer) {
-  VitrailTargetDesc desc = desc_;
+  VitrailVkTargetDesc desc = desc_;
   for (const std::uint32_t samples : {2U, 4U, 8U}) {
     if ((gpu().features().sampleCounts & samples) != 0) continue;
     desc.samples = static_cast<VkSampleCountFlagBits>(samples);
@@ -429,7 +429,7 @@ TEST_F(RefusedTest, WhatTheDeviceOrTheContextDoesNotOffer) {
 
 TEST_F(RefusedTest, MemoryThatIsNotThere) {
   const std::uint32_t most = context_.maxNodeCapacity(VITRAIL_NODE_STANDARD);
-  VitrailTargetDesc desc = desc_;
+  VitrailVkTargetDesc desc = desc_;
   if (most < std::numeric_limits<std::uint32_t>::max() - 1) {
     desc.nodeCapacity = most + 1;
     expectRefused(desc, VK_ERROR_OUT_OF_DEVICE_MEMORY, "nodeCapacity");
@@ -443,13 +443,13 @@ TEST_F(RefusedTest, MemoryThatIsNotThere) {
 
 // A node has 24 bits for its pixel until it is linked.
 TEST_F(RefusedTest, AreasThatAreTooLargeToLinkByCompute) {
-  VitrailTargetDesc desc = desc_;
-  desc.linking = VITRAIL_LINKING_COMPUTE;
+  VitrailVkTargetDesc desc = desc_;
+  desc.listBuild = VITRAIL_LIST_BUILD_COMPUTE;
   desc.overflow = VITRAIL_OVERFLOW_SKIP;
   desc.nodeCapacity = 1;
   desc.extent = {4096, 4097};
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "VITRAIL_LINKING_FRAGMENT");
-  VitrailRequirements requirements{};
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "VITRAIL_LIST_BUILD_FRAGMENT");
+  VitrailVkRequirements requirements{};
   EXPECT_NE(context_.targetRequirements(desc, requirements), VK_SUCCESS);
   for (const std::uint32_t areaPixels : {0U, 1000000U}) {
     desc.extent.height = areaPixels == 0 ? 4096 : 4097;
@@ -458,14 +458,14 @@ TEST_F(RefusedTest, AreasThatAreTooLargeToLinkByCompute) {
   }
   desc.areaPixels = 0;
   desc.extent.height = 4097;
-  EXPECT_EQ(context_.defaultLinking(desc), VITRAIL_LINKING_FRAGMENT);
-  desc.linking = VITRAIL_LINKING_DEFAULT;
+  EXPECT_EQ(context_.defaultListBuild(desc), VITRAIL_LIST_BUILD_FRAGMENT);
+  desc.listBuild = VITRAIL_LIST_BUILD_DEFAULT;
   EXPECT_EQ(context_.targetRequirements(desc, requirements), VK_SUCCESS);
 }
 
 // Compute where it can be had, else a draw.
 TEST_F(RefusedTest, TheDefaultResolveFollowsTheFields) {
-  VitrailTargetDesc desc = desc_;
+  VitrailVkTargetDesc desc = desc_;
   desc.resolve = VITRAIL_RESOLVE_DEFAULT;
   EXPECT_EQ(context_.defaultResolve(desc), VITRAIL_RESOLVE_COMPUTE);
   desc.views.color = nullptr;

@@ -6,7 +6,7 @@
 #include "point_host.h"
 
 #ifndef VITRAIL_TEST_LINKING
-#define VITRAIL_TEST_LINKING VITRAIL_LINKING_FRAGMENT
+#define VITRAIL_TEST_LINKING VITRAIL_LIST_BUILD_FRAGMENT
 #endif
 
 namespace vitrail::tests {
@@ -17,7 +17,7 @@ TEST(NegativeControl, AMissingBarrierIsCaught) {
   {
     PointHostDesc desc;
     desc.capacity = 4;
-    desc.linking = VITRAIL_TEST_LINKING;
+    desc.listBuild = VITRAIL_TEST_LINKING;
     const Point point = {0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}};
     PointHost(gpu, desc).draw(std::span(&point, 1));
   }

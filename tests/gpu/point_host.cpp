@@ -91,9 +91,9 @@ tool::Unique<VkImageView> depthOnlyView(tool::Gpu& gpu, const tool::GpuImage& im
 
 std::uint32_t featureBits(const tool::Gpu& gpu, const PointHostDesc& desc) {
   std::uint32_t features = 0;
-  if (desc.addresses) features |= VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS;
-  if (desc.dualSourceBlending && gpu.features().dualSourceBlending) features |= VITRAIL_FEATURE_DUAL_SRC_BLEND;
-  if (gpu.features().sampleRateShading) features |= VITRAIL_FEATURE_SAMPLE_RATE_SHADING;
+  if (desc.addresses) features |= VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS;
+  if (desc.dualSourceBlending && gpu.features().dualSourceBlending) features |= VITRAIL_VK_FEATURE_DUAL_SRC_BLEND;
+  if (gpu.features().sampleRateShading) features |= VITRAIL_VK_FEATURE_SAMPLE_RATE_SHADING;
   return features;
 }
 
@@ -117,14 +117,14 @@ PointPipelines& sharedPipelines(tool::Gpu& gpu, const PointPipelinesInfo& info) 
 Context& sharedContext(tool::Gpu& gpu, std::uint32_t features) {
   Context& context = shared().contexts[{gpu.device(), features}];
   if (context) return context;
-  VitrailContextDesc desc{};
+  VitrailVkContextDesc desc{};
   desc.instance = gpu.instance();
   desc.physicalDevice = gpu.physicalDevice();
   desc.device = gpu.device();
   desc.getInstanceProcAddr = vkGetInstanceProcAddr;
   desc.features = features;
   desc.log = [](VitrailLogSeverity, const char* message, void*) { reason() = message; };
-  check(Context::create(desc, context), "vitrailCreateContext");
+  check(Context::create(desc, context), "vitrailVkCreateContext");
   return context;
 }
 
@@ -146,7 +146,7 @@ PointHost::PointHost(tool::Gpu& gpu, const PointHostDesc& desc)
     depthFormat_ = VK_FORMAT_D32_SFLOAT;
   }
   makeSlots();
-  VitrailTargetDesc target = targetDesc();
+  VitrailVkTargetDesc target = targetDesc();
   createTarget(target);
   pipelines_ = &sharedPipelines(gpu, specialized(pipelinesInfo(), target));
   if (!desc.strangersFor) return;
@@ -191,8 +191,8 @@ void PointHost::makeSlots() {
   }
 }
 
-VitrailViews PointHost::views() {
-  VitrailViews views{};
+VitrailVkViews PointHost::views() {
+  VitrailVkViews views{};
   views.count = kFramesTogether;
   if (desc_.resolve != VITRAIL_RESOLVE_FRAGMENT) views.color = colorViews_.data();
   if (multisampled() && !perSample()) views.opaque = opaqueViews_.data();
@@ -200,8 +200,8 @@ VitrailViews PointHost::views() {
   return views;
 }
 
-VitrailTargetDesc PointHost::targetDesc() {
-  VitrailTargetDesc desc{};
+VitrailVkTargetDesc PointHost::targetDesc() {
+  VitrailVkTargetDesc desc{};
   desc.extent = {desc_.width, desc_.height};
   desc.samples = static_cast<VkSampleCountFlagBits>(desc_.samples);
   desc.nodeFormat = desc_.nodes;
@@ -211,7 +211,7 @@ VitrailTargetDesc PointHost::targetDesc() {
   desc.postDepthCoverage = postDepthCoverage_ ? VK_TRUE : VK_FALSE;
   desc.maxLayers = desc_.maxLayers;
   desc.overflow = desc_.overflow;
-  desc.linking = desc_.linking;
+  desc.listBuild = desc_.listBuild;
   desc.nodeCapacity = desc_.capacity;
   desc.memoryBudget = desc_.memoryBudget;
   desc.areaPixels = desc_.areaPixels;
@@ -226,10 +226,10 @@ VitrailTargetDesc PointHost::targetDesc() {
   return desc;
 }
 
-void PointHost::createTarget(VitrailTargetDesc& desc) {
+void PointHost::createTarget(VitrailVkTargetDesc& desc) {
   if (desc_.guarded) {
-    VitrailRequirements needs{};
-    check(context_->targetRequirements(desc, needs), "vitrailTargetRequirements");
+    VitrailVkRequirements needs{};
+    check(context_->targetRequirements(desc, needs), "vitrailVkTargetRequirements");
     guardBytes_ = (kGuardWords * sizeof(std::uint32_t) + needs.alignment - 1) / needs.alignment * needs.alignment;
     // Not in memory that the host can read: shaders do atomics in it, and some machines do not carry those there.
     memory_ = tool::GpuBuffer(gpu_, needs.size + 2 * guardBytes_, needs.usage, MemoryKind::Device, "points: memory");
@@ -246,7 +246,7 @@ void PointHost::createTarget(VitrailTargetDesc& desc) {
     desc.buffer = memory_.get();
     desc.bufferOffset = guardBytes_;
   }
-  check(Target::create(*context_, desc, target_), "vitrailCreateTarget");
+  check(Target::create(*context_, desc, target_), "vitrailVkCreateTarget");
 }
 
 PointPipelinesInfo PointHost::pipelinesInfo() const {
@@ -261,13 +261,13 @@ PointPipelinesInfo PointHost::pipelinesInfo() const {
   return info;
 }
 
-PointPipelinesInfo PointHost::specialized(PointPipelinesInfo info, const VitrailTargetDesc& desc) const {
+PointPipelinesInfo PointHost::specialized(PointPipelinesInfo info, const VitrailVkTargetDesc& desc) const {
   if (!desc_.specialized) return info;
-  VitrailTargetDesc target = desc;
+  VitrailVkTargetDesc target = desc;
   target.nodeFormat = desc_.specializedFor.value_or(target.nodeFormat);
   target.overflow = desc_.specializedForOverflow.value_or(target.overflow);
-  target.linking = desc_.specializedForLinking.value_or(target.linking);
-  const VitrailSpecialization specialization = context_->collectSpecialization(target);
+  target.listBuild = desc_.specializedForLinking.value_or(target.listBuild);
+  const VitrailVkSpecialization specialization = context_->collectSpecialization(target);
   info.specialized = true;
   info.firstConstant = specialization.entries[0].constantID;
   std::copy(std::begin(specialization.data), std::end(specialization.data), info.constants.begin());
@@ -456,7 +456,7 @@ void PointHost::recordPicture(VkCommandBuffer commands, Slot& slot, bool perSamp
 
 PointResult PointHost::read(const Slot& slot, std::uint64_t frame) const {
   PointResult result;
-  check(target_.readStats(frame, result.stats), "vitrailReadStats");
+  check(target_.readStats(frame, result.stats), "vitrailVkReadStats");
   if (desc_.colorFormat == VK_FORMAT_R32G32B32A32_SFLOAT) {
     result.pixels.resize(std::size_t{slot.extent.width} * slot.extent.height);
     std::memcpy(result.pixels.data(), slot.readback.mapped(), result.pixels.size() * sizeof(FloatColor));
@@ -473,7 +473,7 @@ std::vector<PointResult> PointHost::drawTogether(const std::vector<std::vector<P
   for (const std::vector<Point>& points : frames) vertices.push_back(upload(points));
   const std::uint64_t first = frame_;
   frame_ += frames.size();
-  check(target_.update(first), "vitrailUpdateTarget");
+  check(target_.update(first), "vitrailVkUpdateTarget");
   submitter_.run("points", [&](VkCommandBuffer commands) {
     for (std::uint64_t frame = first; frame < frame_; ++frame) {
       recordOpaque(commands, slotOf(frame));
@@ -494,7 +494,7 @@ std::array<PointResult, 2> PointHost::drawAcrossResize(std::span<const Point> fi
   const auto view = [](std::uint64_t of) { return static_cast<std::uint32_t>(of % kFramesTogether); };
   const Vertices before = upload(first);
   Vertices after;
-  check(target_.update(frame), "vitrailUpdateTarget");
+  check(target_.update(frame), "vitrailVkUpdateTarget");
   submitter_.run("points across a resize", [&](VkCommandBuffer commands) {
     recordOpaque(commands, slotOf(frame));
     recordFrame(commands, frame, slotOf(frame), view(frame), wholeArea(), before);
@@ -503,7 +503,7 @@ std::array<PointResult, 2> PointHost::drawAcrossResize(std::span<const Point> fi
     desc_.width = extent.width;
     desc_.height = extent.height;
     makeSlots();
-    check(target_.resize({frame + 1, extent, 0, views()}), "vitrailResizeTarget");
+    check(target_.resize({frame + 1, extent, 0, views()}), "vitrailVkResizeTarget");
     after = upload(second);
     recordOpaque(commands, slotOf(frame + 1));
     recordFrame(commands, frame + 1, slotOf(frame + 1), view(frame + 1), wholeArea(), after);
@@ -525,7 +525,7 @@ PointResult PointHost::drawAreas(std::span<const Point> points, const NextArea& 
     const std::uint64_t frame = frame_++;
     submitter_.run("points of an area",
                    [&](VkCommandBuffer commands) { recordFrame(commands, frame, slot, 0, area, vertices); });
-    check(target_.readStats(frame, stats), "vitrailReadStats");
+    check(target_.readStats(frame, stats), "vitrailVkReadStats");
   }
   submitter_.run("picture", [&](VkCommandBuffer commands) { recordPicture(commands, slot, perSample()); });
   return read(slot, stats.frame);
@@ -558,7 +558,7 @@ void PointHost::scatterNodes() {
   const auto moved = [&](std::uint32_t index) { return index < capacity ? place[index] : index; };
   const std::vector<layout::VitrailNodeStandard> oldNodes(nodes.begin(), nodes.end());
   const std::vector<std::uint32_t> oldLinks(links.begin(), links.end());
-  const bool linked = desc_.linking == VITRAIL_LINKING_FRAGMENT; // else no node names another one yet
+  const bool linked = desc_.listBuild == VITRAIL_LIST_BUILD_FRAGMENT; // else no node names another one yet
   for (std::uint32_t& head : heads) head = moved(head);
   for (std::uint32_t i = 0; i < capacity; ++i) {
     nodes[place[i]] = oldNodes[i];
@@ -599,7 +599,7 @@ PointResult PointHost::drawScattered(std::span<const Point> points) {
 void PointHost::drop(std::span<const Point> points) {
   const Vertices vertices = upload(points);
   const std::uint64_t frame = frame_++;
-  check(target_.update(frame), "vitrailUpdateTarget");
+  check(target_.update(frame), "vitrailVkUpdateTarget");
   VkCommandBuffer commands = submitter_.begin();
   recordOpaque(commands, slotOf(frame));
   recordFrame(commands, frame, slotOf(frame), static_cast<std::uint32_t>(frame % kFramesTogether), wholeArea(),

@@ -48,7 +48,7 @@ struct PointHostDesc {
   VkFormat colorFormat = VK_FORMAT_R32G32B32A32_SFLOAT; // results of 16-bit formats are not read back
   std::uint32_t maxLayers = 0;
   VitrailOverflow overflow = VITRAIL_OVERFLOW_APPROXIMATE;
-  VitrailLinking linking = VITRAIL_LINKING_FRAGMENT;
+  VitrailListBuild linking = VITRAIL_LIST_BUILD_FRAGMENT;
   VkDeviceSize memoryBudget = 0; // the pool follows it: every draw updates the target first
   std::uint32_t areaPixels = 0;
   bool postDepthCoverage = true;  // where there are several samples and the device has it
@@ -58,7 +58,7 @@ struct PointHostDesc {
   bool specialized = false; // the collecting shader is, for this target or, if given, for one that differs in these
   std::optional<VitrailNodeFormat> specializedFor;
   std::optional<VitrailOverflow> specializedForOverflow;
-  std::optional<VitrailLinking> specializedForLinking;
+  std::optional<VitrailListBuild> specializedForLinking;
   // Strangers among the points are drawn by a shader that is specialized for a target that differs in this.
   std::optional<VitrailOverflow> strangersFor;
   bool guarded = false; // the memory is this host's, between guard words
@@ -142,11 +142,11 @@ class PointHost {
 
   [[nodiscard]] Slot makeSlot() const;
   void makeSlots();
-  [[nodiscard]] VitrailViews views();
-  [[nodiscard]] VitrailTargetDesc targetDesc();
-  void createTarget(VitrailTargetDesc& desc);
+  [[nodiscard]] VitrailVkViews views();
+  [[nodiscard]] VitrailVkTargetDesc targetDesc();
+  void createTarget(VitrailVkTargetDesc& desc);
   [[nodiscard]] PointPipelinesInfo pipelinesInfo() const;
-  [[nodiscard]] PointPipelinesInfo specialized(PointPipelinesInfo info, const VitrailTargetDesc& target) const;
+  [[nodiscard]] PointPipelinesInfo specialized(PointPipelinesInfo info, const VitrailVkTargetDesc& target) const;
   [[nodiscard]] Vertices upload(std::span<const Point> points) const;
   Slot& slotOf(std::uint64_t frame) { return slots_[frame % kFramesTogether]; }
 

@@ -84,8 +84,8 @@ Draws pointDraws(const PointPipelinesInfo& info) {
   draws.depth.depthCompareOp = info.nearestIsOne ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_LESS_OR_EQUAL;
   if (hasStencil(info.depthFormat)) {
     draws.depth.stencilTestEnable = VK_TRUE;
-    vitrailStencilMark(&draws.depth.front);
-    vitrailStencilMark(&draws.depth.back);
+    vitrailVkStencilMark(&draws.depth.front);
+    vitrailVkStencilMark(&draws.depth.back);
   }
   return draws;
 }

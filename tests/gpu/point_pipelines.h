@@ -8,7 +8,7 @@
 #include <map>
 #include <span>
 
-#include <vitrail/vitrail.h>
+#include <vitrail/vulkan.h>
 
 #include "draw/device.h"
 #include "draw/unique.h"

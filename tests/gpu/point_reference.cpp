@@ -68,7 +68,7 @@ class Dice {
 
 NodeCoding codingOf(const PointHostDesc& desc) {
   return {static_cast<std::uint32_t>(desc.nodes), desc.samples, desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE,
-          desc.linking == VITRAIL_LINKING_COMPUTE};
+          desc.listBuild == VITRAIL_LIST_BUILD_COMPUTE};
 }
 
 Expected expectedFrame(const PointHostDesc& desc, std::span<const Point> points, bool hasPostDepthCoverage) {
@@ -144,13 +144,13 @@ void apply(const Way& way, PointHostDesc& desc) {
   desc.resolve = way.resolve;
   desc.msaaResolve = way.msaaResolve;
   desc.stencilMark = way.stencilMark;
-  desc.linking = way.linking;
+  desc.listBuild = way.listBuild;
 }
 
 std::vector<Way> everyWay(const tool::Gpu& gpu, std::uint32_t samples) {
   constexpr VitrailMsaaResolve kPerPixel = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
   constexpr VitrailMsaaResolve kPerSample = VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
-  constexpr VitrailLinking kCompute = VITRAIL_LINKING_COMPUTE;
+  constexpr VitrailListBuild kCompute = VITRAIL_LIST_BUILD_COMPUTE;
   std::vector<Way> ways = {{"compute", VITRAIL_RESOLVE_COMPUTE, kPerPixel, false},
                            {"compute, linked by compute", VITRAIL_RESOLVE_COMPUTE, kPerPixel, false, kCompute},
                            {"fragment", VITRAIL_RESOLVE_FRAGMENT, kPerPixel, false}};

@@ -55,7 +55,7 @@ struct Way {
   VitrailResolve resolve = VITRAIL_RESOLVE_COMPUTE;
   VitrailMsaaResolve msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
   bool stencilMark = false;
-  VitrailLinking linking = VITRAIL_LINKING_FRAGMENT;
+  VitrailListBuild linking = VITRAIL_LIST_BUILD_FRAGMENT;
 };
 void apply(const Way& way, PointHostDesc& desc);
 
