@@ -6,8 +6,6 @@
 #include <cstdlib>
 #include <memory>
 
-#include "point_host.h"
-
 namespace vitrail::tool::test {
 
 namespace {
@@ -19,10 +17,7 @@ std::unique_ptr<Gpu>& sharedGpu() {
 
 class GpuEnvironment : public ::testing::Environment {
  public:
-  void TearDown() override {
-    tests::dropContexts();
-    sharedGpu().reset();
-  }
+  void TearDown() override { sharedGpu().reset(); }
 };
 
 const ::testing::Environment* const environment = ::testing::AddGlobalTestEnvironment(new GpuEnvironment);

@@ -1,4 +1,4 @@
-// What the point host must draw, in double precision, and the points that tests draw.
+// What a point host must draw, in double precision; the points that tests draw, and the ways to draw them.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "core/reference_resolve.h"
-#include "point_host.h"
+#include "backend.h"
+#include "reference/resolve.h"
 
 namespace vitrail::tests {
 
-NodeCoding codingOf(const PointHostDesc& desc);
+NodeCoding codingOf(const HostDesc& desc);
 
 // What a frame must be.
 struct Expected {
@@ -22,7 +22,7 @@ struct Expected {
 };
 
 // `hasPostDepthCoverage`: whether the device has it; the host uses it where it may.
-Expected expectedFrame(const PointHostDesc& desc, std::span<const Point> points, bool hasPostDepthCoverage = true);
+Expected expectedFrame(const HostDesc& desc, std::span<const Point> points, bool hasPostDepthCoverage = true);
 
 // Averages are sums of integers in 1/65536, and transmittances sums of logarithms in 1/4096.
 inline constexpr double kSumTolerance = 2e-3;
@@ -46,8 +46,12 @@ struct PointVariety {
 // Points for lists of the given lengths, list i on pixel i: random colours on the node format's own steps, so that
 // storing them loses nothing, and random depths, of which each tenth is that of the one before it. Alphas are such that
 // the last fragments of a list still show, where the format has such small ones.
-std::vector<Point> randomLists(const PointHostDesc& desc, const std::vector<std::uint32_t>& lengths, unsigned seed,
+std::vector<Point> randomLists(const HostDesc& desc, const std::vector<std::uint32_t>& lengths, unsigned seed,
                                const PointVariety& variety = {});
+
+// The same on a picture of 64x64 pixels (squareHost()): lists of up to `longest` fragments, all lengths mixed.
+HostDesc squareHost();
+std::vector<Point> manyLists(const HostDesc& desc, std::uint32_t longest, unsigned seed);
 
 // A way to resolve: fields of a host, and their names.
 struct Way {
@@ -55,15 +59,15 @@ struct Way {
   VitrailResolve resolve = VITRAIL_RESOLVE_COMPUTE;
   VitrailMsaaResolve msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
   bool stencilMark = false;
-  VitrailListBuild linking = VITRAIL_LIST_BUILD_FRAGMENT;
+  VitrailListBuild listBuild = VITRAIL_LIST_BUILD_FRAGMENT;
 };
-void apply(const Way& way, PointHostDesc& desc);
+void apply(const Way& way, HostDesc& desc);
 
-// All that there are on a device at a sample count; each linking with each resolve.
-std::vector<Way> everyWay(const tool::Gpu& gpu, std::uint32_t samples);
+// All that there are on a device at a sample count; each list build with each resolve.
+std::vector<Way> everyWay(const Features& features, std::uint32_t samples);
 
-// Which of 2, 4 and 8 samples the device has.
-std::vector<std::uint32_t> sampleCounts(const tool::Gpu& gpu);
+// 1 and what the device has of 2, 4 and 8.
+std::vector<std::uint32_t> sampleCounts(const Features& features);
 
 // The node formats that go with a sample count.
 std::vector<VitrailNodeFormat> nodeFormats(std::uint32_t samples);

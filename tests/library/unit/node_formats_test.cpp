@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/node.h"
+#include "../reference/node.h"
 #include "core/pool.h"
 
 namespace vitrail::tests {

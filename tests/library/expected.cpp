@@ -1,12 +1,10 @@
-#include "point_reference.h"
+#include "expected.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <random>
-
-#include "core/pool.h"
 
 namespace vitrail::tests {
 
@@ -15,7 +13,7 @@ namespace {
 Color doubleColor(const FloatColor& c) { return {c[0], c[1], c[2], c[3]}; }
 
 // The samples at which the depth test lets a point through.
-std::uint32_t passingSamples(const PointHostDesc& desc, float depth) {
+std::uint32_t passingSamples(const HostDesc& desc, float depth) {
   std::uint32_t passing = 0;
   for (std::uint32_t s = 0; s < desc.samples; ++s) {
     const bool passes =
@@ -29,7 +27,7 @@ std::uint32_t passingSamples(const PointHostDesc& desc, float depth) {
 // Random points of one host.
 class Dice {
  public:
-  Dice(const PointHostDesc& desc, unsigned seed, const PointVariety& variety)
+  Dice(const HostDesc& desc, unsigned seed, const PointVariety& variety)
       : coding_(codingOf(desc)), variety_(variety), random_(seed) {}
 
   float unit() { return static_cast<float>(random_() >> 8U) / 16777216.0F; }
@@ -66,12 +64,12 @@ class Dice {
 
 } // namespace
 
-NodeCoding codingOf(const PointHostDesc& desc) {
+NodeCoding codingOf(const HostDesc& desc) {
   return {static_cast<std::uint32_t>(desc.nodes), desc.samples, desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE,
           desc.listBuild == VITRAIL_LIST_BUILD_COMPUTE};
 }
 
-Expected expectedFrame(const PointHostDesc& desc, std::span<const Point> points, bool hasPostDepthCoverage) {
+Expected expectedFrame(const HostDesc& desc, std::span<const Point> points, bool hasPostDepthCoverage) {
   const bool postDepth = hasPostDepthCoverage && desc.postDepthCoverage;
   std::vector<PixelList> lists(std::size_t{desc.width} * desc.height);
   Expected expected;
@@ -120,7 +118,7 @@ std::vector<Point> ordered(std::vector<Point> points, Order order) {
   return points;
 }
 
-std::vector<Point> randomLists(const PointHostDesc& desc, const std::vector<std::uint32_t>& lengths, unsigned seed,
+std::vector<Point> randomLists(const HostDesc& desc, const std::vector<std::uint32_t>& lengths, unsigned seed,
                                const PointVariety& variety) {
   Dice dice(desc, seed, variety);
   std::vector<Point> points;
@@ -140,39 +138,53 @@ std::vector<Point> randomLists(const PointHostDesc& desc, const std::vector<std:
   return points;
 }
 
-void apply(const Way& way, PointHostDesc& desc) {
+HostDesc squareHost() {
+  HostDesc desc;
+  desc.width = 64;
+  desc.height = 64;
+  desc.behind = {0.2F, 0.5F, 0.8F, 1.0F};
+  return desc;
+}
+
+std::vector<Point> manyLists(const HostDesc& desc, std::uint32_t longest, unsigned seed) {
+  std::vector<std::uint32_t> lengths(std::size_t{desc.width} * desc.height);
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    lengths[i] = static_cast<std::uint32_t>((i * 2654435761U >> 7U) % (longest + 1));
+  }
+  return randomLists(desc, lengths, seed);
+}
+
+void apply(const Way& way, HostDesc& desc) {
   desc.resolve = way.resolve;
   desc.msaaResolve = way.msaaResolve;
   desc.stencilMark = way.stencilMark;
   desc.listBuild = way.listBuild;
 }
 
-std::vector<Way> everyWay(const tool::Gpu& gpu, std::uint32_t samples) {
+std::vector<Way> everyWay(const Features& features, std::uint32_t samples) {
   constexpr VitrailMsaaResolve kPerPixel = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
   constexpr VitrailMsaaResolve kPerSample = VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
   constexpr VitrailListBuild kCompute = VITRAIL_LIST_BUILD_COMPUTE;
   std::vector<Way> ways = {{"compute", VITRAIL_RESOLVE_COMPUTE, kPerPixel, false},
-                           {"compute, linked by compute", VITRAIL_RESOLVE_COMPUTE, kPerPixel, false, kCompute},
+                           {"compute, lists built by compute", VITRAIL_RESOLVE_COMPUTE, kPerPixel, false, kCompute},
                            {"fragment", VITRAIL_RESOLVE_FRAGMENT, kPerPixel, false}};
-  if (samples == 1 && gpu.features().stencil) {
+  if (samples == 1 && features.stencil) {
     ways.push_back(
-        {"fragment with stencil mark, linked by compute", VITRAIL_RESOLVE_FRAGMENT, kPerPixel, true, kCompute});
+        {"fragment with stencil mark, lists built by compute", VITRAIL_RESOLVE_FRAGMENT, kPerPixel, true, kCompute});
   }
-  if (samples > 1 && gpu.features().sampleRateShading) {
+  if (samples > 1 && features.sampleRateShading) {
     ways.push_back({"per sample", VITRAIL_RESOLVE_FRAGMENT, kPerSample, false});
-    if (gpu.features().stencil) {
-      ways.push_back(
-          {"per sample with stencil mark, linked by compute", VITRAIL_RESOLVE_FRAGMENT, kPerSample, true, kCompute});
+    if (features.stencil) {
+      ways.push_back({"per sample with stencil mark, lists built by compute", VITRAIL_RESOLVE_FRAGMENT, kPerSample,
+                      true, kCompute});
     }
   }
   return ways;
 }
 
-std::vector<std::uint32_t> sampleCounts(const tool::Gpu& gpu) {
-  std::vector<std::uint32_t> counts;
-  for (const std::uint32_t count : {2U, 4U, 8U}) {
-    if ((gpu.features().sampleCounts & count) != 0) counts.push_back(count);
-  }
+std::vector<std::uint32_t> sampleCounts(const Features& features) {
+  std::vector<std::uint32_t> counts = features.multisampled;
+  counts.insert(counts.begin(), 1);
   return counts;
 }
 

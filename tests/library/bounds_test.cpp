@@ -8,24 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "gpu_fixture.h"
-#include "point_reference.h"
+#include "expected.h"
 
 namespace vitrail::tests {
 namespace {
 
-class BoundsTest : public tool::test::GpuTest {};
+class BoundsTest : public BackendTest {};
+VITRAIL_ON_EVERY_BACKEND(BoundsTest);
 
-std::vector<std::uint32_t> withOne(std::vector<std::uint32_t> counts) {
-  counts.insert(counts.begin(), 1);
-  return counts;
-}
-
-TEST_F(BoundsTest, CapacitiesAroundTheNeedCountWhatIsMissing) {
-  for (const std::uint32_t samples : withOne(sampleCounts(gpu()))) {
+TEST_P(BoundsTest, CapacitiesAroundTheNeedCountWhatIsMissing) {
+  for (const std::uint32_t samples : sampleCounts(features())) {
     for (const VitrailNodeFormat format : nodeFormats(samples)) {
       if (samples > 1 && format == VITRAIL_NODE_HDR) continue; // its words are those of the other two
-      PointHostDesc desc;
+      HostDesc desc;
       desc.samples = samples;
       desc.nodes = format;
       desc.listBuild = format == VITRAIL_NODE_COMPACT ? VITRAIL_LIST_BUILD_FRAGMENT : VITRAIL_LIST_BUILD_COMPUTE;
@@ -40,16 +35,16 @@ TEST_F(BoundsTest, CapacitiesAroundTheNeedCountWhatIsMissing) {
         SCOPED_TRACE(std::to_string(samples) + " samples, format " + std::to_string(format) + ", capacity " +
                      std::to_string(capacity));
         desc.capacity = capacity;
-        PointHost host(gpu(), desc);
+        const auto host = makeHost(desc);
         for (int repetition = 0; repetition < 2; ++repetition) { // the second frame starts from an overflowed one
-          const PointResult result = host.draw(points);
+          const PointResult result = host->draw(points);
           const std::uint32_t stored = std::min(capacity, need);
           EXPECT_EQ(result.stats.fragmentsRequested, need);
           EXPECT_EQ(result.stats.fragmentsStored, stored);
           EXPECT_EQ(result.stats.fragmentsMissing, need - stored);
           EXPECT_EQ(result.stats.nodeCapacity, capacity);
           EXPECT_EQ(result.stats.exact, stored == need ? 1U : 0U);
-          EXPECT_TRUE(host.guardsUntouched());
+          EXPECT_TRUE(host->guardsUntouched());
           for (const auto& pixel : result.pixels) {
             for (const float channel : pixel) EXPECT_TRUE(channel >= 0.0F && channel <= 1.0001F) << channel;
           }
@@ -62,24 +57,24 @@ TEST_F(BoundsTest, CapacitiesAroundTheNeedCountWhatIsMissing) {
 
 // The counter of a frame with 15 times 2^28 requests is wound back; no node is handed out twice, no request is
 // forgotten.
-TEST_F(BoundsTest, RequestsBeyond32BitsAreCountedAndTakeNoNode) {
+TEST_P(BoundsTest, RequestsBeyond32BitsAreCountedAndTakeNoNode) {
   for (const VitrailOverflow overflow : {VITRAIL_OVERFLOW_APPROXIMATE, VITRAIL_OVERFLOW_SKIP}) {
-    PointHostDesc desc;
+    HostDesc desc;
     desc.guarded = true;
     desc.capacity = 8;
     desc.overflow = overflow;
     desc.listBuild = overflow == VITRAIL_OVERFLOW_SKIP ? VITRAIL_LIST_BUILD_COMPUTE : VITRAIL_LIST_BUILD_FRAGMENT;
     desc.requestedBefore = layout::VITRAIL_WRAP_AT - 7;
     const std::vector<Point> points = randomLists(desc, {0, 1, 2, 17, 40, 100}, 3);
-    PointHost host(gpu(), desc);
-    const PointResult result = host.draw(points);
+    const auto host = makeHost(desc);
+    const PointResult result = host->draw(points);
     EXPECT_EQ(result.stats.fragmentsRequested, std::uint64_t{desc.requestedBefore} + points.size());
     EXPECT_EQ(result.stats.fragmentsStored, desc.capacity);
     EXPECT_EQ(result.stats.fragmentsMissing, result.stats.fragmentsRequested - desc.capacity);
     EXPECT_EQ(result.stats.exact, 0U);
-    EXPECT_TRUE(host.guardsUntouched());
+    EXPECT_TRUE(host->guardsUntouched());
     // However many more follow, the counter does not come round to nodes that are in use.
-    const std::vector<std::uint32_t> control = host.words(&StorageLayout::control);
+    const std::vector<std::uint32_t> control = host->words(&StorageLayout::control);
     EXPECT_EQ(control[offsetof(layout::VitrailControl, wraps) / sizeof(std::uint32_t)], 1U);
     EXPECT_LT(control[offsetof(layout::VitrailControl, requested) / sizeof(std::uint32_t)], layout::VITRAIL_WRAP_AT);
   }
@@ -87,7 +82,7 @@ TEST_F(BoundsTest, RequestsBeyond32BitsAreCountedAndTakeNoNode) {
 
 // What a frame that overflowed must be: every pixel the weighted average of all its fragments, each with the share of
 // the samples that it covers. Filters count with the mean of their channels' logarithms.
-std::vector<Color> averagedPixels(const PointHostDesc& desc, const std::vector<Point>& points) {
+std::vector<Color> averagedPixels(const HostDesc& desc, const std::vector<Point>& points) {
   struct Sums {
     Color color{};
     double opacity = 0.0;
@@ -131,11 +126,11 @@ std::vector<Color> averagedPixels(const PointHostDesc& desc, const std::vector<P
 }
 
 // A pool of half of what the frame needs: which half is stored depends on arrival, the picture does not.
-TEST_F(BoundsTest, AFrameThatOverflowsIsBlendedApproximatelyAndAlwaysTheSame) {
-  for (const std::uint32_t samples : withOne(sampleCounts(gpu()))) {
-    for (const Way& way : everyWay(gpu(), samples)) {
+TEST_P(BoundsTest, AFrameThatOverflowsIsBlendedApproximatelyAndAlwaysTheSame) {
+  for (const std::uint32_t samples : sampleCounts(features())) {
+    for (const Way& way : everyWay(features(), samples)) {
       SCOPED_TRACE(std::to_string(samples) + " samples, " + way.name);
-      PointHostDesc desc;
+      HostDesc desc;
       desc.samples = samples;
       desc.behind = {0.1F, 0.8F, 0.3F, 1.0F};
       apply(way, desc);
@@ -143,23 +138,23 @@ TEST_F(BoundsTest, AFrameThatOverflowsIsBlendedApproximatelyAndAlwaysTheSame) {
       variety.coverage = samples > 1;
       const std::vector<Point> points = randomLists(desc, {0, 1, 2, 3, 5, 12, 17, 40, 90}, 17, variety);
       desc.capacity = static_cast<std::uint32_t>(points.size() / 2);
-      PointHost host(gpu(), desc);
-      const PointResult forward = host.draw(points);
+      const auto host = makeHost(desc);
+      const PointResult forward = host->draw(points);
       EXPECT_EQ(forward.stats.exact, 0U);
       EXPECT_GT(forward.stats.fragmentsMissing, 0U);
       // A stencil mark rejects samples that nothing covers, which the average over the pixel would change a little.
       const bool marked = samples > 1 && way.stencilMark;
       EXPECT_LT(largestError(forward.pixels, averagedPixels(desc, points)), marked ? 0.2 : kSumTolerance);
       for (const Order order : {Order::Reversed, Order::Shuffled, Order::Forward}) {
-        EXPECT_TRUE(host.draw(ordered(points, order)).pixels == forward.pixels) << "flickers";
+        EXPECT_TRUE(host->draw(ordered(points, order)).pixels == forward.pixels) << "flickers";
       }
       // Two such frames in one command buffer share the sums.
-      for (const PointResult& result : host.drawTogether({points, points})) {
+      for (const PointResult& result : host->drawTogether({points, points})) {
         EXPECT_TRUE(result.pixels == forward.pixels) << "frames meet";
       }
       // A frame that fits is exact again.
       const std::vector<Point> few(points.begin(), points.begin() + 6);
-      const PointResult fits = host.draw(few);
+      const PointResult fits = host->draw(few);
       EXPECT_EQ(fits.stats.exact, 1U);
       EXPECT_LT(largestError(fits.pixels, expectedFrame(desc, few).pixels), kTolerance);
     }
@@ -167,30 +162,30 @@ TEST_F(BoundsTest, AFrameThatOverflowsIsBlendedApproximatelyAndAlwaysTheSame) {
 }
 
 // The memory of a fresh target holds anything. That its first frames were recorded says nothing about it.
-TEST_F(BoundsTest, AFrameThatIsNeverSubmittedLeavesNothingBehind) {
-  for (const Way& way : everyWay(gpu(), 1)) {
+TEST_P(BoundsTest, AFrameThatIsNeverSubmittedLeavesNothingBehind) {
+  for (const Way& way : everyWay(features(), 1)) {
     SCOPED_TRACE(way.name);
-    PointHostDesc desc;
+    HostDesc desc;
     desc.behind = {0.1F, 0.8F, 0.3F, 1.0F};
     desc.guarded = true; // the memory holds guard words at first
     apply(way, desc);
     const std::vector<Point> points = randomLists(desc, {0, 1, 2, 3, 5, 12, 17, 40, 90}, 17);
     desc.capacity = static_cast<std::uint32_t>(points.size() / 2);
-    PointHost host(gpu(), desc);
-    for (int frame = 0; frame < 3; ++frame) host.drop(points);
-    const PointResult result = host.draw(points);
+    const auto host = makeHost(desc);
+    for (int frame = 0; frame < 3; ++frame) host->drop(points);
+    const PointResult result = host->draw(points);
     EXPECT_GT(result.stats.fragmentsMissing, 0U);
     EXPECT_LT(largestError(result.pixels, averagedPixels(desc, points)), kSumTolerance);
-    host.drop(points);
-    EXPECT_TRUE(host.draw(points).pixels == result.pixels);
+    host->drop(points);
+    EXPECT_TRUE(host->draw(points).pixels == result.pixels);
   }
 }
 
 // A fragment is encoded where it is linked, or where it is added to the sums if it found no node: the same bits.
-TEST_F(BoundsTest, ColoursBetweenStepsOverflowAlike) {
+TEST_P(BoundsTest, ColoursBetweenStepsOverflowAlike) {
   for (const bool addresses : {false, true}) {
-    if (addresses && !gpu().features().bufferDeviceAddress) continue;
-    PointHostDesc desc;
+    if (addresses && !features().addresses) continue;
+    HostDesc desc;
     desc.listBuild = VITRAIL_LIST_BUILD_COMPUTE;
     desc.addresses = addresses;
     desc.width = 64;
@@ -201,18 +196,18 @@ TEST_F(BoundsTest, ColoursBetweenStepsOverflowAlike) {
       points.push_back({i % 64, i / 64 % 64, channel(7919), {channel(31), channel(2741), channel(977), channel(5)}});
     }
     desc.capacity = static_cast<std::uint32_t>(points.size() / 2);
-    PointHost host(gpu(), desc);
-    const PointResult forward = host.draw(points);
+    const auto host = makeHost(desc);
+    const PointResult forward = host->draw(points);
     EXPECT_GT(forward.stats.fragmentsMissing, 0U);
     for (const Order order : {Order::Reversed, Order::Shuffled}) {
-      EXPECT_TRUE(host.draw(ordered(points, order)).pixels == forward.pixels);
+      EXPECT_TRUE(host->draw(ordered(points, order)).pixels == forward.pixels);
     }
   }
 }
 
-TEST_F(BoundsTest, OtherBlendModesOverflowToo) {
+TEST_P(BoundsTest, OtherBlendModesOverflowToo) {
   for (const VitrailNodeFormat format : nodeFormats(1)) {
-    PointHostDesc desc;
+    HostDesc desc;
     desc.nodes = format;
     desc.listBuild = format == VITRAIL_NODE_STANDARD ? VITRAIL_LIST_BUILD_COMPUTE : VITRAIL_LIST_BUILD_FRAGMENT;
     desc.behind = {0.5F, 0.5F, 0.5F, 1.0F};
@@ -220,9 +215,9 @@ TEST_F(BoundsTest, OtherBlendModesOverflowToo) {
     variety.blendModes = true;
     const std::vector<Point> points = randomLists(desc, {3, 9, 20, 33}, 41, variety);
     desc.capacity = 10;
-    PointHost host(gpu(), desc);
-    const PointResult forward = host.draw(points);
-    EXPECT_TRUE(host.draw(ordered(points, Order::Shuffled)).pixels == forward.pixels);
+    const auto host = makeHost(desc);
+    const PointResult forward = host->draw(points);
+    EXPECT_TRUE(host->draw(ordered(points, Order::Shuffled)).pixels == forward.pixels);
     for (const auto& pixel : forward.pixels) {
       for (const float channel : pixel) EXPECT_TRUE(channel >= 0.0F && channel < 50.0F);
     }
@@ -230,23 +225,23 @@ TEST_F(BoundsTest, OtherBlendModesOverflowToo) {
 }
 
 // Exact for pixels with one layer of VITRAIL_BLEND_OVER, up to the step of the transmittance's logarithm.
-TEST_F(BoundsTest, OneLayerOverflowsExactly) {
-  PointHostDesc desc;
+TEST_P(BoundsTest, OneLayerOverflowsExactly) {
+  HostDesc desc;
   desc.width = 64;
   desc.height = 4;
   desc.behind = {0.3F, 0.6F, 0.9F, 1.0F};
   const std::vector<Point> points = randomLists(desc, std::vector<std::uint32_t>(256, 1), 77);
   desc.capacity = 100;
-  const PointResult result = PointHost(gpu(), desc).draw(points);
+  const PointResult result = draw(desc, points);
   EXPECT_EQ(result.stats.fragmentsMissing, 156U);
   EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), 0x1p-13);
 }
 
-TEST_F(BoundsTest, ASkippedFrameLeavesTheImageAsItIs) {
-  for (const std::uint32_t samples : withOne(sampleCounts(gpu()))) {
-    for (const Way& way : everyWay(gpu(), samples)) {
+TEST_P(BoundsTest, ASkippedFrameLeavesTheImageAsItIs) {
+  for (const std::uint32_t samples : sampleCounts(features())) {
+    for (const Way& way : everyWay(features(), samples)) {
       SCOPED_TRACE(std::to_string(samples) + " samples, " + way.name);
-      PointHostDesc desc;
+      HostDesc desc;
       desc.samples = samples;
       desc.overflow = VITRAIL_OVERFLOW_SKIP;
       desc.behind = {0.123F, 45.6F, 1e-30F, 0.5F};
@@ -254,7 +249,7 @@ TEST_F(BoundsTest, ASkippedFrameLeavesTheImageAsItIs) {
       apply(way, desc);
       const std::vector<Point> points = randomLists(desc, {1, 5, 20, 40, 100}, 1);
       desc.capacity = 20;
-      const PointResult result = PointHost(gpu(), desc).draw(points);
+      const PointResult result = draw(desc, points);
       EXPECT_EQ(result.stats.exact, 0U);
       EXPECT_EQ(result.stats.fragmentsMissing, points.size() - 20);
       // A per-pixel resolve of several samples writes one image from others: the one that it writes stays.
@@ -264,14 +259,14 @@ TEST_F(BoundsTest, ASkippedFrameLeavesTheImageAsItIs) {
   }
 }
 
-TEST_F(BoundsTest, TheNearestLayersAreExactAndTheOthersAveraged) {
-  for (const std::uint32_t samples : withOne(sampleCounts(gpu()))) {
-    for (const Way& way : everyWay(gpu(), samples)) {
+TEST_P(BoundsTest, TheNearestLayersAreExactAndTheOthersAveraged) {
+  for (const std::uint32_t samples : sampleCounts(features())) {
+    for (const Way& way : everyWay(features(), samples)) {
       for (const std::uint32_t maxLayers : {4U, 1U, 16U, 20U}) {
         const bool all = samples == 1 && way.resolve == VITRAIL_RESOLVE_COMPUTE;
         if (maxLayers != 4 && !all && (maxLayers != 20 || way.stencilMark)) continue; // of each kind some
         SCOPED_TRACE(std::to_string(samples) + " samples, " + way.name + ", " + std::to_string(maxLayers) + " layers");
-        PointHostDesc desc;
+        HostDesc desc;
         desc.samples = samples;
         desc.maxLayers = maxLayers;
         desc.behind = {0.9F, 0.5F, 0.1F, 1.0F};
@@ -282,11 +277,11 @@ TEST_F(BoundsTest, TheNearestLayersAreExactAndTheOthersAveraged) {
         std::vector<Point> points = randomLists(desc, lengths, 29, variety);
         std::erase_if(points, [&](const Point& p) { return (p.coverage & ((1U << samples) - 1U)) == 0; });
         desc.capacity = static_cast<std::uint32_t>(points.size());
-        PointHost host(gpu(), desc);
-        const PointResult forward = host.draw(points);
+        const auto host = makeHost(desc);
+        const PointResult forward = host->draw(points);
         EXPECT_LT(largestError(forward.pixels, expectedFrame(desc, points).pixels), kSumTolerance);
         for (const Order order : {Order::Reversed, Order::Shuffled}) {
-          EXPECT_TRUE(host.draw(ordered(points, order)).pixels == forward.pixels) << "order changes the picture";
+          EXPECT_TRUE(host->draw(ordered(points, order)).pixels == forward.pixels) << "order changes the picture";
         }
         std::vector<std::uint32_t> layers(std::size_t{desc.width} * desc.height);
         for (const Point& p : points) ++layers[std::size_t{p.y} * desc.width + p.x];
@@ -299,14 +294,14 @@ TEST_F(BoundsTest, TheNearestLayersAreExactAndTheOthersAveraged) {
 }
 
 // A cap that no pixel reaches changes nothing.
-TEST_F(BoundsTest, ACapThatIsNotReachedIsExact) {
-  for (const Way& way : everyWay(gpu(), 1)) {
-    PointHostDesc desc;
+TEST_P(BoundsTest, ACapThatIsNotReachedIsExact) {
+  for (const Way& way : everyWay(features(), 1)) {
+    HostDesc desc;
     desc.maxLayers = 9;
     apply(way, desc);
     const std::vector<Point> points = randomLists(desc, {0, 1, 5, 9, 8}, 3);
     desc.capacity = static_cast<std::uint32_t>(points.size());
-    const PointResult result = PointHost(gpu(), desc).draw(points);
+    const PointResult result = draw(desc, points);
     EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kTolerance) << way.name;
     EXPECT_EQ(result.stats.exact, 1U);
     EXPECT_EQ(result.stats.approximatePixels, 0U);

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 
-#include "draw/vk.h"
 #include "shaders/opaque.frag.h"
 #include "shaders/opaque.h"
 #include "shaders/opaque.vert.h"
@@ -12,33 +11,25 @@
 #include "shaders/points_post_depth_address.frag.h"
 #include "shaders/points_simple.frag.h"
 
-namespace vitrail::tests {
+namespace vitrail::tests::vulkan {
 
 namespace {
 
-using tool::check;
-using tool::Unique;
-using tool::vkStruct;
-
-Unique<VkShaderModule> makeShader(VkDevice device, std::span<const std::uint32_t> code) {
-  auto info = vkStruct<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+Owned<VkShaderModule> makeShader(const Device& device, std::span<const std::uint32_t> code) {
+  auto info = zeroed<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
   info.codeSize = code.size_bytes();
   info.pCode = code.data();
-  VkShaderModule shader = VK_NULL_HANDLE;
-  check(vkCreateShaderModule(device, &info, nullptr, &shader), "vkCreateShaderModule");
-  return {device, shader, vkDestroyShaderModule};
+  return make(device, vkCreateShaderModule, vkDestroyShaderModule, info);
 }
 
-Unique<VkPipelineLayout> makeLayout(VkDevice device, VkDescriptorSetLayout set, std::uint32_t constantBytes) {
+Owned<VkPipelineLayout> makeLayout(const Device& device, VkDescriptorSetLayout set, std::uint32_t constantBytes) {
   const VkPushConstantRange range{VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, constantBytes};
-  auto info = vkStruct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+  auto info = zeroed<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
   info.setLayoutCount = set != VK_NULL_HANDLE ? 1 : 0;
   info.pSetLayouts = &set;
   info.pushConstantRangeCount = constantBytes > 0 ? 1 : 0;
   info.pPushConstantRanges = &range;
-  VkPipelineLayout layout = VK_NULL_HANDLE;
-  check(vkCreatePipelineLayout(device, &info, nullptr, &layout), "vkCreatePipelineLayout");
-  return {device, layout, vkDestroyPipelineLayout};
+  return make(device, vkCreatePipelineLayout, vkDestroyPipelineLayout, info);
 }
 
 bool hasStencil(VkFormat format) { return format == VK_FORMAT_D32_SFLOAT_S8_UINT; }
@@ -61,13 +52,12 @@ constexpr VkVertexInputBindingDescription kBinding = {0, sizeof(PointVertex), VK
 
 Draws commonDraws(const PointPipelinesInfo& info) {
   Draws draws{};
-  draws.input =
-      vkStruct<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
+  draws.input = zeroed<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
   draws.assembly =
-      vkStruct<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
+      zeroed<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
   draws.depth =
-      vkStruct<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
-  draws.rendering = vkStruct<VkPipelineRenderingCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
+      zeroed<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
+  draws.rendering = zeroed<VkPipelineRenderingCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
   draws.rendering.depthAttachmentFormat = info.depthFormat;
   if (hasStencil(info.depthFormat)) draws.rendering.stencilAttachmentFormat = info.depthFormat;
   draws.depth.depthTestEnable = info.depthFormat != VK_FORMAT_UNDEFINED ? VK_TRUE : VK_FALSE;
@@ -104,20 +94,22 @@ Draws opaqueDraws(const PointPipelinesInfo& info) {
 
 } // namespace
 
-PointPipelines::PointPipelines(tool::Gpu& gpu, const PointPipelinesInfo& info)
-    : gpu_(gpu),
+PointPipelines::PointPipelines(const Device& device, const PointPipelinesInfo& info)
+    : device_(device),
       info_(info),
-      pointsLayout_(makeLayout(gpu.device(), info.set, 0)),
-      opaqueLayout_(makeLayout(gpu.device(), VK_NULL_HANDLE, sizeof(OpaqueConstants))) {}
+      pointsLayout_(makeLayout(device, info.set, 0)),
+      opaqueLayout_(makeLayout(device, VK_NULL_HANDLE, sizeof(OpaqueConstants))) {}
 
 VkPipeline PointPipelines::points(std::uint32_t mask) {
-  if (!points_.contains(mask)) points_[mask] = make(true, mask);
-  return points_[mask].get();
+  auto& pipeline = points_[mask];
+  if (!pipeline) pipeline = makePipeline(true, mask);
+  return pipeline.get();
 }
 
 VkPipeline PointPipelines::opaque(std::uint32_t mask) {
-  if (!opaque_.contains(mask)) opaque_[mask] = make(false, mask);
-  return opaque_[mask].get();
+  auto& pipeline = opaque_[mask];
+  if (!pipeline) pipeline = makePipeline(false, mask);
+  return pipeline.get();
 }
 
 std::span<const std::uint32_t> PointPipelines::pointsShader() const {
@@ -127,12 +119,12 @@ std::span<const std::uint32_t> PointPipelines::pointsShader() const {
   return shaders::points_simple_frag;
 }
 
-tool::Unique<VkPipeline> PointPipelines::make(bool points, std::uint32_t mask) const {
+Owned<VkPipeline> PointPipelines::makePipeline(bool points, std::uint32_t mask) const {
   const Draws draws = points ? pointDraws(info_) : opaqueDraws(info_);
   const auto vertexShader =
-      makeShader(gpu_.device(), points ? std::span<const std::uint32_t>(shaders::points_vert) : shaders::opaque_vert);
-  const auto fragmentShader = makeShader(gpu_.device(), points ? pointsShader() : shaders::opaque_frag);
-  std::array<VkSpecializationMapEntry, 4> entries{};
+      makeShader(device_, points ? std::span<const std::uint32_t>(shaders::points_vert) : shaders::opaque_vert);
+  const auto fragmentShader = makeShader(device_, points ? pointsShader() : shaders::opaque_frag);
+  std::array<VkSpecializationMapEntry, kConstants> entries{};
   for (std::uint32_t i = 0; i < entries.size(); ++i) entries[i] = {info_.firstConstant + i, 4 * i, 4};
   const VkSpecializationInfo constants{entries.size(), entries.data(), sizeof(info_.constants), info_.constants.data()};
   std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
@@ -146,25 +138,24 @@ tool::Unique<VkPipeline> PointPipelines::make(bool points, std::uint32_t mask) c
   stages[1].module = fragmentShader.get();
   if (points && info_.specialized) stages[1].pSpecializationInfo = &constants;
 
-  auto viewports = vkStruct<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+  auto viewports = zeroed<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
   viewports.viewportCount = 1;
   viewports.scissorCount = 1;
   auto raster =
-      vkStruct<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
+      zeroed<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
   raster.lineWidth = 1.0F;
-  auto samples =
-      vkStruct<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
+  auto samples = zeroed<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
   samples.rasterizationSamples = info_.samples;
   samples.pSampleMask = &mask;
-  auto blend = vkStruct<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
+  auto blend = zeroed<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
   blend.attachmentCount = draws.rendering.colorAttachmentCount;
   blend.pAttachments = &draws.blend;
   constexpr std::array<VkDynamicState, 2> kDynamic{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  auto dynamic = vkStruct<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+  auto dynamic = zeroed<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
   dynamic.dynamicStateCount = kDynamic.size();
   dynamic.pDynamicStates = kDynamic.data();
 
-  auto info = vkStruct<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+  auto info = zeroed<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
   info.pNext = &draws.rendering;
   info.stageCount = stages.size();
   info.pStages = stages.data();
@@ -178,9 +169,9 @@ tool::Unique<VkPipeline> PointPipelines::make(bool points, std::uint32_t mask) c
   info.pDynamicState = &dynamic;
   info.layout = points ? pointsLayout_.get() : opaqueLayout_.get();
   VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(gpu_.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+  check(vkCreateGraphicsPipelines(device_.get(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
         "vkCreateGraphicsPipelines");
-  return {gpu_.device(), pipeline, vkDestroyPipeline};
+  return Owned<VkPipeline>(pipeline, {device_.get(), vkDestroyPipeline});
 }
 
-} // namespace vitrail::tests
+} // namespace vitrail::tests::vulkan

@@ -28,7 +28,7 @@ struct NodeCoding {
   bool nearestIsOne = false;
   // VITRAIL_LIST_BUILD_COMPUTE: on their way into `standard` nodes at 1 sample colours are rounded once more
   // (shaders/vitrail/unlinked.glsl).
-  bool linkedByCompute = false;
+  bool builtByCompute = false;
 };
 
 // What a shader hands to vitrailCollect(), or what is left of it once it is stored.

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "pool.h"
+#include "core/pool.h"
 
 namespace vitrail {
 
@@ -27,7 +27,7 @@ std::uint32_t quantizeCurve(double linear, std::uint32_t largest) {
 
 // What is left of a linear value that a compute pass puts on the curve: of the float of value + 2^-7 the first 8 bits
 // of fraction, of blue 7, and the middle of what they leave open.
-double throughUnlinked(double value, bool blue) {
+double asLooseNode(double value, bool blue) {
   constexpr float kBias = 0x1p-7F;
   const unsigned dropped = blue ? 16 : 15;
   const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(clampTo(value, 1.0)) + kBias) >> dropped;
@@ -132,8 +132,8 @@ NodeWords packFull(const NodeCoding& coding, const Fragment& fragment) {
   const std::uint32_t next = coding.samples == 1 ? 0 : fragment.coverage << indexBits(coding.format, coding.samples);
   Color c = fragment.color;
   if (coding.format == layout::VITRAIL_FORMAT_STANDARD) {
-    const bool rounded = coding.linkedByCompute && coding.samples == 1;
-    for (unsigned i = 0; rounded && i < 3; ++i) c[i] = throughUnlinked(c[i], i == 2);
+    const bool rounded = coding.builtByCompute && coding.samples == 1;
+    for (unsigned i = 0; rounded && i < 3; ++i) c[i] = asLooseNode(c[i], i == 2);
     return {quantizeCurve(c[0], 255) | quantizeCurve(c[1], 255) << 8U | quantizeCurve(c[2], 255) << 16U |
                 quantize(c[3], 255) << 24U,
             depth, next};

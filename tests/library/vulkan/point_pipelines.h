@@ -4,22 +4,26 @@
 
 #include <array>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <span>
 
 #include <vitrail/vulkan.h>
 
-#include "draw/device.h"
-#include "draw/unique.h"
+#include "objects.h"
 
-namespace vitrail::tests {
+namespace vitrail::tests::vulkan {
 
 struct PointVertex {
   std::array<float, 3> position; // clip space
   std::array<float, 4> color;
   std::uint32_t blend;
 };
+
+// Specialization constants of collecting shaders.
+inline constexpr std::size_t kConstants = std::size(VitrailVkSpecialization{}.data);
 
 struct PointPipelinesInfo {
   VkDescriptorSetLayout set = VK_NULL_HANDLE; // of the library
@@ -30,7 +34,7 @@ struct PointPipelinesInfo {
   bool postDepthCoverage = false; // as the points' shader is compiled
   bool addresses = false;
   bool specialized = false; // the points' shader is, by these constants
-  std::array<std::uint32_t, 4> constants{};
+  std::array<std::uint32_t, kConstants> constants{};
   std::uint32_t firstConstant = 0;
 
   auto operator<=>(const PointPipelinesInfo&) const = default;
@@ -38,7 +42,7 @@ struct PointPipelinesInfo {
 
 class PointPipelines {
  public:
-  PointPipelines(tool::Gpu& gpu, const PointPipelinesInfo& info);
+  PointPipelines(const Device& device, const PointPipelinesInfo& info);
 
   // Draws PointVertex points; viewport and scissor are dynamic. `mask` has a bit a sample.
   VkPipeline points(std::uint32_t mask);
@@ -49,17 +53,17 @@ class PointPipelines {
   [[nodiscard]] VkPipelineLayout opaqueLayout() const { return opaqueLayout_.get(); }
 
  private:
-  using ByMask = std::map<std::uint32_t, tool::Unique<VkPipeline>>;
+  using ByMask = std::map<std::uint32_t, Owned<VkPipeline>>;
 
   [[nodiscard]] std::span<const std::uint32_t> pointsShader() const;
-  [[nodiscard]] tool::Unique<VkPipeline> make(bool points, std::uint32_t mask) const;
+  [[nodiscard]] Owned<VkPipeline> makePipeline(bool points, std::uint32_t mask) const;
 
-  tool::Gpu& gpu_;
+  const Device& device_;
   PointPipelinesInfo info_;
-  tool::Unique<VkPipelineLayout> pointsLayout_;
-  tool::Unique<VkPipelineLayout> opaqueLayout_;
+  Owned<VkPipelineLayout> pointsLayout_;
+  Owned<VkPipelineLayout> opaqueLayout_;
   ByMask points_;
   ByMask opaque_;
 };
 
-} // namespace vitrail::tests
+} // namespace vitrail::tests::vulkan

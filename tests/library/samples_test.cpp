@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu_fixture.h"
-#include "point_reference.h"
+#include "expected.h"
 
 namespace vitrail::tests {
 namespace {
@@ -32,18 +31,18 @@ std::vector<Color> asColors(const std::vector<FloatColor>& pixels) {
   return colors;
 }
 
-class SamplesTest : public tool::test::GpuTest {
+class SamplesTest : public BackendTest {
  protected:
   // Calls `test` with hosts of every sample count that the device has: `standard` nodes in every way to resolve, the
   // other formats in one way of each kind.
   template <typename Test>
   void forEveryHost(Test test) {
-    for (const std::uint32_t samples : sampleCounts(gpu())) {
+    for (const std::uint32_t samples : features().multisampled) {
       for (const VitrailNodeFormat format : nodeFormats(samples)) {
-        for (const Way& way : everyWay(gpu(), samples)) {
+        for (const Way& way : everyWay(features(), samples)) {
           if (format != VITRAIL_NODE_STANDARD && (way.stencilMark || isPerPixelDraw(way))) continue;
           SCOPED_TRACE(std::to_string(samples) + " samples, format " + std::to_string(format) + ", " + way.name);
-          PointHostDesc desc;
+          HostDesc desc;
           desc.samples = samples;
           desc.nodes = format;
           desc.specialized = format != VITRAIL_NODE_STANDARD;
@@ -59,13 +58,15 @@ class SamplesTest : public tool::test::GpuTest {
     return way.resolve == VITRAIL_RESOLVE_FRAGMENT && way.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_PIXEL;
   }
 
-  static bool exactFilters(const PointHostDesc& desc) {
-    return desc.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_PIXEL || gpu().features().dualSourceBlending;
+  static bool exactFilters(const HostDesc& desc) {
+    return desc.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_PIXEL || features().dualSourceBlending;
   }
 };
 
-TEST_F(SamplesTest, ListsOfEveryLengthMatchTheReference) {
-  forEveryHost([](PointHostDesc& desc) {
+VITRAIL_ON_EVERY_BACKEND(SamplesTest);
+
+TEST_P(SamplesTest, ListsOfEveryLengthMatchTheReference) {
+  forEveryHost([](HostDesc& desc) {
     desc.width = 11;
     PointVariety variety;
     variety.coverage = true;
@@ -75,28 +76,28 @@ TEST_F(SamplesTest, ListsOfEveryLengthMatchTheReference) {
                                           20, 24, 31, 32, 33, 34, 40, 48, 49, 64, 65, 100, 400};
     const std::vector<Point> points = randomLists(desc, lengths, 21, variety);
     desc.capacity = static_cast<std::uint32_t>(points.size());
-    PointHost host(gpu(), desc);
+    const auto host = makeHost(desc);
     const Expected expected = expectedFrame(desc, points);
-    const PointResult forward = host.draw(points);
+    const PointResult forward = host->draw(points);
     EXPECT_LT(largestError(forward.pixels, expected.pixels), kTolerance);
     EXPECT_EQ(forward.stats.exact, 1U);
     EXPECT_EQ(forward.stats.fragmentsStored, expected.fragments);
     EXPECT_EQ(forward.stats.coveredPixels, expected.coveredPixels);
     EXPECT_EQ(forward.stats.layersMax, expected.layersMax);
-    EXPECT_TRUE(host.draw(ordered(points, Order::Shuffled)).pixels == forward.pixels) << "order changes the picture";
+    EXPECT_TRUE(host->draw(ordered(points, Order::Shuffled)).pixels == forward.pixels) << "order changes the picture";
   });
 }
 
 // Points between opaque surfaces of different depths: what a sample hides is in no list of it. Points exactly as deep
 // as an opaque sample pass.
-void addOpaqueDepths(PointHostDesc& desc) {
+void addOpaqueDepths(HostDesc& desc) {
   for (std::uint32_t s = 0; s < desc.samples; ++s) {
     const std::uint32_t step = s * 5 % desc.samples;
     desc.opaqueDepth.push_back(0.2617F + 0.5031F * static_cast<float>(step) / static_cast<float>(desc.samples));
   }
 }
 
-std::vector<Point> pointsBetween(const PointHostDesc& desc) {
+std::vector<Point> pointsBetween(const HostDesc& desc) {
   PointVariety variety;
   variety.coverage = true;
   std::vector<Point> points = randomLists(desc, {1, 2, 3, 5, 16, 20, 31, 33, 70, 0, 8, 8}, 33, variety);
@@ -112,8 +113,8 @@ std::vector<Point> pointsBetween(const PointHostDesc& desc) {
   return points;
 }
 
-TEST_F(SamplesTest, EverySampleHasItsOwnDepthTest) {
-  forEveryHost([](PointHostDesc& desc) {
+TEST_P(SamplesTest, EverySampleHasItsOwnDepthTest) {
+  forEveryHost([](HostDesc& desc) {
     desc.depthOrder =
         desc.resolve == VITRAIL_RESOLVE_COMPUTE ? VITRAIL_DEPTH_NEAREST_IS_ZERO : VITRAIL_DEPTH_NEAREST_IS_ONE;
     addOpaqueDepths(desc);
@@ -122,8 +123,8 @@ TEST_F(SamplesTest, EverySampleHasItsOwnDepthTest) {
     std::vector<std::vector<FloatColor>> pictures;
     for (const bool postDepth : {true, false}) {
       desc.postDepthCoverage = postDepth;
-      const Expected expected = expectedFrame(desc, points, gpu().features().postDepthCoverage);
-      const PointResult result = PointHost(gpu(), desc).draw(points);
+      const Expected expected = expectedFrame(desc, points, features().postDepthCoverage);
+      const PointResult result = draw(desc, points);
       EXPECT_LT(largestError(result.pixels, expected.pixels), kTolerance) << "post-depth coverage " << postDepth;
       EXPECT_EQ(result.stats.fragmentsStored, expected.fragments) << "post-depth coverage " << postDepth;
       EXPECT_EQ(result.stats.exact, 1U);
@@ -136,16 +137,16 @@ TEST_F(SamplesTest, EverySampleHasItsOwnDepthTest) {
 }
 
 // The same at one sample, where the early depth test alone decides.
-TEST_F(SamplesTest, OneSampleIsHiddenByTheHostsDepthTest) {
-  for (const Way& way : everyWay(gpu(), 1)) {
+TEST_P(SamplesTest, OneSampleIsHiddenByTheHostsDepthTest) {
+  for (const Way& way : everyWay(features(), 1)) {
     SCOPED_TRACE(way.name);
-    PointHostDesc desc;
+    HostDesc desc;
     apply(way, desc);
     desc.opaqueDepth = {0.5F};
     std::vector<Point> points = randomLists(desc, {3, 17, 40}, 2);
     points[0].depth = 0.5F;
     desc.capacity = static_cast<std::uint32_t>(points.size());
-    const PointResult result = PointHost(gpu(), desc).draw(points);
+    const PointResult result = draw(desc, points);
     const Expected expected = expectedFrame(desc, points);
     EXPECT_LT(expected.fragments, points.size());
     EXPECT_EQ(result.stats.fragmentsStored, expected.fragments);
@@ -154,12 +155,12 @@ TEST_F(SamplesTest, OneSampleIsHiddenByTheHostsDepthTest) {
 }
 
 // Per-pixel resolves equal per-sample ones followed by a box filter.
-TEST_F(SamplesTest, EveryWayGivesOnePicture) {
-  for (const std::uint32_t samples : sampleCounts(gpu())) {
+TEST_P(SamplesTest, EveryWayGivesOnePicture) {
+  for (const std::uint32_t samples : features().multisampled) {
     std::vector<Color> first;
-    for (const Way& way : everyWay(gpu(), samples)) {
+    for (const Way& way : everyWay(features(), samples)) {
       SCOPED_TRACE(std::to_string(samples) + " samples, " + way.name);
-      PointHostDesc desc;
+      HostDesc desc;
       desc.samples = samples;
       desc.behindSamples = colorsBySample(samples);
       apply(way, desc);
@@ -167,7 +168,7 @@ TEST_F(SamplesTest, EveryWayGivesOnePicture) {
       variety.coverage = true;
       const std::vector<Point> points = randomLists(desc, {0, 1, 4, 16, 17, 32, 33, 90}, 5, variety);
       desc.capacity = static_cast<std::uint32_t>(points.size());
-      const PointResult result = PointHost(gpu(), desc).draw(points);
+      const PointResult result = draw(desc, points);
       if (first.empty()) first = asColors(result.pixels);
       EXPECT_LT(largestError(result.pixels, first), 1e-6);
     }
@@ -175,30 +176,30 @@ TEST_F(SamplesTest, EveryWayGivesOnePicture) {
 }
 
 // Every pixel is the mean of its opaque samples, whether or not it has fragments.
-TEST_F(SamplesTest, PixelsWithoutFragmentsAreFiltered) {
-  for (const std::uint32_t samples : sampleCounts(gpu())) {
-    for (const Way& way : everyWay(gpu(), samples)) {
+TEST_P(SamplesTest, PixelsWithoutFragmentsAreFiltered) {
+  for (const std::uint32_t samples : features().multisampled) {
+    for (const Way& way : everyWay(features(), samples)) {
       SCOPED_TRACE(std::to_string(samples) + " samples, " + way.name);
-      PointHostDesc desc;
+      HostDesc desc;
       desc.samples = samples;
       desc.behindSamples = colorsBySample(samples);
       desc.capacity = 1;
       apply(way, desc);
-      const PointResult result = PointHost(gpu(), desc).draw({});
+      const PointResult result = draw(desc, {});
       EXPECT_LT(largestError(result.pixels, expectedFrame(desc, {}).pixels), 1e-6);
       EXPECT_EQ(result.stats.coveredPixels, 0U);
     }
   }
 }
 
-TEST_F(SamplesTest, AFragmentWithoutCoverageIsNotStored) {
-  for (const std::uint32_t samples : sampleCounts(gpu())) {
-    PointHostDesc desc;
+TEST_P(SamplesTest, AFragmentWithoutCoverageIsNotStored) {
+  for (const std::uint32_t samples : features().multisampled) {
+    HostDesc desc;
     desc.samples = samples;
     desc.capacity = 2;
     const std::vector<Point> points = {{0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}, VITRAIL_BLEND_OVER, 0},
                                        {1, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}, VITRAIL_BLEND_OVER, 1}};
-    EXPECT_EQ(PointHost(gpu(), desc).draw(points).stats.fragmentsRequested, 1U);
+    EXPECT_EQ(draw(desc, points).stats.fragmentsRequested, 1U);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "reference_resolve.h"
+#include "resolve.h"
 
 #include <algorithm>
 #include <utility>

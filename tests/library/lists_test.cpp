@@ -1,4 +1,4 @@
-// The library through its public face, list by list, at one sample: every list length against the reference resolve in
+// The library list by list, at one sample: every list length against the reference resolve in
 // double precision, in every node format, blend mode and way to resolve; equal depths, hostile values, statistics.
 #include <gtest/gtest.h>
 
@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "gpu_fixture.h"
-#include "point_reference.h"
+#include "expected.h"
 
 namespace vitrail::tests {
 namespace {
 
-class LibraryTest : public tool::test::GpuTest {};
+class ListsTest : public BackendTest {};
+VITRAIL_ON_EVERY_BACKEND(ListsTest);
 
 // What single-precision blending and a device's pow() may add up to. A fragment at rank n of a list of 1/255 layers
 // weighs 1/255 * (254/255)^n: a wrong one is seen down to rank 1,500.
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> manyLengths(std::initializer_list<std::uint32_t> long
   return lengths;
 }
 
-constexpr std::array kLinkings{VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE};
+constexpr std::array kListBuilds{VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE};
 
 void expectLikeReference(const PointResult& result, const Expected& expected, double tolerance = kBlendTolerance) {
   EXPECT_LT(largestError(result.pixels, expected.pixels), tolerance);
@@ -45,11 +45,11 @@ void expectLikeReference(const PointResult& result, const Expected& expected, do
   EXPECT_EQ(result.stats.cutPixels, 0U);
 }
 
-TEST_F(LibraryTest, EveryListLengthMatchesTheReferenceInEveryOrder) {
-  for (const Way& way : everyWay(gpu(), 1)) {
+TEST_P(ListsTest, EveryListLengthMatchesTheReferenceInEveryOrder) {
+  for (const Way& way : everyWay(features(), 1)) {
     for (const VitrailDepthOrder depthOrder : {VITRAIL_DEPTH_NEAREST_IS_ZERO, VITRAIL_DEPTH_NEAREST_IS_ONE}) {
       SCOPED_TRACE(way.name);
-      PointHostDesc desc;
+      HostDesc desc;
       desc.width = 16;
       desc.height = 8;
       desc.behind = {0.25F, 0.5F, 1.0F, 1.0F};
@@ -58,11 +58,11 @@ TEST_F(LibraryTest, EveryListLengthMatchesTheReferenceInEveryOrder) {
       const std::vector<Point> points =
           randomLists(desc, manyLengths({127, 128, 129, 255, 256, 700, 1023, 1025, 5000, 15000}), 5);
       desc.capacity = static_cast<std::uint32_t>(points.size());
-      PointHost host(gpu(), desc);
-      const PointResult forward = host.draw(points);
+      const auto host = makeHost(desc);
+      const PointResult forward = host->draw(points);
       expectLikeReference(forward, expectedFrame(desc, points));
       for (const Order order : {Order::Reversed, Order::Shuffled}) {
-        EXPECT_TRUE(host.draw(ordered(points, order)).pixels == forward.pixels) << "order changes the picture";
+        EXPECT_TRUE(host->draw(ordered(points, order)).pixels == forward.pixels) << "order changes the picture";
       }
     }
   }
@@ -70,10 +70,10 @@ TEST_F(LibraryTest, EveryListLengthMatchesTheReferenceInEveryOrder) {
 
 // On a device that runs many fragments at once a node that was pushed later may lie before an earlier one, and the list
 // that has nearly all nodes of the pool meets every place of it.
-TEST_F(LibraryTest, WhereNodesLieInThePoolDoesNotMatter) {
-  for (const Way& way : everyWay(gpu(), 1)) {
+TEST_P(ListsTest, WhereNodesLieInThePoolDoesNotMatter) {
+  for (const Way& way : everyWay(features(), 1)) {
     SCOPED_TRACE(way.name);
-    PointHostDesc desc;
+    HostDesc desc;
     desc.behind = {0.25F, 0.5F, 1.0F, 1.0F};
     desc.overflow = VITRAIL_OVERFLOW_SKIP;
     desc.guarded = true;
@@ -82,22 +82,22 @@ TEST_F(LibraryTest, WhereNodesLieInThePoolDoesNotMatter) {
          {std::vector<std::uint32_t>{0, 1, 2, 5, 16, 17, 31, 32, 33, 100, 128, 129, 400}, {3000}, {100}, {40}}) {
       const std::vector<Point> points = randomLists(desc, lengths, 8);
       desc.capacity = static_cast<std::uint32_t>(points.size());
-      PointHost host(gpu(), desc);
-      const PointResult result = host.drawScattered(points);
+      const auto host = makeHost(desc);
+      const PointResult result = host->drawScattered(points);
       expectLikeReference(result, expectedFrame(desc, points));
-      EXPECT_TRUE(host.draw(points).pixels == result.pixels);
-      EXPECT_TRUE(host.guardsUntouched());
+      EXPECT_TRUE(host->draw(points).pixels == result.pixels);
+      EXPECT_TRUE(host->guardsUntouched());
     }
   }
 }
 
 // Colours of `hdr` reach 8 here, and what lists add up to in it more: errors are relative.
-TEST_F(LibraryTest, EveryFormatAndBlendModeMatchesTheReferenceInEveryOrder) {
+TEST_P(ListsTest, EveryFormatAndBlendModeMatchesTheReferenceInEveryOrder) {
   for (const VitrailNodeFormat format : nodeFormats(1)) {
-    for (const Way& way : everyWay(gpu(), 1)) {
-      if (way.resolve == VITRAIL_RESOLVE_FRAGMENT && !gpu().features().dualSourceBlending) continue;
+    for (const Way& way : everyWay(features(), 1)) {
+      if (way.resolve == VITRAIL_RESOLVE_FRAGMENT && !features().dualSourceBlending) continue;
       SCOPED_TRACE(way.name + ", format " + std::to_string(format));
-      PointHostDesc desc;
+      HostDesc desc;
       desc.width = 16;
       desc.height = 8;
       desc.behind = {0.25F, 0.5F, 1.0F, 0.75F};
@@ -110,24 +110,24 @@ TEST_F(LibraryTest, EveryFormatAndBlendModeMatchesTheReferenceInEveryOrder) {
       variety.brightest = format == VITRAIL_NODE_HDR ? 8.0F : 1.0F;
       const std::vector<Point> points = randomLists(desc, manyLengths({100, 300, 1200}), 6, variety);
       desc.capacity = static_cast<std::uint32_t>(points.size());
-      PointHost host(gpu(), desc);
-      const PointResult forward = host.draw(ordered(points, Order::Shuffled));
+      const auto host = makeHost(desc);
+      const PointResult forward = host->draw(ordered(points, Order::Shuffled));
       expectLikeReference(forward, expectedFrame(desc, points), 2e-5);
-      EXPECT_TRUE(host.draw(ordered(points, Order::Reversed)).pixels == forward.pixels);
+      EXPECT_TRUE(host->draw(ordered(points, Order::Reversed)).pixels == forward.pixels);
     }
   }
 }
 
 // Every way computes the same picture, up to what fixed-function blending rounds.
-TEST_F(LibraryTest, BothResolvesAgree) {
+TEST_P(ListsTest, BothResolvesAgree) {
   std::vector<std::vector<FloatColor>> pictures;
-  PointHostDesc desc;
+  HostDesc desc;
   desc.behind = {0.2F, 0.4F, 0.6F, 1.0F};
   const std::vector<Point> points = randomLists(desc, {0, 1, 2, 5, 16, 17, 31, 32, 33, 80, 400}, 8);
   desc.capacity = static_cast<std::uint32_t>(points.size());
-  for (const Way& way : everyWay(gpu(), 1)) {
+  for (const Way& way : everyWay(features(), 1)) {
     apply(way, desc);
-    pictures.push_back(PointHost(gpu(), desc).draw(points).pixels);
+    pictures.push_back(draw(desc, points).pixels);
   }
   for (const auto& picture : pictures) {
     for (std::size_t i = 0; i < picture.size(); ++i) {
@@ -137,15 +137,15 @@ TEST_F(LibraryTest, BothResolvesAgree) {
 }
 
 // Without dual-source blending a filter's colour is blended as grey, and said to be.
-TEST_F(LibraryTest, WithoutDualSourceBlendingColouredFiltersAreCounted) {
-  PointHostDesc desc;
+TEST_P(ListsTest, WithoutDualSourceBlendingColouredFiltersAreCounted) {
+  HostDesc desc;
   desc.resolve = VITRAIL_RESOLVE_FRAGMENT;
   desc.dualSourceBlending = false;
   desc.behind = {0.5F, 0.5F, 0.5F, 1.0F};
   const std::vector<Point> points = {{0, 0, 0.5F, {1.0F, 0.0F, 0.0F, 1.0F}, VITRAIL_BLEND_MULTIPLY},
                                      {2, 0, 0.5F, {1.0F, 0.0F, 0.0F, 0.2F}}};
   desc.capacity = 2;
-  const PointResult result = PointHost(gpu(), desc).draw(points);
+  const PointResult result = draw(desc, points);
   EXPECT_EQ(result.stats.approximatePixels, 1U);
   EXPECT_EQ(result.stats.exact, 0U);
   for (unsigned c = 0; c < 3; ++c) EXPECT_NEAR(result.pixels[0][c], 0.5F / 3.0F, 1e-6F); // the mean of 1, 0, 0
@@ -155,14 +155,14 @@ TEST_F(LibraryTest, WithoutDualSourceBlendingColouredFiltersAreCounted) {
 
 // Of two pixels with 30 fragments each has at least 10 of 40 nodes. Whichever compute kernel blends the frame counts
 // both, a fragment resolve neither.
-TEST_F(LibraryTest, DeepPixelsOfAFrameThatOverflowsAreCounted) {
+TEST_P(ListsTest, DeepPixelsOfAFrameThatOverflowsAreCounted) {
   for (const bool compute : {true, false}) {
-    PointHostDesc desc;
+    HostDesc desc;
     desc.resolve = compute ? VITRAIL_RESOLVE_COMPUTE : VITRAIL_RESOLVE_FRAGMENT;
     desc.maxLayers = 4;
     desc.capacity = 40;
     const std::vector<Point> points = randomLists(desc, {30, 0, 30}, 12);
-    const VitrailStats stats = PointHost(gpu(), desc).draw(points).stats;
+    const VitrailStats stats = draw(desc, points).stats;
     EXPECT_EQ(stats.fragmentsMissing, 20U);
     EXPECT_EQ(stats.approximatePixels, compute ? 2U : 0U);
     EXPECT_EQ(stats.coveredPixels, compute ? 2U : 0U);
@@ -171,15 +171,15 @@ TEST_F(LibraryTest, DeepPixelsOfAFrameThatOverflowsAreCounted) {
   }
 }
 
-TEST_F(LibraryTest, DeepPixelsAreCountedOnce) {
-  for (const Way& way : everyWay(gpu(), 1)) {
+TEST_P(ListsTest, DeepPixelsAreCountedOnce) {
+  for (const Way& way : everyWay(features(), 1)) {
     SCOPED_TRACE(way.name);
-    PointHostDesc desc;
+    HostDesc desc;
     desc.maxLayers = 20;
     apply(way, desc);
     const std::vector<Point> points = randomLists(desc, {0, 1, 16, 17, 20, 21, 32, 33, 64, 65, 128, 129}, 17);
     desc.capacity = static_cast<std::uint32_t>(points.size());
-    const PointResult result = PointHost(gpu(), desc).draw(points);
+    const PointResult result = draw(desc, points);
     EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kSumTolerance);
     EXPECT_EQ(result.stats.approximatePixels, 7U);
     EXPECT_EQ(result.stats.coveredPixels, 11U);
@@ -188,9 +188,9 @@ TEST_F(LibraryTest, DeepPixelsAreCountedOnce) {
 }
 
 // The shortest lists that take most room in the arrays of lists that are left to groups: both ends of it meet.
-TEST_F(LibraryTest, DeepPixelsFillTheirArrays) {
+TEST_P(ListsTest, DeepPixelsFillTheirArrays) {
   for (const std::uint32_t other : {33U, 65U}) {
-    PointHostDesc desc;
+    HostDesc desc;
     desc.width = 16;
     desc.height = 8;
     desc.behind = {0.25F, 0.5F, 1.0F, 1.0F};
@@ -199,41 +199,41 @@ TEST_F(LibraryTest, DeepPixelsFillTheirArrays) {
     const std::vector<Point> points = randomLists(desc, lengths, 19);
     desc.capacity = static_cast<std::uint32_t>(points.size());
     desc.guarded = true;
-    PointHost host(gpu(), desc);
-    expectLikeReference(host.draw(points), expectedFrame(desc, points));
-    EXPECT_TRUE(host.guardsUntouched());
+    const auto host = makeHost(desc);
+    expectLikeReference(host->draw(points), expectedFrame(desc, points));
+    EXPECT_TRUE(host->guardsUntouched());
   }
 }
 
-TEST_F(LibraryTest, TheNearestFragmentIsOnTop) {
-  PointHostDesc desc;
+TEST_P(ListsTest, TheNearestFragmentIsOnTop) {
+  HostDesc desc;
   desc.capacity = 2;
   const std::vector<Point> points = {{3, 5, 0.25F, {1.0F, 0.0F, 0.0F, 1.0F}}, {3, 5, 0.75F, {0.0F, 1.0F, 0.0F, 1.0F}}};
   const std::array<float, 4> red = {1.0F, 0.0F, 0.0F, 1.0F};
   const std::array<float, 4> green = {0.0F, 1.0F, 0.0F, 1.0F};
   const std::size_t pixel = 5 * desc.width + 3;
-  EXPECT_EQ(PointHost(gpu(), desc).draw(points).pixels[pixel], red);
+  EXPECT_EQ(draw(desc, points).pixels[pixel], red);
   desc.depthOrder = VITRAIL_DEPTH_NEAREST_IS_ONE;
-  EXPECT_EQ(PointHost(gpu(), desc).draw(points).pixels[pixel], green);
+  EXPECT_EQ(draw(desc, points).pixels[pixel], green);
 }
 
-TEST_F(LibraryTest, PixelsWithoutFragmentsKeepTheirBits) {
-  PointHostDesc desc;
+TEST_P(ListsTest, PixelsWithoutFragmentsKeepTheirBits) {
+  HostDesc desc;
   desc.capacity = 1;
   desc.behind = {0.1F, 123.456F, 1e-30F, 0.3F};
-  const PointResult result = PointHost(gpu(), desc).draw({});
+  const PointResult result = draw(desc, {});
   for (const auto& pixel : result.pixels) EXPECT_EQ(pixel, desc.behind);
   EXPECT_EQ(result.stats.exact, 1U);
   EXPECT_EQ(result.stats.coveredPixels, 0U);
   EXPECT_EQ(result.stats.layersMax, 0U);
 }
 
-TEST_F(LibraryTest, ATransparentBackgroundEndsPremultiplied) {
-  PointHostDesc desc;
+TEST_P(ListsTest, ATransparentBackgroundEndsPremultiplied) {
+  HostDesc desc;
   desc.capacity = 1;
   desc.behind = {0.0F, 0.0F, 0.0F, 0.0F};
   const Point point = {0, 0, 0.5F, {1.0F, 1.0F, 0.0F, 51.0F / 255.0F}};
-  const auto pixel = PointHost(gpu(), desc).draw(std::span(&point, 1)).pixels[0];
+  const auto pixel = draw(desc, std::span(&point, 1)).pixels[0];
   EXPECT_NEAR(pixel[0], 0.2F, 1e-6F);
   EXPECT_NEAR(pixel[1], 0.2F, 1e-6F);
   EXPECT_NEAR(pixel[2], 0.0F, 1e-6F);
@@ -241,8 +241,8 @@ TEST_F(LibraryTest, ATransparentBackgroundEndsPremultiplied) {
 }
 
 // Thousands of equal fragments between others: sorting must neither lose nor repeat one.
-TEST_F(LibraryTest, ManyEqualFragmentsAreAllBlendedOnce) {
-  PointHostDesc desc;
+TEST_P(ListsTest, ManyEqualFragmentsAreAllBlendedOnce) {
+  HostDesc desc;
   desc.width = 4;
   desc.height = 1;
   desc.behind = {1.0F, 1.0F, 1.0F, 1.0F};
@@ -255,18 +255,18 @@ TEST_F(LibraryTest, ManyEqualFragmentsAreAllBlendedOnce) {
     for (std::uint32_t i = 0; i < 40; ++i) points.push_back({x, 0, 0.9F, {0.0F, 1.0F, 0.0F, 20.0F / 255.0F}});
   }
   desc.capacity = static_cast<std::uint32_t>(points.size());
-  PointHost host(gpu(), desc);
-  const PointResult result = host.draw(ordered(points, Order::Shuffled));
+  const auto host = makeHost(desc);
+  const PointResult result = host->draw(ordered(points, Order::Shuffled));
   EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), 1e-4);
-  EXPECT_TRUE(host.draw(points).pixels == result.pixels);
+  EXPECT_TRUE(host->draw(points).pixels == result.pixels);
 }
 
-TEST_F(LibraryTest, EqualDepthsAreOrderedByTheNodeAndNotByArrival) {
+TEST_P(ListsTest, EqualDepthsAreOrderedByTheNodeAndNotByArrival) {
   for (const VitrailNodeFormat format : nodeFormats(1)) {
-    for (const Way& way : everyWay(gpu(), 1)) {
+    for (const Way& way : everyWay(features(), 1)) {
       if (format != VITRAIL_NODE_STANDARD && way.resolve == VITRAIL_RESOLVE_FRAGMENT) continue; // keys are keys
       SCOPED_TRACE(way.name + ", format " + std::to_string(format));
-      PointHostDesc desc;
+      HostDesc desc;
       desc.nodes = format;
       apply(way, desc);
       PointVariety variety;
@@ -275,22 +275,22 @@ TEST_F(LibraryTest, EqualDepthsAreOrderedByTheNodeAndNotByArrival) {
       for (Point& point : points) point.depth = 0.5F;
       points.push_back(points.back()); // two that are the same in everything
       desc.capacity = static_cast<std::uint32_t>(points.size());
-      PointHost host(gpu(), desc);
-      const PointResult forward = host.draw(points);
+      const auto host = makeHost(desc);
+      const PointResult forward = host->draw(points);
       EXPECT_LT(largestError(forward.pixels, expectedFrame(desc, points).pixels), kBlendTolerance);
-      EXPECT_TRUE(host.draw(ordered(points, Order::Reversed)).pixels == forward.pixels);
-      EXPECT_TRUE(host.draw(ordered(points, Order::Shuffled)).pixels == forward.pixels);
+      EXPECT_TRUE(host->draw(ordered(points, Order::Reversed)).pixels == forward.pixels);
+      EXPECT_TRUE(host->draw(ordered(points, Order::Shuffled)).pixels == forward.pixels);
     }
   }
 }
 
 // Mesa's CPU driver ends a shader's loops after 65,535 turns in total: a list that it cuts short must be reported, not
 // blended silently wrong. On a GPU the same list is exact.
-TEST_F(LibraryTest, AListThatTheDriverCutsIsReported) {
-  PointHostDesc desc;
+TEST_P(ListsTest, AListThatTheDriverCutsIsReported) {
+  HostDesc desc;
   const std::vector<Point> points = randomLists(desc, {300000U, 3U}, 9);
   desc.capacity = static_cast<std::uint32_t>(points.size());
-  const PointResult result = PointHost(gpu(), desc).draw(points);
+  const PointResult result = draw(desc, points);
   EXPECT_EQ(result.stats.fragmentsMissing, 0U);
   EXPECT_EQ(result.stats.exact == 1U, result.stats.cutPixels == 0U);
   if (result.stats.exact == 1U) {
@@ -306,11 +306,11 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // A colour that rounds to black: on the way, to something else.
 constexpr float kFaint = 1.4e-4F;
 
-void expectHostileColoursApart(tool::Gpu& gpu, VitrailNodeFormat format, VitrailListBuild linking) {
+void expectHostileColoursApart(Backend& backend, VitrailNodeFormat format, VitrailListBuild listBuild) {
   const float brightest = format == VITRAIL_NODE_HDR ? 65504.0F : 1.0F;
-  PointHostDesc desc;
+  HostDesc desc;
   desc.nodes = format;
-  desc.listBuild = linking;
+  desc.listBuild = listBuild;
   desc.behind = {0.5F, 0.5F, 0.5F, 1.0F};
   const std::vector<Point> points = {
       {0, 0, 0.5F, {kNan, 0.5F, 0.5F, 1.0F}},
@@ -323,7 +323,7 @@ void expectHostileColoursApart(tool::Gpu& gpu, VitrailNodeFormat format, Vitrail
       {7, 0, 0.5F, {0.0F, format != VITRAIL_NODE_HDR ? kFaint : 0.0F, 0.0F, 0.0F}, VITRAIL_BLEND_PREMULTIPLIED},
   };
   desc.capacity = static_cast<std::uint32_t>(points.size());
-  const PointResult result = PointHost(gpu, desc).draw(points);
+  const PointResult result = backend.makeHost(desc)->draw(points);
   EXPECT_EQ(result.pixels[0][0], 0.0F);
   EXPECT_EQ(result.pixels[1], desc.behind);
   EXPECT_EQ(result.pixels[2], (FloatColor{brightest, 0.0F, 0.0F, 1.0F}));
@@ -335,19 +335,19 @@ void expectHostileColoursApart(tool::Gpu& gpu, VitrailNodeFormat format, Vitrail
   EXPECT_EQ(result.stats.fragmentsRequested, 3U);
 }
 
-TEST_F(LibraryTest, HostileColoursStayInTheirPixel) {
+TEST_P(ListsTest, HostileColoursStayInTheirPixel) {
   for (const VitrailNodeFormat format : nodeFormats(1)) {
-    for (const VitrailListBuild linking : kLinkings) {
-      SCOPED_TRACE("format " + std::to_string(format) + ", linking " + std::to_string(linking));
-      expectHostileColoursApart(gpu(), format, linking);
+    for (const VitrailListBuild listBuild : kListBuilds) {
+      SCOPED_TRACE("format " + std::to_string(format) + ", list build " + std::to_string(listBuild));
+      expectHostileColoursApart(backend(), format, listBuild);
     }
   }
 }
 
 // What becomes of a point at such a depth is the rasterizer's business; all other pixels are as they would be.
-TEST_F(LibraryTest, HostileDepthsStayInTheirPixel) {
+TEST_P(ListsTest, HostileDepthsStayInTheirPixel) {
   for (const VitrailNodeFormat format : nodeFormats(1)) {
-    PointHostDesc desc;
+    HostDesc desc;
     desc.nodes = format;
     std::vector<Point> points = randomLists(desc, {0, 4, 20, 40}, 12);
     const Expected expected = expectedFrame(desc, points);
@@ -355,7 +355,7 @@ TEST_F(LibraryTest, HostileDepthsStayInTheirPixel) {
       points.push_back({0, 0, depth, {0.5F, 0.25F, 1.0F, 0.5F}});
     }
     desc.capacity = static_cast<std::uint32_t>(points.size());
-    const PointResult result = PointHost(gpu(), desc).draw(ordered(points, Order::Shuffled));
+    const PointResult result = draw(desc, ordered(points, Order::Shuffled));
     EXPECT_EQ(result.stats.exact, 1U);
     EXPECT_LT(largestError(std::span(result.pixels).subspan(1), std::span(expected.pixels).subspan(1)),
               kBlendTolerance);
@@ -369,10 +369,10 @@ struct Rounding {
   double alpha = 0.0;
 };
 
-Rounding roundingOf(VitrailNodeFormat format, std::uint32_t samples, VitrailListBuild linking) {
+Rounding roundingOf(VitrailNodeFormat format, std::uint32_t samples, VitrailListBuild listBuild) {
   switch (format) {
     case VITRAIL_NODE_STANDARD:
-      if (linking == VITRAIL_LIST_BUILD_COMPUTE && samples == 1) return {{0.7 / 255, 0.7 / 255, 0.9 / 255}, 0.5 / 255};
+      if (listBuild == VITRAIL_LIST_BUILD_COMPUTE && samples == 1) return {{0.7 / 255, 0.7 / 255, 0.9 / 255}, 0.5 / 255};
       return {{0.5 / 255, 0.5 / 255, 0.5 / 255}, 0.5 / 255};
     case VITRAIL_NODE_COMPACT:
       if (samples > 1) return {{0.5 / 31, 0.5 / 31, 0.5 / 31}, 0.5 / 31};
@@ -384,7 +384,7 @@ Rounding roundingOf(VitrailNodeFormat format, std::uint32_t samples, VitrailList
 
 // One fragment a pixel over black: the picture is the stored colour, premultiplied, or white times the stored alpha.
 // Values lie anywhere between two steps; the bounds are those of VitrailNodeFormat.
-void expectStatedRounding(tool::Gpu& gpu, PointHostDesc desc) {
+void expectStatedRounding(Backend& backend, HostDesc desc) {
   constexpr std::uint32_t kValues = 2048;
   desc.width = kValues;
   desc.height = 2;
@@ -399,7 +399,7 @@ void expectStatedRounding(tool::Gpu& gpu, PointHostDesc desc) {
     points.push_back({i, 1, 0.5F, {1.0F, 1.0F, 1.0F, static_cast<float>(step)}});
   }
   desc.capacity = static_cast<std::uint32_t>(points.size());
-  const PointResult result = PointHost(gpu, desc).draw(points);
+  const PointResult result = backend.makeHost(desc)->draw(points);
   const Rounding rounding = roundingOf(desc.nodes, desc.samples, desc.listBuild);
   for (std::uint32_t i = 0; i < kValues; ++i) {
     for (unsigned c = 0; c < 3; ++c) {
@@ -414,19 +414,17 @@ void expectStatedRounding(tool::Gpu& gpu, PointHostDesc desc) {
   }
 }
 
-TEST_F(LibraryTest, ColourAndAlphaKeepTheirStatedRounding) {
-  std::vector<std::uint32_t> counts = sampleCounts(gpu());
-  counts.insert(counts.begin(), 1);
-  for (const std::uint32_t samples : counts) {
+TEST_P(ListsTest, ColourAndAlphaKeepTheirStatedRounding) {
+  for (const std::uint32_t samples : sampleCounts(features())) {
     for (const VitrailNodeFormat format : nodeFormats(samples)) {
-      for (const VitrailListBuild linking : kLinkings) {
-        SCOPED_TRACE(std::to_string(samples) + " samples, format " + std::to_string(format) + ", linking " +
-                     std::to_string(linking));
-        PointHostDesc desc;
+      for (const VitrailListBuild listBuild : kListBuilds) {
+        SCOPED_TRACE(std::to_string(samples) + " samples, format " + std::to_string(format) + ", list build " +
+                     std::to_string(listBuild));
+        HostDesc desc;
         desc.nodes = format;
         desc.samples = samples;
-        desc.listBuild = linking;
-        expectStatedRounding(gpu(), desc);
+        desc.listBuild = listBuild;
+        expectStatedRounding(backend(), desc);
       }
     }
   }
@@ -434,8 +432,8 @@ TEST_F(LibraryTest, ColourAndAlphaKeepTheirStatedRounding) {
 
 // Wherever between two steps they lie, colours come out of `standard` nodes as the reference rounds them, and whole
 // steps as they are.
-TEST_F(LibraryTest, ColoursThatComputeEncodesAreRoundedAsTheReferenceDoes) {
-  PointHostDesc desc;
+TEST_P(ListsTest, ColoursThatComputeEncodesAreRoundedAsTheReferenceDoes) {
+  HostDesc desc;
   desc.listBuild = VITRAIL_LIST_BUILD_COMPUTE;
   desc.width = 256;
   desc.height = 33;
@@ -447,28 +445,28 @@ TEST_F(LibraryTest, ColoursThatComputeEncodesAreRoundedAsTheReferenceDoes) {
     points.push_back({step, part, 0.5F, {value, value, value, 1.0F}, VITRAIL_BLEND_PREMULTIPLIED});
   }
   desc.capacity = static_cast<std::uint32_t>(points.size());
-  const PointResult result = PointHost(gpu(), desc).draw(points);
+  const PointResult result = draw(desc, points);
   EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), 1e-6);
   for (std::uint32_t step = 0; step < 256; ++step) {
     for (unsigned c = 0; c < 3; ++c) EXPECT_NEAR(double{result.pixels[step][c]}, srgbToLinear(step / 255.0), 1e-6);
   }
 }
 
-TEST_F(LibraryTest, SurfacesBrighterThanOneSurviveInHdr) {
-  PointHostDesc desc;
+TEST_P(ListsTest, SurfacesBrighterThanOneSurviveInHdr) {
+  HostDesc desc;
   desc.nodes = VITRAIL_NODE_HDR;
   const std::vector<Point> points = {{0, 0, 0.2F, {0.0F, 0.0F, 0.0F, 0.5F}}, {0, 0, 0.7F, {40.0F, 2.0F, 0.0F, 1.0F}}};
   desc.capacity = 2;
-  const FloatColor pixel = PointHost(gpu(), desc).draw(points).pixels[0];
+  const FloatColor pixel = draw(desc, points).pixels[0];
   EXPECT_NEAR(pixel[0], 20.0F, 1e-3F); // 0.5 is 32768/65535
   EXPECT_NEAR(pixel[1], 1.0F, 1e-4F);
 }
 
 // Depths nearer than what the format tells apart count as equal, and the rest of the node orders them: as the reference
 // says, whose rounding the unit tests hold to the header.
-TEST_F(LibraryTest, CompactDepthsAreToldApartAsStated) {
+TEST_P(ListsTest, CompactDepthsAreToldApartAsStated) {
   for (const VitrailDepthOrder depthOrder : {VITRAIL_DEPTH_NEAREST_IS_ZERO, VITRAIL_DEPTH_NEAREST_IS_ONE}) {
-    PointHostDesc desc;
+    HostDesc desc;
     desc.nodes = VITRAIL_NODE_COMPACT;
     desc.depthOrder = depthOrder;
     desc.width = 64;
@@ -485,44 +483,44 @@ TEST_F(LibraryTest, CompactDepthsAreToldApartAsStated) {
       }
     }
     desc.capacity = static_cast<std::uint32_t>(points.size());
-    const PointResult result = PointHost(gpu(), desc).draw(points);
+    const PointResult result = draw(desc, points);
     EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kBlendTolerance);
   }
 }
 
 // How collecting shaders may be: each kind turns away what does not suit it in its own way.
 struct Kind {
-  VitrailListBuild linking;
+  VitrailListBuild listBuild;
   bool addresses;
 };
 
-std::vector<Kind> kindsOf(const tool::Gpu& gpu) {
+std::vector<Kind> kindsOf(const Features& features) {
   std::vector<Kind> kinds = {{VITRAIL_LIST_BUILD_FRAGMENT, false}, {VITRAIL_LIST_BUILD_COMPUTE, false}};
-  if (!gpu.features().bufferDeviceAddress) return kinds;
+  if (!features.addresses) return kinds;
   kinds.push_back({VITRAIL_LIST_BUILD_FRAGMENT, true});
   kinds.push_back({VITRAIL_LIST_BUILD_COMPUTE, true});
   return kinds;
 }
 
 std::string describe(const Kind& kind) {
-  return "linking " + std::to_string(kind.listBuild) + (kind.addresses ? ", by address" : ", by binding");
+  return "list build " + std::to_string(kind.listBuild) + (kind.addresses ? ", by address" : ", by binding");
 }
 
 // A shader that is specialized for another target stores nothing there, and says so.
-TEST_F(LibraryTest, AShaderOfAnotherTargetStoresNothing) {
-  for (const Kind& kind : kindsOf(gpu())) {
+TEST_P(ListsTest, AShaderOfAnotherTargetStoresNothing) {
+  for (const Kind& kind : kindsOf(features())) {
     SCOPED_TRACE(describe(kind));
-    PointHostDesc desc;
+    HostDesc desc;
     desc.capacity = 4;
     desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
     desc.listBuild = kind.listBuild;
     desc.addresses = kind.addresses;
     const Point point = {0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}};
     desc.specialized = true;
-    EXPECT_EQ(PointHost(gpu(), desc).draw(std::span(&point, 1)).stats.fragmentsStored, 1U);
+    EXPECT_EQ(draw(desc, std::span(&point, 1)).stats.fragmentsStored, 1U);
     desc.specializedFor = VITRAIL_NODE_HDR;
     desc.overflow = VITRAIL_OVERFLOW_SKIP;
-    const PointResult result = PointHost(gpu(), desc).draw(std::span(&point, 1));
+    const PointResult result = draw(desc, std::span(&point, 1));
     EXPECT_EQ(result.stats.fragmentsStored, 0U);
     EXPECT_EQ(result.stats.fragmentsMissing, 1U);
     EXPECT_EQ(result.stats.exact, 0U);
@@ -532,47 +530,47 @@ TEST_F(LibraryTest, AShaderOfAnotherTargetStoresNothing) {
     desc.specializedForOverflow = VITRAIL_OVERFLOW_APPROXIMATE;
     desc.guarded = true;
     const std::vector<Point> points = randomLists(desc, std::vector<std::uint32_t>(64, 1), 2);
-    PointHost host(gpu(), desc);
-    EXPECT_EQ(host.draw(points).stats.fragmentsMissing, points.size());
-    EXPECT_TRUE(host.guardsUntouched());
-    for (const std::uint32_t word : host.words(&StorageLayout::sums)) EXPECT_EQ(word, PointHost::kGuard);
+    const auto host = makeHost(desc);
+    EXPECT_EQ(host->draw(points).stats.fragmentsMissing, points.size());
+    EXPECT_TRUE(host->guardsUntouched());
+    for (const std::uint32_t word : host->words(&StorageLayout::sums)) EXPECT_EQ(word, PointHost::kGuard);
   }
 }
 
 // Nodes that were given to such a shader are on no list that shows: what is left of other frames in them stays unseen.
-TEST_F(LibraryTest, NodesThatNobodyWroteAreNotSeen) {
-  for (const Kind& kind : kindsOf(gpu())) {
+TEST_P(ListsTest, NodesThatNobodyWroteAreNotSeen) {
+  for (const Kind& kind : kindsOf(features())) {
     SCOPED_TRACE(describe(kind));
-    PointHostDesc desc;
+    HostDesc desc;
     desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
     desc.listBuild = kind.listBuild;
     desc.addresses = kind.addresses;
     desc.specialized = true;
-    desc.specializedForLinking =
+    desc.specializedForListBuild =
         kind.listBuild == VITRAIL_LIST_BUILD_COMPUTE ? VITRAIL_LIST_BUILD_FRAGMENT : VITRAIL_LIST_BUILD_COMPUTE;
     desc.guarded = true; // the nodes hold guard words at first
     const std::vector<Point> points = randomLists(desc, std::vector<std::uint32_t>(64, 1), 2);
     for (const std::uint32_t capacity : {30U, 200U}) {
       desc.capacity = capacity;
-      PointHost host(gpu(), desc);
-      const PointResult result = host.draw(points);
+      const auto host = makeHost(desc);
+      const PointResult result = host->draw(points);
       EXPECT_EQ(result.stats.fragmentsRequested, points.size());
       EXPECT_EQ(result.stats.fragmentsStored, 0U);
       EXPECT_EQ(result.stats.exact, 0U);
       EXPECT_EQ(result.stats.coveredPixels, 0U);
       // Every pixel has one fragment, and its sums are that.
       EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), 0x1p-13);
-      EXPECT_TRUE(host.guardsUntouched());
+      EXPECT_TRUE(host->guardsUntouched());
     }
   }
 }
 
 // The fragment that is first to find no node is a stranger's: the frame is blended from sums all the same, which leave
 // nothing behind.
-TEST_F(LibraryTest, StrangersDoNotHideThatAFrameOverflows) {
-  for (const Way& way : everyWay(gpu(), 1)) {
+TEST_P(ListsTest, StrangersDoNotHideThatAFrameOverflows) {
+  for (const Way& way : everyWay(features(), 1)) {
     SCOPED_TRACE(way.name);
-    PointHostDesc desc;
+    HostDesc desc;
     desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
     desc.strangersFor = VITRAIL_OVERFLOW_SKIP;
     apply(way, desc);
@@ -582,10 +580,10 @@ TEST_F(LibraryTest, StrangersDoNotHideThatAFrameOverflows) {
     points[20].stranger = true;
     for (const std::uint32_t capacity : {20U, 30U}) { // it finds none, or is given one
       desc.capacity = capacity;
-      desc.addresses = gpu().features().bufferDeviceAddress && capacity == 20U;
-      PointHost host(gpu(), desc);
+      desc.addresses = features().addresses && capacity == 20U;
+      const auto host = makeHost(desc);
       for (int frame = 0; frame < 2; ++frame) {
-        const PointResult result = host.draw(points);
+        const PointResult result = host->draw(points);
         EXPECT_EQ(result.stats.exact, 0U);
         EXPECT_EQ(result.stats.fragmentsRequested, points.size());
         EXPECT_LE(result.stats.fragmentsStored, capacity);
@@ -596,68 +594,49 @@ TEST_F(LibraryTest, StrangersDoNotHideThatAFrameOverflows) {
 }
 
 // What a host builds its shaders for is what its target is, whatever that is on this device.
-TEST_F(LibraryTest, ShadersForTheDefaultLinkingSuitTheirTarget) {
-  PointHostDesc desc;
+TEST_P(ListsTest, ShadersForTheDefaultListBuildSuitTheirTarget) {
+  HostDesc desc;
   desc.width = 16;
   desc.height = 8;
   desc.listBuild = VITRAIL_LIST_BUILD_DEFAULT;
   desc.specialized = true;
   const std::vector<Point> points = randomLists(desc, {0, 1, 5, 20, 3}, 7);
   desc.capacity = static_cast<std::uint32_t>(points.size());
-  PointHost host(gpu(), desc);
-  const Expected expected = expectedFrame(desc, points);
-  expectLikeReference(host.draw(points), expected);
-
-  VitrailVkTargetDesc described{};
-  described.extent = {desc.width, desc.height};
-  const VitrailListBuild linking = host.context().defaultListBuild(described);
-  EXPECT_EQ(host.target().listBuild(), linking);
-  described.extent = {4096, 4097};
-  EXPECT_EQ(host.context().defaultListBuild(described), VITRAIL_LIST_BUILD_FRAGMENT);
-  if (linking != VITRAIL_LIST_BUILD_COMPUTE) return;
-  // It stays what it is, also where another would be made otherwise.
-  VitrailVkResizeInfo resize{};
-  resize.frame = 1;
-  resize.extent = described.extent;
-  EXPECT_EQ(vitrailVkResizeTarget(host.target().handle(), &resize), VK_ERROR_INITIALIZATION_FAILED);
-  expectLikeReference(host.draw(points), expected);
+  expectLikeReference(draw(desc, points), expectedFrame(desc, points));
 }
 
-TEST_F(LibraryTest, StatisticsBelongToTheirFrame) {
-  PointHostDesc desc;
+TEST_P(ListsTest, StatisticsBelongToTheirFrame) {
+  HostDesc desc;
   desc.capacity = 10;
-  PointHost host(gpu(), desc);
+  const auto host = makeHost(desc);
   const std::vector<Point> points = {{0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}}, {0, 0, 0.6F, {1.0F, 1.0F, 1.0F, 0.5F}}};
-  VitrailStats stats{};
-  EXPECT_EQ(host.target().readStats(0, stats), VK_NOT_READY);
-  EXPECT_EQ(host.draw(std::span(points).first(1)).stats.layersMax, 1U);
-  EXPECT_EQ(host.draw(points).stats.layersMax, 2U);
-  ASSERT_EQ(host.target().readStats(0, stats), VK_SUCCESS);
-  EXPECT_EQ(stats.fragmentsStored, 1U);
-  EXPECT_EQ(host.target().readStats(2, stats), VK_NOT_READY);
-  host.draw({}); // frame 2 takes the slot of frame 0
-  EXPECT_EQ(host.target().readStats(0, stats), VK_NOT_READY);
-  EXPECT_EQ(host.target().readStats(1, stats), VK_SUCCESS);
+  EXPECT_FALSE(host->stats(0));
+  EXPECT_EQ(host->draw(std::span(points).first(1)).stats.layersMax, 1U);
+  EXPECT_EQ(host->draw(points).stats.layersMax, 2U);
+  ASSERT_TRUE(host->stats(0));
+  EXPECT_EQ(host->stats(0)->fragmentsStored, 1U);
+  EXPECT_FALSE(host->stats(2));
+  host->draw({}); // frame 2 takes the slot of frame 0
+  EXPECT_FALSE(host->stats(0));
+  EXPECT_TRUE(host->stats(1));
 }
 
 // Two frames in one command buffer, of the same target, into two images: the second must wait for the first wherever
 // they share memory. Synchronization validation is the judge, and the pictures are.
-TEST_F(LibraryTest, FramesInOneCommandBufferDoNotMeet) {
-  std::vector<std::uint32_t> counts = sampleCounts(gpu());
-  counts.insert(counts.begin(), 1);
-  for (const std::uint32_t samples : counts) {
-    for (const Way& way : everyWay(gpu(), samples)) {
+TEST_P(ListsTest, FramesInOneCommandBufferDoNotMeet) {
+  for (const std::uint32_t samples : sampleCounts(features())) {
+    for (const Way& way : everyWay(features(), samples)) {
       if (samples > 1 && way.stencilMark) continue;
       SCOPED_TRACE(std::to_string(samples) + " samples, " + way.name);
-      PointHostDesc desc;
+      HostDesc desc;
       desc.samples = samples;
       apply(way, desc);
       const std::vector<Point> first = randomLists(desc, {3, 0, 100, 17, 1}, 1);
       const std::vector<Point> second = randomLists(desc, {0, 5, 2, 400, 30}, 2);
       desc.capacity = static_cast<std::uint32_t>(std::max(first.size(), second.size()));
-      PointHost host(gpu(), desc);
+      const auto host = makeHost(desc);
       for (int repetition = 0; repetition < 2; ++repetition) {
-        const std::vector<PointResult> results = host.drawTogether({first, second});
+        const std::vector<PointResult> results = host->drawTogether({first, second});
         EXPECT_LT(largestError(results[0].pixels, expectedFrame(desc, first).pixels), kBlendTolerance);
         EXPECT_LT(largestError(results[1].pixels, expectedFrame(desc, second).pixels), kBlendTolerance);
         EXPECT_EQ(results[0].stats.fragmentsStored, first.size());
