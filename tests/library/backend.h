@@ -46,7 +46,8 @@ class Backend {
   // Throws HostError where the library refuses the description.
   virtual std::unique_ptr<PointHost> makeHost(const HostDesc& desc) = 0;
   // What draws a picture in tiles here.
-  virtual VkResult planTiles(const VitrailTilePlanDesc& desc, TilePlan& plan) = 0;
+  // The description without limits, which are the device's, and log.
+  virtual VitrailResult planTiles(VitrailTilePlanDesc desc, TilePlan& plan) = 0;
   // What the API's validation has found wrong since the last call, one text each. Any is a failed test.
   virtual std::vector<std::string> takeErrors() = 0;
   // Gives the device back; what outlived it is among the errors. Hosts are gone by then.

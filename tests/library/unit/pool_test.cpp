@@ -29,6 +29,8 @@ TEST(Pool, BoundsAreTheHeaders) {
 TEST(Pool, SizesDoNotOverflow) {
   EXPECT_EQ(nodePoolBytes(VITRAIL_FORMAT_STANDARD, 0), 12U);
   EXPECT_EQ(nodePoolBytes(VITRAIL_FORMAT_COMPACT, 1), 8U);
+  EXPECT_EQ(nodePoolBytes(VITRAIL_FORMAT_COMPACT, 10, true), 120U);
+  EXPECT_EQ(copyBytes(3, 5), 32U + 3U * 8U + 5U * 32U);
   EXPECT_EQ(nodePoolBytes(VITRAIL_FORMAT_HDR, 0xfffffffeU), 0xfffffffeULL * 16U);
   EXPECT_EQ(headBytes(0xffffffffU), 4ULL * 0xffffffffU);
   EXPECT_EQ(sumBytes(0xffffffffU), 20ULL * 0xffffffffU);
@@ -52,10 +54,12 @@ TEST(Pool, PartsAreAlignedAndDoNotOverlap) {
     for (const std::uint32_t pixels : {1U, 1000U, 1920U * 1080U, 0xffffffffU}) {
       for (const std::uint32_t capacity : {0U, 1U, 12345U, 0xfffffffeU}) {
         for (const bool keepSums : {false, true}) {
-          const StorageLayout storage = layoutStorage(pixels, capacity, VITRAIL_FORMAT_HDR, keepSums, alignment);
+          const StorageLayout storage = layoutStorage(
+              {.areaPixels = pixels, .nodeCapacity = capacity, .format = VITRAIL_FORMAT_HDR, .keepSums = keepSums,
+               .alignment = alignment});
           std::uint64_t end = 0;
           for (const StoragePart& part : {storage.parameters, storage.control, storage.heads, storage.mediumLists,
-                                          storage.longLists, storage.sums, storage.nodes}) {
+                                          storage.longLists, storage.sums, storage.copy, storage.nodes}) {
             EXPECT_EQ(part.offset % alignment, 0U);
             EXPECT_GE(part.offset, end);
             EXPECT_LT(part.offset, end + alignment);
@@ -81,14 +85,20 @@ TEST(Pool, TheCapacityForABudgetIsTheLargestThatFits) {
     const std::uint64_t bytes = random() >> (random() % 50 + 14);
     const bool keepSums = random() % 2 == 0;
     const std::uint32_t most = maxNodeIndexCount(format, samples);
-    const std::uint32_t fits = nodeCapacityFor(bytes, pixels, format, samples, keepSums, 256);
+    StorageNeeds needs{.areaPixels = pixels, .format = format, .keepSums = keepSums};
+    needs.userWords = random() % 2 == 0;
+    const std::uint32_t fits = nodeCapacityFor(bytes, needs, samples);
     ASSERT_LE(fits, most);
-    const auto total = [&](std::uint32_t n) { return layoutStorage(pixels, n, format, keepSums, 256).total; };
+    const auto total = [&](std::uint32_t n) {
+      needs.nodeCapacity = n;
+      return layoutStorage(needs).total;
+    };
     ASSERT_TRUE(fits == 0 || total(fits) <= bytes);
     ASSERT_TRUE(fits == most || total(fits + 1) > bytes);
   }
-  EXPECT_EQ(nodeCapacityFor(~0ULL, 1, VITRAIL_FORMAT_STANDARD, 1, true, 256), 0xe0000000U);
-  EXPECT_EQ(nodeCapacityFor(0, 1, VITRAIL_FORMAT_STANDARD, 1, true, 256), 0U);
+  const StorageNeeds one{.areaPixels = 1, .keepSums = true};
+  EXPECT_EQ(nodeCapacityFor(~0ULL, one, 1), 0xe0000000U);
+  EXPECT_EQ(nodeCapacityFor(0, one, 1), 0U);
 }
 
 } // namespace

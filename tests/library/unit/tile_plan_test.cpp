@@ -34,8 +34,11 @@ std::uint64_t fragmentsIn(const Rectangle& tile, const Density& density) {
 Outcome drawTiles(const TilePlanInfo& info, const Density& density) {
   TilePlan plan(info);
   EXPECT_GT(plan.nodeCapacity(), 0U);
-  EXPECT_LE(layoutStorage(plan.areaPixels(), plan.nodeCapacity(), info.format, false, info.alignment).total,
-            info.memoryBudget);
+  const StorageNeeds needs{.areaPixels = plan.areaPixels(),
+                           .nodeCapacity = plan.nodeCapacity(),
+                           .format = info.format,
+                           .alignment = info.alignment};
+  EXPECT_LE(layoutStorage(needs).total, info.memoryBudget);
   Outcome outcome;
   Rectangle tile;
   while (plan.next(tile)) {
@@ -143,7 +146,7 @@ TEST(TilePlan, HeadsAndListsGetAQuarterAtMost) {
   for (const std::uint64_t budget : {64U << 10U, 1U << 20U, 100U << 20U}) {
     const TilePlan plan(planInfo({0, 0, 20000, 20000}, budget));
     const StorageLayout storage =
-        layoutStorage(plan.areaPixels(), plan.nodeCapacity(), VITRAIL_FORMAT_STANDARD, false, 256);
+        layoutStorage({.areaPixels = plan.areaPixels(), .nodeCapacity = plan.nodeCapacity()});
     EXPECT_LE(storage.nodes.offset, budget / 4);
     EXPECT_GE(4 * plan.areaPixels(), budget / 16); // and not much less than that
   }

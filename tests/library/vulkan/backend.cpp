@@ -16,8 +16,13 @@ std::unique_ptr<PointHost> VulkanBackend::makeHost(const HostDesc& desc) {
   return std::make_unique<VulkanHost>(*this, desc);
 }
 
-VkResult VulkanBackend::planTiles(const VitrailTilePlanDesc& desc, TilePlan& plan) {
-  return TilePlan::create(context(0), desc, plan);
+VitrailResult VulkanBackend::planTiles(VitrailTilePlanDesc desc, TilePlan& plan) {
+  const auto samples = static_cast<VkSampleCountFlagBits>(desc.samples != 0 ? desc.samples : 1);
+  check(context(0).tileLimits(desc.nodeFormat, samples, desc.limits), "vitrailVkTileLimits");
+  const VitrailVkContextDesc log = contextDesc();
+  desc.log = log.log;
+  desc.logUser = log.logUser;
+  return TilePlan::create(desc, plan);
 }
 
 std::vector<std::string> VulkanBackend::takeErrors() {
@@ -55,12 +60,12 @@ VitrailVkContextDesc VulkanBackend::contextDesc() {
 
 std::vector<LogLine> VulkanBackend::takeLog() { return std::exchange(log_, {}); }
 
-Context& VulkanBackend::context(std::uint32_t features) {
-  Context& context = contexts_[features];
+vitrail::vulkan::Context& VulkanBackend::context(std::uint32_t features) {
+  vitrail::vulkan::Context& context = contexts_[features];
   if (context) return context;
   VitrailVkContextDesc desc = contextDesc();
   desc.features = features;
-  check(Context::create(desc, context), "vitrailVkCreateContext");
+  check(vitrail::vulkan::Context::create(desc, context), "vitrailVkCreateContext");
   return context;
 }
 

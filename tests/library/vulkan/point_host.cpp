@@ -45,7 +45,7 @@ VulkanHost::VulkanHost(VulkanBackend& backend, const HostDesc& desc)
   makeImages();
   VitrailVkTargetDesc target = targetDesc();
   if (desc.guarded) guard(target);
-  const VkResult result = Target::create(*context_, target, target_);
+  const VkResult result = vitrail::vulkan::Target::create(*context_, target, target_);
   if (result != VK_SUCCESS) {
     std::string reason = "vitrailVkCreateTarget: VkResult " + std::to_string(result);
     for (const LogLine& line : backend.takeLog()) reason += ": " + line.text;
@@ -113,10 +113,16 @@ void VulkanHost::guard(VitrailVkTargetDesc& desc) {
     // Writer: the fill. Readers and writers: the library, first its clears.
     cmdBarrier(commands, kTransferWrite, kTransferWrite);
   });
-  storage_ = layoutStorage(desc.extent.width * desc.extent.height, desc.nodeCapacity, desc.nodeFormat,
-                           desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE, needs.alignment);
+  StorageNeeds parts;
+  parts.areaPixels = desc.extent.width * desc.extent.height;
+  parts.nodeCapacity = desc.nodeCapacity;
+  parts.format = desc.nodeFormat;
+  parts.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
+  parts.alignment = needs.alignment;
+  storage_ = layoutStorage(parts);
   desc.buffer = memory_.get();
   desc.bufferOffset = guardBytes_;
+  desc.bufferSize = needs.size;
 }
 
 // The pipelines of points for a target, or for what HostDesc says in its place.
@@ -256,7 +262,6 @@ std::array<PointResult, 2> VulkanHost::drawAcrossResize(std::span<const Point> f
     desc_.height = extent.height;
     makeImages();
     VitrailVkResizeInfo resize{};
-    resize.frame = frame + 1;
     resize.extent = {extent.width, extent.height};
     resize.views = views();
     check(target_.resize(resize), "vitrailVkResizeTarget");

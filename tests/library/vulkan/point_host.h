@@ -30,8 +30,8 @@ class VulkanHost : public PointHost {
   [[nodiscard]] VitrailMemory memory() const override { return target_.memory(); }
   [[nodiscard]] std::optional<VitrailStats> stats(std::uint64_t frame) const override;
 
-  [[nodiscard]] Target& target() { return target_; }
-  [[nodiscard]] const Context& context() const { return *context_; }
+  [[nodiscard]] vitrail::vulkan::Target& target() { return target_; }
+  [[nodiscard]] const vitrail::vulkan::Context& context() const { return *context_; }
   [[nodiscard]] VitrailVkTargetDesc targetDesc(); // what the target is made with
 
  private:
@@ -63,7 +63,7 @@ class VulkanHost : public PointHost {
   HostDesc desc_;
   bool postDepthCoverage_ = false;
   std::uint64_t frame_ = 0;
-  Context* context_ = nullptr;
+  vitrail::vulkan::Context* context_ = nullptr;
   std::array<PointImages, kFramesTogether> images_; // of frame n: n % kFramesTogether
   // What views() points to.
   std::array<VkImageView, kFramesTogether> colorViews_{};
@@ -72,7 +72,7 @@ class VulkanHost : public PointHost {
   VkDeviceSize guardBytes_ = 0;
   StorageLayout storage_; // of the memory between the guards
   Buffer memory_;         // guards, the library's memory, guards
-  Target target_;
+  vitrail::vulkan::Target target_;
   PointPipelines* pipelines_ = nullptr; // shared
   PointPipelines* strangers_ = nullptr; // of strangers; shared
   Commands commands_;

@@ -29,14 +29,14 @@ class RefusedTest : public VulkanTest {
 
   // Refused with that code and one line that has that word.
   static void expectRefused(const VitrailVkTargetDesc& desc, VkResult code, const std::string& word) {
-    Target target;
-    EXPECT_EQ(Target::create(context(), desc, target), code) << word;
+    vitrail::vulkan::Target target;
+    EXPECT_EQ(vitrail::vulkan::Target::create(context(), desc, target), code) << word;
     EXPECT_FALSE(target) << word;
     expectOneLine(word);
   }
 
   // Of a context that was told of no features.
-  static Context& context() { return backend().context(0); }
+  static vitrail::vulkan::Context& context() { return backend().context(0); }
 
   Image image_;
   VkImageView view_ = VK_NULL_HANDLE;
@@ -68,7 +68,7 @@ TEST_F(RefusedTest, WrongFields) {
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "overflow");
   desc = desc_;
   desc.listBuild = static_cast<VitrailListBuild>(4);
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "linking");
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "listBuild");
   desc = desc_;
   desc.resolve = static_cast<VitrailResolve>(9);
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "resolve");
@@ -109,7 +109,7 @@ TEST_F(RefusedTest, WhatTheDeviceOrTheContextDoesNotOffer) {
   desc.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
   expectRefused(desc, VK_ERROR_FEATURE_NOT_PRESENT, "per sample");
   desc.resolve = VITRAIL_RESOLVE_FRAGMENT; // the context was not told of sampleRateShading
-  expectRefused(desc, VK_ERROR_FEATURE_NOT_PRESENT, "sampleRateShading");
+  expectRefused(desc, VK_ERROR_FEATURE_NOT_PRESENT, "sample shading");
   if (counts.back() != 8) return;
   desc = desc_;
   desc.samples = VK_SAMPLE_COUNT_8_BIT;
@@ -131,8 +131,8 @@ TEST_F(RefusedTest, MemoryThatIsNotThere) {
   EXPECT_LE(context().maxNodeCapacity(VITRAIL_NODE_HDR, VK_SAMPLE_COUNT_8_BIT), (1U << 24U) - 2);
 }
 
-// A node has 24 bits for its pixel until it is linked.
-TEST_F(RefusedTest, AreasThatAreTooLargeToLinkByCompute) {
+// A loose node has 24 bits for its pixel.
+TEST_F(RefusedTest, AreasThatAreTooLargeForListsBuiltByCompute) {
   VitrailVkTargetDesc desc = desc_;
   desc.listBuild = VITRAIL_LIST_BUILD_COMPUTE;
   desc.overflow = VITRAIL_OVERFLOW_SKIP;
@@ -172,22 +172,23 @@ TEST_F(RefusedTest, APixelThatFitsNoBudgetIsAnErrorWithTheBytes) {
   VitrailTilePlanDesc desc{};
   desc.memoryBudget = 64 << 10;
   TilePlan plan;
-  EXPECT_EQ(TilePlan::create(context(), desc, plan), VK_ERROR_INITIALIZATION_FAILED);
+  EXPECT_EQ(backend().planTiles(desc, plan), VITRAIL_ERROR_INVALID);
   expectOneLine("extent");
-  desc.extent = {1, 1};
+  desc.width = 1;
+  desc.height = 1;
   desc.memoryBudget = 1000;
-  EXPECT_EQ(TilePlan::create(context(), desc, plan), VK_ERROR_OUT_OF_DEVICE_MEMORY);
+  EXPECT_EQ(backend().planTiles(desc, plan), VITRAIL_ERROR_OUT_OF_MEMORY);
   expectOneLine("memoryBudget");
   desc.memoryBudget = 64 << 10;
-  ASSERT_EQ(TilePlan::create(context(), desc, plan), VK_SUCCESS);
-  VkRect2D tile{};
+  ASSERT_EQ(backend().planTiles(desc, plan), VITRAIL_SUCCESS);
+  VitrailRect tile{};
   ASSERT_TRUE(plan.next(tile));
   VitrailStats stats{};
   stats.nodeCapacity = 4000;
   stats.fragmentsRequested = 100000;
   stats.fragmentsStored = 4000;
   stats.fragmentsMissing = 96000;
-  EXPECT_EQ(plan.finish(stats), VK_ERROR_OUT_OF_DEVICE_MEMORY);
+  EXPECT_EQ(plan.finish(stats), VITRAIL_ERROR_OUT_OF_MEMORY);
   expectOneLine("100000");
 }
 
