@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "../../tool/scene/builtin.h"
+#include "../../tool/scene/builtin/builtin.h"
 #include "../reference/test_scenes.h"
 #include "gpu_fixture.h"
 

@@ -3,8 +3,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "../../tool/methods/layer_count.h"
-#include "../../tool/scene/builtin.h"
+#include "../../tool/methods/layer_count/layer_count.h"
+#include "../../tool/scene/builtin/builtin.h"
 #include "../reference/reference.h"
 #include "../reference/test_scenes.h"
 #include "gpu_fixture.h"

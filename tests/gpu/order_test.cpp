@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "../../tool/scene/builtin.h"
+#include "../../tool/scene/builtin/builtin.h"
 #include "gpu_fixture.h"
 
 namespace vitrail::tool::test {

@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "draw/barrier.h"
-#include "draw/vk.h"
+#include "gpu/barrier.h"
+#include "gpu/vk.h"
 #include "shaders/opaque.h"
 
 namespace vitrail::tests {

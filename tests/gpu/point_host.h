@@ -14,11 +14,11 @@
 
 #include "core/node.h"
 #include "core/pool.h"
-#include "draw/device.h"
-#include "draw/picture_images.h"
-#include "draw/resources.h"
-#include "draw/submit.h"
-#include "draw/unique.h"
+#include "gpu/device.h"
+#include "stage/picture_images.h"
+#include "gpu/resources.h"
+#include "gpu/submit.h"
+#include "gpu/unique.h"
 #include "point_pipelines.h"
 
 namespace vitrail::tests {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "draw/vk.h"
+#include "gpu/vk.h"
 #include "shaders/opaque.frag.h"
 #include "shaders/opaque.h"
 #include "shaders/opaque.vert.h"

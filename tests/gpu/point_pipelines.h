@@ -10,8 +10,8 @@
 
 #include <vitrail/vitrail.h>
 
-#include "draw/device.h"
-#include "draw/unique.h"
+#include "gpu/device.h"
+#include "gpu/unique.h"
 
 namespace vitrail::tests {
 

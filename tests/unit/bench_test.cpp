@@ -8,12 +8,12 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bench/cells.h"
-#include "bench/csv.h"
+#include "report/cells.h"
+#include "report/csv.h"
 #include "bench/matrix.h"
 #include "bench/measurement.h"
 #include "bench/statistics.h"
-#include "bench/table.h"
+#include "report/bench_table.h"
 #include "bench/traffic.h"
 
 namespace vitrail::tests {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "compare/table.h"
+#include "report/comparison_table.h"
 
 namespace vitrail::tests {
 namespace {

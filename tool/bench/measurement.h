@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "../draw/renderer.h"
+#include "../render/renderer.h"
 #include "machine.h"
 #include "matrix.h"
 #include "statistics.h"

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "cells.h"
+#include "../report/cells.h"
 
 namespace vitrail::tool {
 

@@ -8,13 +8,13 @@
 #include <fmt/format.h>
 
 #include "../image/color_map.h"
-#include "../image/metrics_text.h"
 #include "../image/png_decode.h"
 #include "../image/png_encode.h"
+#include "../report/metrics_json.h"
+#include "../report/metrics_text.h"
 #include "../scene/load.h"
 #include "../scene/read_file.h"
 #include "errors.h"
-#include "metrics_report.h"
 #include "output_file.h"
 
 namespace vitrail::tool {

@@ -6,13 +6,13 @@
 #include <span>
 #include <stdexcept>
 
-#include "../draw/renderer.h"
 #include "../image/png_encode.h"
+#include "../render/renderer.h"
+#include "../report/frame_report.h"
 #include "commands.h"
 #include "errors.h"
 #include "output_file.h"
 #include "render_options.h"
-#include "report.h"
 
 namespace vitrail::tool {
 

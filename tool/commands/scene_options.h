@@ -7,8 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "../draw/renderer.h"
-#include "../scene/builtin.h"
+#include "../render/renderer.h"
+#include "../scene/builtin/builtin.h"
 #include "../scene/camera.h"
 #include "../scene/scene.h"
 

@@ -6,7 +6,7 @@
 
 #include "../bench/matrix.h"
 #include "../bench/runner.h"
-#include "../methods/layer_count.h"
+#include "../methods/layer_count/layer_count.h"
 
 namespace vitrail::tool {
 

@@ -1,5 +1,5 @@
 // A transparency method, as the host renderer sees it. The renderer draws the opaque scene; the method draws the
-// transparent surfaces over it, in as many passes as it takes, with what a Frame gives it (draw/frame.h).
+// transparent surfaces over it, in as many passes as it takes, with what a Frame gives it (stage/frame.h).
 //
 // A method is a file of its own: a class whose constructor makes its pipelines, an entry in makeMethod() (method.cpp)
 // and one in the table of method_options.cpp, which says what options it has; others are refused.
@@ -12,9 +12,9 @@
 
 #include <volk.h>
 
-#include "../draw/device.h"
-#include "../draw/frame.h"
-#include "../draw/surfaces.h"
+#include "../gpu/device.h"
+#include "../stage/frame.h"
+#include "../stage/surfaces.h"
 #include "method_options.h"
 
 namespace vitrail::tool {

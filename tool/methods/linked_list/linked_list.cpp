@@ -1,0 +1,333 @@
+#include "linked_list.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "../../gpu/vk.h"
+#include "../../stage/picture_images.h"
+#include "shaders/collect.frag.h"
+#include "shaders/collect_address.frag.h"
+#include "shaders/collect_coverage.frag.h"
+#include "shaders/collect_coverage_address.frag.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+// The first guess: most models that are looked at have fewer fragments than this a pixel
+// of the whole picture.
+constexpr std::uint64_t kNodesPerPixel = 4;
+constexpr std::uint64_t kLargestGuess = std::uint64_t{1} << 24U;
+
+constexpr std::uint32_t kDepthFromW = 1; // the constant of collect.frag
+
+void remember(VitrailLogSeverity severity, const char* message, void* reason) {
+  if (severity == VITRAIL_LOG_ERROR) *static_cast<std::string*>(reason) = message;
+}
+
+std::uint32_t libraryFeatures(const GpuFeatures& features) {
+  std::uint32_t bits = 0;
+  if (features.poolByAddress) bits |= VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS;
+  if (features.dualSourceBlending) bits |= VITRAIL_FEATURE_DUAL_SRC_BLEND;
+  if (features.sampleRateShading) bits |= VITRAIL_FEATURE_SAMPLE_RATE_SHADING;
+  return bits;
+}
+
+std::uint64_t pixelsOf(VkExtent2D extent) { return std::uint64_t{extent.width} * extent.height; }
+
+// The boxes of the transparent surfaces as the library takes them, seen with the frame's view.
+std::vector<VitrailBounds> boxesOf(const Surfaces& surfaces) {
+  std::vector<VitrailBounds> result;
+  result.reserve(surfaces.scene().transparentBoxes().size());
+  for (const PlacedBox& placed : surfaces.scene().transparentBoxes()) {
+    const glm::mat4 clip(glm::dmat4(surfaces.view().viewProjection) * glm::dmat4(placed.model));
+    VitrailBounds bounds{};
+    std::memcpy(bounds.min, &placed.box.min, sizeof(bounds.min));
+    std::memcpy(bounds.max, &placed.box.max, sizeof(bounds.max));
+    std::memcpy(bounds.clipFromBox, &clip, sizeof(bounds.clipFromBox));
+    result.push_back(bounds);
+  }
+  return result;
+}
+
+bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
+  return a.extent.width == b.extent.width && a.extent.height == b.extent.height && a.color == b.color &&
+         a.opaque == b.opaque && a.depth == b.depth && a.memoryBudget == b.memoryBudget && a.surfaces == b.surfaces;
+}
+
+} // namespace
+
+LinkedList::LinkedList(const MethodHost& host, const MethodOptions& options)
+    : gpu_(host.gpu), source_(host.surfaces), options_(options) {
+  makeContext();
+  chooseResolve();
+}
+
+LinkedList::~LinkedList() { gpu_.memoryFreed(counted_); }
+
+void LinkedList::makeContext() {
+  VitrailContextDesc desc{};
+  desc.instance = gpu_.instance();
+  desc.physicalDevice = gpu_.physicalDevice();
+  desc.device = gpu_.device();
+  desc.getInstanceProcAddr = vkGetInstanceProcAddr;
+  desc.features = libraryFeatures(gpu_.features());
+  desc.log = remember;
+  desc.logUser = &reason_;
+  check(Context::create(desc, context_), "vitrailCreateContext");
+}
+
+void LinkedList::chooseResolve() {
+  const GpuFeatures& features = gpu_.features();
+  needs_.perSample = options_.samples > 1 && options_.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
+  if (needs_.perSample && !features.sampleRateShading) {
+    throw GpuError(fmt::format("{} does not shade samples one by one: use --msaa-resolve per-pixel",
+                               gpu_.properties().deviceName));
+  }
+  if (options_.resolve == VITRAIL_RESOLVE_DEFAULT) {
+    VitrailTargetDesc target = targetDesc();
+    const VkImageView anyView = VK_NULL_HANDLE;
+    target.views = {1, &anyView, nullptr, nullptr}; // the colour image can be written by compute
+    options_.resolve = context_.defaultResolve(target);
+  }
+  const bool drawn = options_.resolve == VITRAIL_RESOLVE_FRAGMENT;
+  needs_.stencil = drawn && (options_.samples == 1 || needs_.perSample) && features.stencil;
+  if (options_.samples > 1 && !features.postDepthCoverage) needs_.depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
+}
+
+// The pipelines for the picture that is wanted, where there are none yet or others.
+void LinkedList::makeSurfaces() {
+  const bool coverage = options_.samples > 1 && gpu_.features().postDepthCoverage;
+  const bool address = gpu_.features().poolByAddress;
+  VitrailTargetDesc desc = targetDesc();
+  desc.linking = options_.linking != VITRAIL_LINKING_DEFAULT ? options_.linking : context_.defaultLinking(desc);
+  PipelineKind kind;
+  kind.linking = desc.linking;
+  // To spare the fragment shaders of GPUs; Mesa's CPU driver takes longer. Where samples are tested in the resolve,
+  // depths are compared with those of the depth image.
+  const bool isCpu = gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const bool spares = !isCpu || kind.linking == VITRAIL_LINKING_COMPUTE;
+  kind.depthFromW = spares && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
+  if (surfaces_ && kind == pipelines_) return;
+  pipelines_ = kind;
+  const VitrailSpecialization specialization = context_.collectSpecialization(desc);
+  const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
+    if (coverage && address) info.fragmentShader = shaders::collect_coverage_address_frag;
+    if (coverage && !address) info.fragmentShader = shaders::collect_coverage_frag;
+    if (!coverage && address) info.fragmentShader = shaders::collect_address_frag;
+    if (!coverage && !address) info.fragmentShader = shaders::collect_frag;
+    for (std::size_t i = 0; i < std::size(specialization.entries); ++i) {
+      info.constants.emplace_back(specialization.entries[i].constantID, specialization.data[i]);
+    }
+    info.constants.emplace_back(kDepthFromW, kind.depthFromW ? VK_TRUE : VK_FALSE);
+    info.samples = flagOf(options_.samples);
+    info.depthFormat = PictureImages::depthFormat(needs_.stencil);
+    if (needs_.stencil) vitrailStencilMark(&info.stencil.emplace());
+  };
+  const SurfaceProgram program{.set = context_.descriptorSetLayout(), .name = "collect"};
+  surfaces_.emplace(source_, source_.scene().transparentDraws(), program, describe);
+}
+
+// All but the memory and the images.
+VitrailTargetDesc LinkedList::targetDesc() const {
+  VitrailTargetDesc desc{};
+  desc.extent = wanted_.extent;
+  desc.samples = flagOf(options_.samples);
+  desc.nodeFormat = options_.nodes;
+  desc.depthOrder = VITRAIL_DEPTH_NEAREST_IS_ONE;
+  desc.resolve = options_.resolve;
+  desc.msaaResolve = options_.msaaResolve;
+  desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
+  desc.maxLayers = options_.maxLayers;
+  desc.linking = pipelines_.linking;
+  desc.overflow = VITRAIL_OVERFLOW_SKIP; // the picture is drawn again, with a larger pool or in tiles
+  desc.colorFormat = PictureImages::kColorFormat;
+  if (needs_.stencil) {
+    desc.scope.stencilFormat = PictureImages::depthFormat(true);
+    desc.scope.stencilMark = VK_TRUE;
+  }
+  desc.framesInFlight = 1;
+  return desc;
+}
+
+void LinkedList::setTarget(const MethodTarget& target) {
+  if (wanted_.color != VK_NULL_HANDLE && sameTarget(target, wanted_)) return makeSurfaces();
+  releaseTarget();
+  wanted_ = target;
+  makeSurfaces();
+  expected_ = 0;
+  budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
+  const bool linksAll =
+      pipelines_.linking == VITRAIL_LINKING_FRAGMENT || pixelsOf(target.extent) <= VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE;
+  inTiles_ = target.memoryBudget.has_value() || !linksAll;
+  if (inTiles_) return; // drawTiles() knows how large the tiles are
+  const std::uint64_t largest = context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
+  const std::uint64_t guess = std::min({kNodesPerPixel * pixelsOf(target.extent), kLargestGuess, largest});
+  inTiles_ = !createWholeTarget(target.surfaces ? static_cast<std::uint32_t>(guess) : 0);
+}
+
+bool LinkedList::createWholeTarget(std::uint32_t nodeCapacity) {
+  VitrailTargetDesc desc = targetDesc();
+  desc.nodeCapacity = nodeCapacity;
+  return createTarget(desc);
+}
+
+// False where the device has no memory for it.
+bool LinkedList::createTarget(const VitrailTargetDesc& desc) {
+  if (target_ && made_.nodeCapacity == desc.nodeCapacity && made_.areaPixels == desc.areaPixels) {
+    return true; // the images are the same until releaseTarget()
+  }
+  target_ = Target(); // first: the old pool and the new one need not fit together
+  gpu_.memoryFreed(std::exchange(counted_, 0));
+  VitrailTargetDesc full = desc;
+  full.views.count = 1;
+  full.views.color = &wanted_.color;
+  if (options_.samples > 1 && !needs_.perSample) full.views.opaque = &wanted_.opaque;
+  if (needs_.depthUsage != 0) full.views.depth = &wanted_.depth;
+  const VkResult result = Target::create(context_, full, target_);
+  if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) return false; // the reason stays, in case that it ends the program
+  check(result, "vitrailCreateTarget");
+  reason_.clear();
+  made_ = desc;
+  counted_ = target_.memory().totalBytes;
+  gpu_.memoryAllocated(counted_);
+  return true;
+}
+
+void LinkedList::releaseTarget() {
+  target_ = Target();
+  plan_ = TilePlan();
+  wanted_ = {};
+  gpu_.memoryFreed(std::exchange(counted_, 0));
+}
+
+void LinkedList::draw(Frame& frame) {
+  stats_ = {};
+  stats_.tiles = 0;
+  stats_.exact = true;
+  coveredPixels_ = 0;
+  wasInTiles_ = inTiles_;
+  if (inTiles_) return drawTiles(frame);
+  drawArea(frame, {{0, 0}, wanted_.extent});
+}
+
+// Every tile is waited for: what it reports decides whether its parts come next.
+void LinkedList::drawTiles(Frame& frame) {
+  frame.submitAndWait(); // the opaque scene
+  planTiles(boxesOf(frame.surfaces()));
+  VkRect2D tile{};
+  while (plan_ && plan_.next(tile)) {
+    drawArea(frame, tile);
+    frame.submitAndWait();
+    const VitrailStats stats = readStats();
+    check(plan_.finish(stats), "vitrailFinishTile");
+    if (stats.fragmentsMissing == 0) add(stats); // else its parts come next
+    expected_ = stats_.fragmentsRequested;
+  }
+}
+
+void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
+  VkCommandBuffer commands = frame.commands();
+  PictureImages& images = frame.images();
+  target_.begin(commands, {++frame_, area});
+  frame.endPass("clear");
+  cmdBeginScope(commands, images.transparentScope(area));
+  frame.drawSurfaces(*surfaces_, target_.descriptorSet());
+  vkCmdEndRendering(commands);
+  if (pipelines_.linking == VITRAIL_LINKING_COMPUTE) frame.endPass("collect");
+  target_.collected(commands);
+  frame.endPass(pipelines_.linking == VITRAIL_LINKING_COMPUTE ? "link" : "collect");
+  if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT) {
+    cmdBeginScope(commands, images.resolveScope(commands, area));
+    target_.resolve(commands);
+    vkCmdEndRendering(commands);
+  } else {
+    images.cmdToComputeResolve(commands);
+    target_.resolve(commands);
+  }
+  frame.endPass("resolve");
+  target_.end(commands);
+  frame.endPass("statistics");
+}
+
+void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
+  plan_ = TilePlan();
+  const bool everyPixel = options_.samples > 1 && !needs_.perSample; // is written by the resolve
+  if (bounds.empty() && !everyPixel) return;                         // nothing to draw
+  VitrailTilePlanDesc desc{};
+  desc.extent = wanted_.extent;
+  desc.samples = flagOf(options_.samples);
+  desc.nodeFormat = options_.nodes;
+  desc.boundsCount = everyPixel ? 0 : static_cast<std::uint32_t>(bounds.size());
+  desc.bounds = bounds.data();
+  desc.expectedFragments = expected_;
+  // The device may have less memory left than it says that it can give: then less is tried.
+  for (;;) {
+    desc.memoryBudget = budget_;
+    check(TilePlan::create(context_, desc, plan_), "vitrailCreateTilePlan");
+    VitrailTargetDesc target = targetDesc();
+    plan_.prepare(target);
+    if (createTarget(target)) return;
+    budget_ = vitrailNodePoolSize(options_.nodes, target.nodeCapacity) / 2;
+  }
+}
+
+VitrailStats LinkedList::readStats() const {
+  VitrailStats stats{};
+  check(target_.readStats(frame_, stats), "vitrailReadStats");
+  return stats;
+}
+
+bool LinkedList::finish() {
+  if (wasInTiles_) return true;
+  const VitrailStats stats = readStats();
+  add(stats);
+  if (stats.fragmentsMissing == 0) return true;
+  grow(stats.fragmentsRequested);
+  return false;
+}
+
+// Makes room for a picture of so many fragments: a larger pool, or tiles where the device has none that large.
+void LinkedList::grow(std::uint64_t fragments) {
+  const bool canBe = fragments <= context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
+  if (canBe && createWholeTarget(static_cast<std::uint32_t>(fragments))) return;
+  inTiles_ = true;
+  expected_ = fragments;
+}
+
+void LinkedList::add(const VitrailStats& stats) {
+  ++stats_.tiles;
+  stats_.exact = stats_.exact && stats.exact != 0;
+  stats_.fragmentsRequested += stats.fragmentsRequested;
+  stats_.fragmentsStored += stats.fragmentsStored;
+  stats_.fragmentsMissing += stats.fragmentsMissing;
+  stats_.approximatePixels += stats.approximatePixels;
+  stats_.cutPixels += stats.cutPixels;
+  stats_.layersMax = std::max(stats_.layersMax, stats.layersMax);
+  coveredPixels_ += stats.coveredPixels;
+}
+
+MethodStats LinkedList::stats() const {
+  MethodStats result = stats_;
+  result.layersMean = meanLayers(stats_.fragmentsStored, coveredPixels_);
+  if (!target_) return result; // nothing was drawn
+  const VitrailMemory memory = target_.memory();
+  result.nodesBytes = memory.nodeBytes;
+  result.headsBytes = memory.headBytes;
+  result.totalBytes = memory.totalBytes;
+  return result;
+}
+
+void LinkedList::check(VkResult result, const char* call) const {
+  if (result == VK_SUCCESS) return;
+  const std::string reason = reason_.empty() ? fmt::format("{} failed: {}", call, resultName(result)) : reason_;
+  if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY) throw GpuError(reason);
+  throw GpuError(reason + (wanted_.memoryBudget ? ": use a larger --memory-budget" : ": use a smaller --size"));
+}
+
+} // namespace vitrail::tool
