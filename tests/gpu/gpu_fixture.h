@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "../../tool/gpu/device.h"
-#include "../../tool/render/renderer.h"
+#include "../../tool/render/still.h"
 
 namespace vitrail::tool::test {
 

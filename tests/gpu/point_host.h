@@ -15,11 +15,11 @@
 #include "core/node.h"
 #include "core/pool.h"
 #include "gpu/device.h"
-#include "stage/picture_images.h"
 #include "gpu/resources.h"
 #include "gpu/submit.h"
 #include "gpu/unique.h"
 #include "point_pipelines.h"
+#include "stage/picture_images.h"
 
 namespace vitrail::tests {
 

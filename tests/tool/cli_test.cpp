@@ -43,10 +43,10 @@ TEST(Cli, HelpPagesAndVersion) {
 
 TEST(Cli, TheHelpPageNamesEveryOption) {
   const std::string help = vitrail({"render", "--help"}).out;
-  for (const char* option : {"--scene",   "--count",      "--seed",          "--size",    "--camera",       "--orbit",
-                             "--opacity", "--background", "--output",        "-o",        "--json",         "--quiet",
-                             "--device",  "--validate",   "--method",        "--samples", "--msaa-resolve", "--nodes",
-                             "--resolve", "--layers",     "--memory-budget", "--linking"}) {
+  for (const char* option : {"--scene",   "--count",      "--seed",          "--size",      "--camera",       "--orbit",
+                             "--opacity", "--background", "--output",        "-o",          "--json",         "--quiet",
+                             "--device",  "--validate",   "--method",        "--samples",   "--msaa-resolve", "--nodes",
+                             "--resolve", "--layers",     "--memory-budget", "--list-build"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
 }
@@ -104,8 +104,8 @@ TEST(Cli, WrongUsageIsOneLineAndExitCode2) {
       {with({"--msaa-resolve", "per-sample", "--samples", "4", "--resolve", "compute"}), "--resolve fragment"},
       {with({"--samples", "8", "--nodes", "compact"}), "at most 4 samples"},
       {with({"--resolve", "default"}), "--resolve"},
-      {with({"--linking", "late"}), "fragment and compute"},
-      {with({"--method", "insertion", "--linking", "compute"}), "insertion has no choice"},
+      {with({"--list-build", "late"}), "fragment and compute"},
+      {with({"--method", "insertion", "--list-build", "compute"}), "insertion has no choice"},
       {with({"--layers", "0"}), "--layers"},
       {with({"--layers", "-1"}), "--layers"},
       {with({"--memory-budget", "0"}), "--memory-budget"},
@@ -256,12 +256,12 @@ TEST(Cli, BothResolvesGiveOnePicture) {
   }
 }
 
-TEST(Cli, BothLinkingsGiveOnePictureButForRounding) {
+TEST(Cli, BothListBuildsGiveOnePictureButForRounding) {
   for (const char* samples : {"1", "4"}) {
-    const Drawn fragment = draw({"--samples", samples, "--linking", "fragment"});
-    const Drawn compute = draw({"--samples", samples, "--linking", "compute"});
-    EXPECT_EQ(fragment.report.at("linking"), "fragment");
-    EXPECT_EQ(compute.report.at("linking"), "compute");
+    const Drawn fragment = draw({"--samples", samples, "--list-build", "fragment"});
+    const Drawn compute = draw({"--samples", samples, "--list-build", "compute"});
+    EXPECT_EQ(fragment.report.at("list_build"), "fragment");
+    EXPECT_EQ(compute.report.at("list_build"), "compute");
     EXPECT_FALSE(fragment.report.at("passes_ms").contains("link"));
     EXPECT_TRUE(compute.report.at("passes_ms").contains("link"));
     EXPECT_LE(largestDifference(compute.png, fragment.png), samples == std::string("1") ? 3 : 0) << samples;

@@ -9,10 +9,10 @@
 
 #include "../bench/bandwidth.h"
 #include "../bench/runner.h"
+#include "../report/bench_csv.h"
 #include "../report/bench_json.h"
 #include "../report/bench_page.h"
 #include "../report/bench_table.h"
-#include "../report/csv.h"
 #include "../scene/split.h"
 #include "bench_options.h"
 #include "commands.h"

@@ -11,6 +11,7 @@
 
 #include "../bench/matrix.h"
 #include "../compare/comparison.h"
+#include "../methods/methods.h"
 #include "../report/comparison_json.h"
 #include "../report/comparison_page.h"
 #include "../report/comparison_table.h"

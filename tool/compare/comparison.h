@@ -11,7 +11,7 @@
 #include "../bench/matrix.h"
 #include "../bench/measurement.h"
 #include "../image/metrics.h"
-#include "../render/renderer.h"
+#include "../render/still.h"
 
 namespace vitrail::tool {
 

@@ -1,11 +1,9 @@
 #include "pipeline.h"
 
 #include <array>
-#include <cstddef>
 
 #include <fmt/format.h>
 
-#include "../scene/scene.h"
 #include "vk.h"
 
 namespace vitrail::tool {
@@ -33,31 +31,23 @@ VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderM
 constexpr VkColorComponentFlags kAllChannels =
     VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
 
-constexpr VkVertexInputBindingDescription kVertexBinding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
-constexpr std::array<VkVertexInputAttributeDescription, 6> kVertexAttributes{{
-    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
-    {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
-    {2, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
-    {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texCoord0)},
-    {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texCoord1)},
-    {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, color)},
-}};
-
-VkPipelineVertexInputStateCreateInfo vertexInput(bool surface) {
+// `binding` outlives the result.
+VkPipelineVertexInputStateCreateInfo vertexInput(const VertexLayout& vertices,
+                                                 const VkVertexInputBindingDescription& binding) {
   auto info = vkStruct<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
-  if (!surface) return info;
+  if (vertices.attributes.empty()) return info;
   info.vertexBindingDescriptionCount = 1;
-  info.pVertexBindingDescriptions = &kVertexBinding;
-  info.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(kVertexAttributes.size());
-  info.pVertexAttributeDescriptions = kVertexAttributes.data();
+  info.pVertexBindingDescriptions = &binding;
+  info.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(vertices.attributes.size());
+  info.pVertexAttributeDescriptions = vertices.attributes.data();
   return info;
 }
 
-VkPipelineDynamicStateCreateInfo dynamicState(bool surface) {
+VkPipelineDynamicStateCreateInfo dynamicState(const VertexLayout& vertices) {
   static constexpr std::array<VkDynamicState, 4> kStates{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
                                                          VK_DYNAMIC_STATE_FRONT_FACE, VK_DYNAMIC_STATE_CULL_MODE};
   auto info = vkStruct<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
-  info.dynamicStateCount = surface ? 4 : 2;
+  info.dynamicStateCount = vertices.attributes.empty() ? 2 : 4;
   info.pDynamicStates = kStates.data();
   return info;
 }
@@ -196,7 +186,8 @@ Unique<VkPipeline> makeGraphicsPipeline(Gpu& gpu, const GraphicsPipelineInfo& in
                                                         stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment.get())};
   stages[0].pSpecializationInfo = stages[1].pSpecializationInfo = constants.get();
 
-  const auto vertices = vertexInput(info.surface);
+  const VkVertexInputBindingDescription binding{0, info.vertices.stride, VK_VERTEX_INPUT_RATE_VERTEX};
+  const auto vertices = vertexInput(info.vertices, binding);
   auto assembly =
       vkStruct<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
   assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
@@ -220,7 +211,7 @@ Unique<VkPipeline> makeGraphicsPipeline(Gpu& gpu, const GraphicsPipelineInfo& in
   auto blend = vkStruct<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
   blend.attachmentCount = static_cast<std::uint32_t>(blending.size());
   blend.pAttachments = blending.data();
-  const auto dynamic = dynamicState(info.surface);
+  const auto dynamic = dynamicState(info.vertices);
 
   auto create = vkStruct<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
   create.pNext = &rendering;

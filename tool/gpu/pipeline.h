@@ -43,13 +43,19 @@ struct BlendFactors {
 };
 VkPipelineColorBlendAttachmentState blendWith(const BlendFactors& color, const BlendFactors& alpha);
 
+// What vertex shaders read of one buffer, bound as number 0.
+struct VertexLayout {
+  std::uint32_t stride = 0;
+  std::span<const VkVertexInputAttributeDescription> attributes; // none: they read nothing
+};
+
 // A graphics pipeline. Viewport and scissor are dynamic.
 struct GraphicsPipelineInfo {
   VkPipelineLayout layout = VK_NULL_HANDLE;
   std::span<const std::uint32_t> vertexShader;
   std::span<const std::uint32_t> fragmentShader;
   PipelineConstants constants; // of both shaders
-  bool surface = false;        // reads Vertex data; front face and cull mode are dynamic
+  VertexLayout vertices;       // with them front face and cull mode are dynamic
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   std::uint32_t sampleMask = UINT32_MAX; // samples that are drawn, one bit each
   bool shadeEverySample = false;         // at the place of each, where the device has GpuFeatures::sampleRateShading

@@ -5,72 +5,53 @@
 #include <utility>
 
 #include "../bench/matrix.h"
+#include "../methods/methods.h"
+#include "json.h"
+#include "names.h"
 #include "recommendation.h"
 
 namespace vitrail::tool {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-template <class Value>
-Json orNull(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
+// What measured and skipped settings begin with. `chosen` has the choices that were made, or taken.
+Json settingOf(const MethodOptions& options, const FrameStats& chosen) {
+  return {{names::kMethod, options.name},
+          {"setting", describeWithoutSamples(options)},
+          {names::kNodes, orNull(chosen.nodes)},
+          {names::kSamples, options.samples},
+          {names::kResolve, orNull(chosen.resolve)},
+          {names::kListBuild, orNull(chosen.listBuild)},
+          {names::kMaxLayers, limitOrNull(options.maxLayers)},
+          {names::kPasses, limitOrNull(options.passes)}};
 }
-
-Json orNull(std::string_view name) { return name.empty() ? Json(nullptr) : Json(name); }
 
 Json toJson(const Measurement& measured) {
   const FrameReport& frame = measured.report;
-  Json passes = Json::object();
-  for (const auto& [name, spread] : measured.passes) passes[name] = toJson(spread);
-  Json json = {{"method", measured.options.name},
-               {"setting", describeWithoutSamples(measured.options)},
-               {"nodes", orNull(frame.nodes)},
-               {"samples", frame.samples},
-               {"resolve", orNull(frame.resolve)},
-               {"linking", orNull(frame.linking)},
-               {"max_layers", limitOrNull(measured.options.maxLayers)},
-               {"passes", limitOrNull(measured.options.passes)},
-               {"exact", frame.exact},
-               {"fragments", nullptr},
-               {"layers", nullptr},
-               {"nodes_bytes", nullptr},
-               {"memory_bytes", frame.totalBytes},
-               {"tiles", frame.tiles},
-               {"passes_ms", std::move(passes)},
-               {"cost_ms", toJson(measured.costMs)},
-               {"frame_ms", toJson(measured.frameMs)},
-               {"cost_ratio", measured.costRatio},
-               {"frame_ratio", measured.frameRatio},
-               {"fragments_per_second", orNull(measured.fragmentsPerSecond)},
-               {"floor_bytes", orNull(measured.floorBytes)},
-               {"floor_ms", orNull(measured.floorMs)},
-               {"bandwidth_share", orNull(measured.bandwidthShare)}};
-  if (frame.counted) {
-    json["fragments"] = {{"requested", frame.fragmentsRequested},
-                         {"stored", frame.fragmentsStored},
-                         {"missing", frame.fragmentsMissing}};
-    json["layers"] = {{"max", frame.layersMax}, {"mean", frame.layersMean}};
-    json["nodes_bytes"] = frame.nodesBytes;
-  }
+  Json json = settingOf(measured.options, frame);
+  json[names::kExact] = frame.exact;
+  json[names::kFragments] = fragmentsOf(frame);
+  json[names::kLayers] = layersOf(frame);
+  json[names::kNodesBytes] = frame.counted ? Json(frame.nodesBytes) : Json(nullptr);
+  json[names::kMemoryBytes] = frame.totalBytes;
+  json[names::kTiles] = frame.tiles;
+  addCosts(json, measured);
+  json["fragments_per_second"] = orNull(measured.fragmentsPerSecond);
+  json["floor_bytes"] = orNull(measured.floorBytes);
+  json["floor_ms"] = orNull(measured.floorMs);
+  json["bandwidth_share"] = orNull(measured.bandwidthShare);
   return json;
 }
 
 Json toJson(const SkippedSetting& skipped) {
   const MethodOptions& options = skipped.options;
-  const bool hasNodes = traitsOf(options.name).nodes;
-  const bool chosen = options.resolve != VITRAIL_RESOLVE_DEFAULT;
-  const bool chosenLinking = options.linking != VITRAIL_LINKING_DEFAULT;
-  return {{"method", options.name},
-          {"setting", describeWithoutSamples(options)},
-          {"nodes", hasNodes ? Json(nameOf(options.nodes)) : Json(nullptr)},
-          {"samples", options.samples},
-          {"resolve", chosen ? Json(nameOf(options.resolve)) : Json(nullptr)},
-          {"linking", chosenLinking ? Json(nameOf(options.linking)) : Json(nullptr)},
-          {"max_layers", limitOrNull(options.maxLayers)},
-          {"passes", limitOrNull(options.passes)},
-          {"reason", skipped.reason}};
+  FrameStats chosen;
+  if (traitsOf(options.name).takes(kTakesNodes)) chosen.nodes = nameOf(options.nodes);
+  if (options.resolve != VITRAIL_RESOLVE_DEFAULT) chosen.resolve = nameOf(options.resolve);
+  if (options.listBuild != VITRAIL_LINKING_DEFAULT) chosen.listBuild = nameOf(options.listBuild);
+  Json json = settingOf(options, chosen);
+  json["reason"] = skipped.reason;
+  return json;
 }
 
 Json toJson(const SceneMeasurement& scene) {
@@ -79,14 +60,14 @@ Json toJson(const SceneMeasurement& scene) {
   Json skipped = Json::array();
   for (const SkippedSetting& setting : scene.skipped) skipped.push_back(toJson(setting));
   const bool swept = scene.sweep.has_value();
-  return {{"scene", scene.name},
-          {"count", orNull(scene.count)},
-          {"sweep", swept ? Json(nameOf(scene.sweep->kind)) : Json(nullptr)},
-          {"step", swept ? Json(scene.sweep->value) : Json(nullptr)},
+  return {{names::kScene, scene.name},
+          {names::kCount, orNull(scene.count)},
+          {names::kSweep, swept ? Json(nameOf(scene.sweep->kind)) : Json(nullptr)},
+          {names::kStep, swept ? Json(scene.sweep->value) : Json(nullptr)},
           {"label", swept ? Json(scene.sweep->label) : Json(nullptr)},
-          {"width", scene.width},
-          {"height", scene.height},
-          {"triangles", scene.triangles},
+          {names::kWidth, scene.width},
+          {names::kHeight, scene.height},
+          {names::kTriangles, scene.triangles},
           {"measurements", std::move(measurements)},
           {"skipped", std::move(skipped)}};
 }
@@ -102,38 +83,25 @@ std::optional<VkExtent2D> commonSize(const BenchReport& report) {
 
 } // namespace
 
-nlohmann::ordered_json limitOrNull(std::uint32_t limit) { return limit > 0 ? Json(limit) : Json(nullptr); }
-
-nlohmann::ordered_json toJson(const Spread& spread) {
-  return {{"median", spread.median},
-          {"lower_quartile", spread.lowerQuartile},
-          {"upper_quartile", spread.upperQuartile},
-          {"min", spread.min},
-          {"max", spread.max}};
-}
-
 std::string toJson(const BenchReport& report) {
   Json scenes = Json::array();
   for (const SceneMeasurement& scene : report.scenes) scenes.push_back(toJson(scene));
   Json recommendation = Json::array();
   for (const Advice& advice : recommend(report)) {
-    recommendation.push_back({{"sweep", advice.sweep ? Json(nameOf(*advice.sweep)) : Json(nullptr)},
+    recommendation.push_back({{names::kSweep, advice.sweep ? Json(nameOf(*advice.sweep)) : Json(nullptr)},
                               {"need", advice.need},
                               {"text", advice.text}});
   }
   const std::optional<VkExtent2D> size = commonSize(report);
-  const Json json = {{"device", report.device},
-                     {"driver", report.driver},
-                     {"api", report.api},
-                     {"cpu", report.isCpu},
-                     {"width", size ? Json(size->width) : Json(nullptr)},
-                     {"height", size ? Json(size->height) : Json(nullptr)},
-                     {"repeats", report.repeats},
-                     {"warmups", report.warmups},
-                     {"bandwidth_gb_s", report.bytesPerSecond * 1e-9},
-                     {"recommendation", std::move(recommendation)},
-                     {"scenes", std::move(scenes)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  Json json;
+  addMachine(json, report);
+  json[names::kWidth] = size ? Json(size->width) : Json(nullptr);
+  json[names::kHeight] = size ? Json(size->height) : Json(nullptr);
+  addRounds(json, report.repeats, report.warmups);
+  json["bandwidth_gb_s"] = report.bytesPerSecond * 1e-9;
+  json["recommendation"] = std::move(recommendation);
+  json["scenes"] = std::move(scenes);
+  return documentOf(json);
 }
 
 } // namespace vitrail::tool

@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "../bench/matrix.h"
+#include "../bench/short_count.h"
 #include "cells.h"
 #include "recommendation.h"
 
@@ -36,13 +37,15 @@ std::string percent(double fraction) {
 
 std::string rate(double perSecond) { return fmt::format("{:.{}f}", perSecond * 1e-6, perSecond < 1e8 ? 1 : 0); }
 
-// What was measured: the method, its nodes and its resolve, where it has such, and the linking if it was chosen.
+// What was measured: the method, its nodes and its resolve, where it has such, and who builds lists if that was chosen.
 std::string settingOf(const Measurement& measured) {
   std::string text = measured.options.name;
   for (const std::string& part : {measured.report.nodes, measured.report.resolve}) {
     if (!part.empty()) text.append(", ").append(part);
   }
-  if (measured.options.linking != VITRAIL_LINKING_DEFAULT) text.append(", linking ").append(measured.report.linking);
+  if (measured.options.listBuild != VITRAIL_LINKING_DEFAULT) {
+    text.append(", list build ").append(measured.report.listBuild);
+  }
   return text;
 }
 
@@ -129,7 +132,7 @@ std::string sceneTable(const SceneMeasurement& scene) {
       fmt::format(kBenchRow, "method", columns, "AA", "cost", "IQR", "x", "frame", "x", "M/s", "floor", "bw", "memory");
   for (const Measurement& measured : scene.measurements) table += rowOf(measured, columns);
   table += " passes\n";
-  for (const Measurement& measured : scene.measurements) table += passesOf(labelOf(measured, columns), measured);
+  for (const Measurement& measured : scene.measurements) table += passTimesOf(labelOf(measured, columns), measured);
   for (const Measurement& measured : scene.measurements) table += noteOn(measured);
   return table + skippedOf(scene);
 }

@@ -14,14 +14,7 @@ std::string mebibytes(std::uint64_t bytes) {
   return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1024.0 * 1024.0));
 }
 
-std::string shortCount(std::uint64_t count) {
-  const auto value = static_cast<double>(count);
-  if (count >= 999'500) return fmt::format("{:.1f} M", value / 1e6);
-  if (count >= 1'000) return fmt::format("{:.{}f} k", value / 1e3, count < 9'950 ? 1 : 0);
-  return fmt::format("{}", count);
-}
-
-std::string passesOf(const std::string& label, const Measurement& measured) {
+std::string passTimesOf(const std::string& label, const Measurement& measured) {
   std::string text;
   std::string line = label;
   const std::size_t indent = line.size();

@@ -24,10 +24,7 @@ std::string ratio(double value);
 // "12.3 MiB"
 std::string mebibytes(std::uint64_t bytes);
 
-// A count in a few characters: "950", "33 k", "2.1 M".
-std::string shortCount(std::uint64_t count);
-
 // The passes of a measurement and their medians, behind `label`, on as many lines as they take.
-std::string passesOf(const std::string& label, const Measurement& measured);
+std::string passTimesOf(const std::string& label, const Measurement& measured);
 
 } // namespace vitrail::tool

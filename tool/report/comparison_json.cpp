@@ -1,29 +1,24 @@
 #include "comparison_json.h"
 
-#include "bench_json.h"
-#include "metrics_json.h"
+#include <utility>
+
+#include "json.h"
+#include "names.h"
 
 namespace vitrail::tool {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json toJson(const ComparedMethod& method) {
   const Measurement& measured = method.measurement;
-  Json passes = Json::object();
-  for (const auto& [name, spread] : measured.passes) passes[name] = toJson(spread);
-  return {{"method", measured.options.name},
-          {"max_layers", limitOrNull(measured.options.maxLayers)},
-          {"passes", limitOrNull(measured.options.passes)},
-          {"exact", measured.report.exact},
-          {"metrics", toJson(method.difference.metrics)},
-          {"passes_ms", std::move(passes)},
-          {"cost_ms", toJson(measured.costMs)},
-          {"frame_ms", toJson(measured.frameMs)},
-          {"cost_ratio", measured.costRatio},
-          {"frame_ratio", measured.frameRatio},
-          {"memory_bytes", measured.report.totalBytes}};
+  Json json = {{names::kMethod, measured.options.name},
+               {names::kMaxLayers, limitOrNull(measured.options.maxLayers)},
+               {names::kPasses, limitOrNull(measured.options.passes)},
+               {names::kExact, measured.report.exact},
+               {"metrics", metricsOf(method.difference.metrics)}};
+  addCosts(json, measured);
+  json[names::kMemoryBytes] = measured.report.totalBytes;
+  return json;
 }
 
 } // namespace
@@ -33,31 +28,27 @@ std::string toJson(const Comparison& comparison) {
   for (const ComparedMethod& method : comparison.methods) methods.push_back(toJson(method));
   Json refused = Json::array();
   for (const RefusedMethod& method : comparison.refused) {
-    refused.push_back({{"method", method.name}, {"reason", method.reason}});
+    refused.push_back({{names::kMethod, method.name}, {"reason", method.reason}});
   }
   const FrameReport& exact = comparison.exactFrame;
-  const Json json = {{"device", comparison.device},
-                     {"driver", comparison.driver},
-                     {"api", comparison.api},
-                     {"cpu", comparison.isCpu},
-                     {"scene", comparison.scene},
-                     {"count", comparison.count ? Json(*comparison.count) : Json(nullptr)},
-                     {"triangles", comparison.triangles},
-                     {"width", comparison.width},
-                     {"height", comparison.height},
-                     {"samples", comparison.samples},
-                     {"repeats", comparison.repeats},
-                     {"warmups", comparison.warmups},
-                     {"exact_picture",
-                      {{"method", exact.method},
-                       {"nodes", exact.nodes},
-                       {"exact", exact.exact},
-                       {"fragments", exact.fragmentsRequested},
-                       {"layers", {{"max", exact.layersMax}, {"mean", exact.layersMean}}}}},
-                     {"layers_max", comparison.layersMax},
-                     {"methods", std::move(methods)},
-                     {"refused", std::move(refused)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  Json json;
+  addMachine(json, comparison);
+  json[names::kScene] = comparison.scene;
+  json[names::kCount] = orNull(comparison.count);
+  json[names::kTriangles] = comparison.triangles;
+  json[names::kWidth] = comparison.width;
+  json[names::kHeight] = comparison.height;
+  json[names::kSamples] = comparison.samples;
+  addRounds(json, comparison.repeats, comparison.warmups);
+  json["exact_picture"] = {{names::kMethod, exact.method},
+                           {names::kNodes, exact.nodes},
+                           {names::kExact, exact.exact},
+                           {names::kFragments, exact.fragmentsRequested},
+                           {names::kLayers, layersOf(exact)}};
+  json[names::kLayersMax] = comparison.layersMax;
+  json["methods"] = std::move(methods);
+  json["refused"] = std::move(refused);
+  return documentOf(json);
 }
 
 } // namespace vitrail::tool

@@ -7,8 +7,7 @@
 
 namespace vitrail::tool {
 
-// The JSON document of --json and report.json, which is an interface: names and units stay. docs/compare.md lists them.
-// What does not apply, or could not be measured, is null.
+// The JSON document of `vitrail compare --json` and report.json. docs/compare.md lists what is in it.
 std::string toJson(const Comparison& comparison);
 
 } // namespace vitrail::tool

@@ -49,7 +49,7 @@ std::string toTable(const Comparison& comparison) {
   for (const ComparedMethod& method : comparison.methods) table += rowOf(method);
   table += "\n passes, ms\n";
   for (const ComparedMethod& method : comparison.methods) {
-    table += passesOf(fmt::format(" {:<22}", method.measurement.options.name), method.measurement);
+    table += passTimesOf(fmt::format(" {:<22}", method.measurement.options.name), method.measurement);
   }
   for (const RefusedMethod& refused : comparison.refused) {
     table += fmt::format(" left out {}: {}\n", refused.name, refused.reason);

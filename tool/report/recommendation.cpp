@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "../bench/matrix.h"
+#include "../methods/methods.h"
 
 namespace vitrail::tool {
 

@@ -7,12 +7,18 @@
 
 namespace vitrail::tool {
 
-struct PictureImagesInfo {
+// What who draws transparent surfaces asks of the images.
+struct ImageNeeds {
+  // Several samples: surfaces are blended into the multisampled image, which is box-filtered; else the multisampled
+  // colour is sampled, and the picture of one sample written.
+  bool perSample = false;
+  bool stencil = false;             // depth has a stencil beside it
+  VkImageUsageFlags depthUsage = 0; // of depth beside being tested and written: sampled, copied
+};
+
+struct PictureImagesInfo : ImageNeeds {
   VkExtent2D extent{};
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
-  bool perSample = false; // several samples: surfaces are blended into the multisampled image, which is box-filtered
-  bool stencil = false;   // depth has a stencil beside it
-  VkImageUsageFlags depthUsage = 0; // of depth beside being tested and written: sampled, copied
 };
 
 class PictureImages {

@@ -1,6 +1,7 @@
 #include "surfaces.h"
 
 #include <array>
+#include <cstddef>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -10,6 +11,15 @@
 namespace vitrail::tool {
 
 namespace {
+
+constexpr std::array<VkVertexInputAttributeDescription, 6> kVertexAttributes{{
+    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
+    {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
+    {2, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
+    {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texCoord0)},
+    {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texCoord1)},
+    {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, color)},
+}};
 
 Unique<VkPipelineLayout> makeLayout(const Surfaces& surfaces, const SurfaceProgram& program) {
   std::vector<VkDescriptorSetLayout> sets{surfaces.frameLayout(), surfaces.scene().textureLayout()};
@@ -26,7 +36,7 @@ SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const Gpu
     if (pipelines_.contains(draw.features)) continue;
     GraphicsPipelineInfo info;
     info.vertexShader = shaders::surface_vert;
-    info.surface = true;
+    info.vertices = {sizeof(Vertex), kVertexAttributes};
     info.depthTest = VK_COMPARE_OP_GREATER;
     describe(draw.features, info);
     info.layout = layout_.get();

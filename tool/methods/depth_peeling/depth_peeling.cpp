@@ -1,10 +1,25 @@
-#include "depth_peeling.h"
-
+// Depth peeling, front to back: Everitt, "Interactive Order-Independent Transparency" (NVIDIA 2001). Each pass draws
+// all surfaces, leaves out those that earlier passes took, and keeps the nearest of the rest by the depth test; it is
+// then blended under the layers before it. As many passes as the deepest pixel has surfaces, which is measured
+// (depth_complexity.h), or fewer: then the nearest are drawn and the rest is missing, which the report says.
+//
+// Surfaces of one pixel at equal depths, which peeling by depth alone takes for one, are told apart by the number of
+// their triangle: none is lost.
+//
+// Cost: n draws of the surfaces for n layers in the deepest pixel, as many times all fragments through the depth test;
+// what has textures is shaded in each, since neighbours take derivatives. Seven images of the picture's size, 68 bytes
+// a pixel, however many layers there are. One sample a pixel.
+//
+// What it gets wrong: of surfaces at equal depths the one that is drawn first counts as nearer, so there, and only
+// there, the order of submission shows. Each layer is kept in 16-bit floats.
 #include <algorithm>
-
-#include <fmt/format.h>
+#include <memory>
 
 #include "../../gpu/accesses.h"
+#include "../../gpu/pixel_pass.h"
+#include "../methods.h"
+#include "../shared/depth_complexity.h"
+#include "../shared/device_needs.h"
 #include "../shared/peeling_shared.h"
 #include "shaders/depth_peeling.frag.h"
 #include "shaders/depth_peeling_blend.comp.h"
@@ -19,12 +34,8 @@ constexpr VkFormat kLayerDepthFormat = VK_FORMAT_D32_SFLOAT;
 constexpr std::uint64_t kPixelBytes = 4 * 8 + 2 * 16 + 4;
 
 SurfacePipelines makePeel(const MethodHost& host, VkDescriptorSetLayout set) {
-  if (!host.gpu.features().primitiveNumbers) {
-    throw GpuError(
-        fmt::format("{} does not number triangles for fragment shaders, which the method depth-peeling "
-                    "needs: use reverse-depth-peeling",
-                    host.gpu.properties().deviceName));
-  }
+  requireOf(host.gpu, host.gpu.features().primitiveNumbers, "does not number triangles for fragment shaders",
+            "depth-peeling", "reverse-depth-peeling");
   const auto describe = [](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     info.fragmentShader = shaders::depth_peeling_frag;
     info.colors = {{PictureImages::kColorFormat, {}}, {PictureImages::kColorFormat, {}}, {kTakenFormat, {}}};
@@ -37,7 +48,37 @@ SurfacePipelines makePeel(const MethodHost& host, VkDescriptorSetLayout set) {
           describe};
 }
 
-} // namespace
+class DepthPeeling final : public Method {
+ public:
+  DepthPeeling(const MethodHost& host, const MethodOptions& options);
+
+  ImageNeeds needs() const override { return DepthComplexity::kNeeds; }
+  void setTarget(const MethodTarget& target) override;
+  void releaseTarget() override;
+  void draw(Frame& frame) override;
+  FrameStats stats() const override;
+
+ private:
+  void clear(Frame& frame);
+  void peel(Frame& frame);
+  void blend(Frame& frame, std::uint32_t step);
+
+  Gpu& gpu_;
+  std::uint32_t layers_; // 0: all
+  DepthComplexity complexity_;
+  SingleSet peelSet_;
+  SingleSet blendSet_;
+  SurfacePipelines surfaces_;
+  PixelPass blend_;
+  VkExtent2D extent_{};
+  UsedImage depth_; // of the layer that a pass takes
+  UsedImage color_;
+  UsedImage opacity_;
+  UsedImage layerTaken_;
+  UsedImage frontColor_; // of the layers before it
+  UsedImage frontThrough_;
+  UsedImage taken_;
+};
 
 DepthPeeling::DepthPeeling(const MethodHost& host, const MethodOptions& options)
     : gpu_(host.gpu),
@@ -156,10 +197,16 @@ void DepthPeeling::blend(Frame& frame, std::uint32_t step) {
   blend_.cmdRun(commands, extent_, &step);
 }
 
-MethodStats DepthPeeling::stats() const {
-  MethodStats stats = complexity_.stats();
+FrameStats DepthPeeling::stats() const {
+  FrameStats stats = complexity_.stats();
   stats.totalBytes += kPixelBytes * extent_.width * extent_.height;
   return stats;
+}
+
+} // namespace
+
+std::unique_ptr<Method> makeDepthPeeling(const MethodHost& host, const MethodOptions& options) {
+  return std::make_unique<DepthPeeling>(host, options);
 }
 
 } // namespace vitrail::tool

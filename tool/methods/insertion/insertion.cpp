@@ -1,8 +1,21 @@
-#include "insertion.h"
-
+// The way of most published samples of per-pixel linked lists, as a baseline for the library's resolve: one thread a
+// pixel copies the list into an array, sorts it by insertion, and blends it. All pixels pay for an array that is as
+// large as the longest list that is to be right, and what a list has beyond it is dropped: those frames are reported as
+// not exact, with the fragments that are missing. A counter that only rises hands out the nodes, which is wrong from
+// 2^32 fragments in a frame. One sample a pixel, no tiles.
 #include <algorithm>
+#include <cstdint>
+#include <memory>
 
 #include "../../gpu/accesses.h"
+#include "../../gpu/counters.h"
+#include "../../gpu/descriptors.h"
+#include "../../gpu/pixel_pass.h"
+#include "../../gpu/used_image.h"
+#include "../methods.h"
+#include "../shared/fragment_pool.h"
+#include "../shared/storing_surfaces.h"
+#include "insertion_shared.h"
 #include "shaders/insertion_collect.frag.h"
 #include "shaders/insertion_resolve.comp.h"
 
@@ -12,17 +25,30 @@ namespace {
 
 constexpr VkShaderStageFlags kInsertionStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
 
-SurfacePipelines makeCollect(const MethodHost& host, VkDescriptorSetLayout set) {
-  return {host.surfaces,
-          host.surfaces.scene().transparentDraws(),
-          {.set = set, .name = "insertion collect"},
-          [](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
-            info.fragmentShader = shaders::insertion_collect_frag;
-            info.depthFormat = PictureImages::depthFormat(false);
-          }};
-}
+class Insertion final : public Method {
+ public:
+  explicit Insertion(const MethodHost& host);
 
-} // namespace
+  void setTarget(const MethodTarget& target) override;
+  void releaseTarget() override;
+  void draw(Frame& frame) override;
+  bool finish() override;
+  FrameStats stats() const override;
+
+ private:
+  void clear(Frame& frame);
+  void collect(Frame& frame);
+  void sortAndBlend(Frame& frame);
+
+  Gpu& gpu_;
+  SingleSet set_; // of both passes
+  SurfacePipelines surfaces_;
+  PixelPass resolve_;
+  Counters control_; // shaders::InsertionControl
+  VkExtent2D extent_{};
+  UsedImage heads_;
+  FragmentPool nodes_;
+};
 
 Insertion::Insertion(const MethodHost& host)
     : gpu_(host.gpu),
@@ -32,7 +58,8 @@ Insertion::Insertion(const MethodHost& host)
             {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kInsertionStages}, // nodes
             {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kInsertionStages}}, // colour, of the resolve
            "insertion"),
-      surfaces_(makeCollect(host, set_.layout())),
+      surfaces_(makeStoringSurfaces(host, {.set = set_.layout(), .name = "insertion collect"},
+                                    shaders::insertion_collect_frag)),
       resolve_(gpu_, set_, {.shader = shaders::insertion_resolve_comp, .name = "insertion resolve"}),
       control_(gpu_, sizeof(shaders::InsertionControl), "insertion control"),
       nodes_(gpu_, set_, {.method = "insertion", .fragmentBytes = sizeof(shaders::InsertionNode), .binding = 2}) {
@@ -78,10 +105,7 @@ void Insertion::clear(Frame& frame) {
 }
 
 void Insertion::collect(Frame& frame) {
-  PictureImages& images = frame.images();
-  cmdBeginScope(frame.commands(), images.transparentScope({{0, 0}, images.extent()}));
-  frame.drawSurfaces(surfaces_, set_.set());
-  vkCmdEndRendering(frame.commands());
+  cmdDrawStoring(frame, surfaces_, set_.set());
   // The collect pass wrote nodes and counters -> the resolve reads them, and counts.
   cmdMemoryBarrier(frame.commands(), kFragmentWrite, kComputeReadWrite);
   // It wrote heads -> the resolve reads them.
@@ -97,11 +121,13 @@ void Insertion::sortAndBlend(Frame& frame) {
 
 bool Insertion::finish() { return nodes_.fits(control_.read<shaders::InsertionControl>().taken); }
 
-MethodStats Insertion::stats() const {
+FrameStats Insertion::stats() const {
   const auto control = control_.read<shaders::InsertionControl>();
   std::uint64_t dropped = 0;
   std::uint64_t covered = 0;
-  MethodStats stats;
+  FrameStats stats;
+  stats.counted = true;
+  stats.resolve = "compute";
   for (const shaders::InsertionCounts& counts : control.counts) {
     covered += counts.coveredPixels;
     dropped += counts.dropped;
@@ -118,6 +144,12 @@ MethodStats Insertion::stats() const {
   stats.headsBytes = std::uint64_t{extent_.width} * extent_.height * sizeof(std::uint32_t);
   stats.totalBytes = stats.nodesBytes + stats.headsBytes + control_.bytes();
   return stats;
+}
+
+} // namespace
+
+std::unique_ptr<Method> makeInsertion(const MethodHost& host, const MethodOptions& /*options*/) {
+  return std::make_unique<Insertion>(host);
 }
 
 } // namespace vitrail::tool

@@ -1,30 +1,42 @@
-#include "layer_count.h"
-
+// Counts the transparent fragments of every pixel that opaque surfaces do not hide: the depth complexity, and what
+// linked-list stores with hdr nodes. No method to draw with: its picture is the opaque scene, and the counts are
+// FrameStats::pixelLayers. Costs one atomic addition a fragment and four bytes a pixel. One sample a pixel.
 #include <algorithm>
+#include <memory>
 
 #include "../../gpu/accesses.h"
+#include "../../gpu/descriptors.h"
+#include "../../gpu/used_image.h"
+#include "../methods.h"
+#include "../shared/storing_surfaces.h"
 #include "shaders/layer_count.frag.h"
 
 namespace vitrail::tool {
 
 namespace {
 
-SurfacePipelines makeSurfaces(const MethodHost& host, VkDescriptorSetLayout set) {
-  return {host.surfaces,
-          host.surfaces.scene().transparentDraws(),
-          {.set = set, .name = "layer count"},
-          [](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
-            info.fragmentShader = shaders::layer_count_frag;
-            info.depthFormat = PictureImages::depthFormat(false);
-          }};
-}
+class LayerCount final : public Method {
+ public:
+  explicit LayerCount(const MethodHost& host);
 
-} // namespace
+  void setTarget(const MethodTarget& target) override;
+  void releaseTarget() override;
+  void draw(Frame& frame) override;
+  FrameStats stats() const override;
+
+ private:
+  Gpu& gpu_;
+  SingleSet set_;
+  SurfacePipelines surfaces_;
+  VkExtent2D extent_{};
+  UsedImage counts_;
+  GpuBuffer readback_; // a copy of them
+};
 
 LayerCount::LayerCount(const MethodHost& host)
     : gpu_(host.gpu),
       set_(gpu_, {{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_FRAGMENT_BIT}}, "layer count"),
-      surfaces_(makeSurfaces(host, set_.layout())) {}
+      surfaces_(makeStoringSurfaces(host, {.set = set_.layout(), .name = "layer count"}, shaders::layer_count_frag)) {}
 
 void LayerCount::setTarget(const MethodTarget& target) {
   extent_ = target.extent;
@@ -49,10 +61,7 @@ void LayerCount::draw(Frame& frame) {
   counts_.cmdClear(commands, {});
   // The clear -> the surfaces add.
   counts_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kFragmentReadWrite);
-  PictureImages& images = frame.images();
-  cmdBeginScope(commands, images.transparentScope({{0, 0}, images.extent()}));
-  frame.drawSurfaces(surfaces_, set_.set());
-  vkCmdEndRendering(commands);
+  cmdDrawStoring(frame, surfaces_, set_.set());
   // The surfaces added -> the copy reads.
   counts_.cmdUse(commands, VK_IMAGE_LAYOUT_GENERAL, kCopyRead);
   VkBufferImageCopy copy{};
@@ -64,8 +73,9 @@ void LayerCount::draw(Frame& frame) {
   frame.endPass("count");
 }
 
-MethodStats LayerCount::stats() const {
-  MethodStats stats;
+FrameStats LayerCount::stats() const {
+  FrameStats stats;
+  stats.counted = true;
   const auto* counts = static_cast<const std::uint32_t*>(readback_.mapped());
   stats.pixelLayers.assign(counts, counts + std::size_t{extent_.width} * extent_.height);
   std::uint64_t covered = 0;
@@ -77,6 +87,12 @@ MethodStats LayerCount::stats() const {
   stats.layersMean = meanLayers(stats.fragmentsRequested, covered);
   stats.totalBytes = readback_.size() * 2;
   return stats;
+}
+
+} // namespace
+
+std::unique_ptr<Method> makeLayerCount(const MethodHost& host, const MethodOptions& /*options*/) {
+  return std::make_unique<LayerCount>(host);
 }
 
 } // namespace vitrail::tool

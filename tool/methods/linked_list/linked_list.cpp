@@ -1,15 +1,24 @@
-#include "linked_list.h"
-
+// Per-pixel linked lists: exact transparency through libvitrail, as any host embeds it.
+//
+// A picture is drawn whole where that fits, into a pool that grows until it does. A picture that does not fit into the
+// memory budget, or by default into what the device can hold, is drawn in tiles.
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <vitrail/vitrail.hpp>
 
+#include "../../gpu/device.h"
 #include "../../gpu/vk.h"
 #include "../../stage/picture_images.h"
+#include "../methods.h"
 #include "shaders/collect.frag.h"
 #include "shaders/collect_address.frag.h"
 #include "shaders/collect_coverage.frag.h"
@@ -60,7 +69,61 @@ bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
          a.opaque == b.opaque && a.depth == b.depth && a.memoryBudget == b.memoryBudget && a.surfaces == b.surfaces;
 }
 
-} // namespace
+class LinkedList final : public Method {
+ public:
+  LinkedList(const MethodHost& host, const MethodOptions& options);
+  ~LinkedList() override;
+
+  ImageNeeds needs() const override { return needs_; }
+  void setTarget(const MethodTarget& target) override;
+  void releaseTarget() override;
+  void draw(Frame& frame) override;
+  bool finish() override;
+  FrameStats stats() const override;
+
+ private:
+  void makeContext();
+  void chooseResolve();
+  void makeSurfaces();
+  VitrailTargetDesc targetDesc() const;
+  bool createTarget(const VitrailTargetDesc& desc);
+  bool createWholeTarget(std::uint32_t nodeCapacity);
+  void planTiles(std::span<const VitrailBounds> bounds);
+  void drawTiles(Frame& frame);
+  void drawArea(Frame& frame, const VkRect2D& area);
+  VitrailStats readStats() const;
+  void grow(std::uint64_t fragments);
+  void add(const VitrailStats& stats);
+  void check(VkResult result, const char* call) const;
+
+  // What pipelines differ in beside the options.
+  struct PipelineKind {
+    VitrailLinking listBuild = VITRAIL_LINKING_DEFAULT;
+    bool depthFromW = false; // collect.frag
+    bool operator==(const PipelineKind&) const = default;
+  };
+
+  Gpu& gpu_;
+  const Surfaces& source_;
+  MethodOptions options_;
+  ImageNeeds needs_;
+  std::string reason_; // what the library last logged
+  Context context_;
+  PipelineKind pipelines_; // of surfaces_
+  std::optional<SurfacePipelines> surfaces_;
+  Target target_;
+  std::uint64_t frame_ = 0;  // of the target: rises with every area
+  TilePlan plan_;            // where inTiles_
+  VitrailTargetDesc made_{}; // what target_ was made for; its pointers are not kept
+  MethodTarget wanted_;
+  std::uint64_t budget_ = 0;   // bytes for a tile
+  bool inTiles_ = false;       // the next picture is
+  bool wasInTiles_ = false;    // the present picture is
+  std::uint64_t expected_ = 0; // the fragments of the last picture, 0 where that is not known
+  std::uint64_t counted_ = 0;  // the target's bytes, as the Gpu counts them
+  FrameStats stats_;           // of the present picture's areas so far
+  std::uint64_t coveredPixels_ = 0;
+};
 
 LinkedList::LinkedList(const MethodHost& host, const MethodOptions& options)
     : gpu_(host.gpu), source_(host.surfaces), options_(options) {
@@ -105,13 +168,13 @@ void LinkedList::makeSurfaces() {
   const bool coverage = options_.samples > 1 && gpu_.features().postDepthCoverage;
   const bool address = gpu_.features().poolByAddress;
   VitrailTargetDesc desc = targetDesc();
-  desc.linking = options_.linking != VITRAIL_LINKING_DEFAULT ? options_.linking : context_.defaultLinking(desc);
+  desc.linking = options_.listBuild != VITRAIL_LINKING_DEFAULT ? options_.listBuild : context_.defaultLinking(desc);
   PipelineKind kind;
-  kind.linking = desc.linking;
+  kind.listBuild = desc.linking;
   // To spare the fragment shaders of GPUs; Mesa's CPU driver takes longer. Where samples are tested in the resolve,
   // depths are compared with those of the depth image.
   const bool isCpu = gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  const bool spares = !isCpu || kind.linking == VITRAIL_LINKING_COMPUTE;
+  const bool spares = !isCpu || kind.listBuild == VITRAIL_LINKING_COMPUTE;
   kind.depthFromW = spares && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
   if (surfaces_ && kind == pipelines_) return;
   pipelines_ = kind;
@@ -144,7 +207,7 @@ VitrailTargetDesc LinkedList::targetDesc() const {
   desc.msaaResolve = options_.msaaResolve;
   desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
   desc.maxLayers = options_.maxLayers;
-  desc.linking = pipelines_.linking;
+  desc.linking = pipelines_.listBuild;
   desc.overflow = VITRAIL_OVERFLOW_SKIP; // the picture is drawn again, with a larger pool or in tiles
   desc.colorFormat = PictureImages::kColorFormat;
   if (needs_.stencil) {
@@ -162,8 +225,8 @@ void LinkedList::setTarget(const MethodTarget& target) {
   makeSurfaces();
   expected_ = 0;
   budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
-  const bool linksAll =
-      pipelines_.linking == VITRAIL_LINKING_FRAGMENT || pixelsOf(target.extent) <= VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE;
+  const bool linksAll = pipelines_.listBuild == VITRAIL_LINKING_FRAGMENT ||
+                        pixelsOf(target.extent) <= VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE;
   inTiles_ = target.memoryBudget.has_value() || !linksAll;
   if (inTiles_) return; // drawTiles() knows how large the tiles are
   const std::uint64_t largest = context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
@@ -239,9 +302,9 @@ void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
   cmdBeginScope(commands, images.transparentScope(area));
   frame.drawSurfaces(*surfaces_, target_.descriptorSet());
   vkCmdEndRendering(commands);
-  if (pipelines_.linking == VITRAIL_LINKING_COMPUTE) frame.endPass("collect");
+  if (pipelines_.listBuild == VITRAIL_LINKING_COMPUTE) frame.endPass("collect");
   target_.collected(commands);
-  frame.endPass(pipelines_.linking == VITRAIL_LINKING_COMPUTE ? "link" : "collect");
+  frame.endPass(pipelines_.listBuild == VITRAIL_LINKING_COMPUTE ? "build lists" : "collect");
   if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT) {
     cmdBeginScope(commands, images.resolveScope(commands, area));
     target_.resolve(commands);
@@ -312,8 +375,12 @@ void LinkedList::add(const VitrailStats& stats) {
   coveredPixels_ += stats.coveredPixels;
 }
 
-MethodStats LinkedList::stats() const {
-  MethodStats result = stats_;
+FrameStats LinkedList::stats() const {
+  FrameStats result = stats_;
+  result.nodes = nameOf(options_.nodes);
+  result.resolve = nameOf(options_.resolve);
+  result.listBuild = nameOf(pipelines_.listBuild);
+  result.counted = true;
   result.layersMean = meanLayers(stats_.fragmentsStored, coveredPixels_);
   if (!target_) return result; // nothing was drawn
   const VitrailMemory memory = target_.memory();
@@ -328,6 +395,12 @@ void LinkedList::check(VkResult result, const char* call) const {
   const std::string reason = reason_.empty() ? fmt::format("{} failed: {}", call, resultName(result)) : reason_;
   if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY) throw GpuError(reason);
   throw GpuError(reason + (wanted_.memoryBudget ? ": use a larger --memory-budget" : ": use a smaller --size"));
+}
+
+} // namespace
+
+std::unique_ptr<Method> makeLinkedList(const MethodHost& host, const MethodOptions& options) {
+  return std::make_unique<LinkedList>(host, options);
 }
 
 } // namespace vitrail::tool

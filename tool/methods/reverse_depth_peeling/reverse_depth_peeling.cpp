@@ -1,7 +1,23 @@
-#include "reverse_depth_peeling.h"
+// Depth peeling, back to front: Thibieroz, "Robust Order-Independent Transparency via Reverse Depth Peeling in DirectX
+// 10" (ShaderX6, 2008). Each pass finds the farthest depth in front of the layer before it, and blends the surfaces at
+// that depth straight into the picture, by fixed function. As many passes as the deepest pixel has surfaces, which is
+// measured (depth_complexity.h): a picture that stops early lacks its nearest layers, so there is no --layers.
+//
+// All surfaces of a pixel at equal depths are one layer and are blended in one pass: none is lost.
+//
+// Cost: 2 n draws of the surfaces for n layers in the deepest pixel, n of which find depths and shade masked surfaces
+// only; the others shade each fragment once in the frame. Two depth images, 8 bytes a pixel, and no colour but the
+// picture's. One sample a pixel.
+//
+// What it gets wrong: of surfaces at equal depths the one that is drawn last counts as nearer, so there, and only
+// there, the order of submission shows. The picture's 16-bit floats round after each layer.
+#include <array>
+#include <memory>
 
 #include "../../gpu/accesses.h"
 #include "../../stage/surface_shared.h"
+#include "../methods.h"
+#include "../shared/depth_complexity.h"
 #include "../shared/fixed_blending.h"
 #include "shaders/reverse_depth_peeling.frag.h"
 #include "shaders/reverse_depth_peeling_find.frag.h"
@@ -42,7 +58,29 @@ SurfacePipelines makeBlend(const MethodHost& host, const MethodOptions& options,
   return makeBlendedSurfaces(host, options, {.set = set, .name = "reverse-depth-peeling"}, adjust);
 }
 
-} // namespace
+class ReverseDepthPeeling final : public Method {
+ public:
+  ReverseDepthPeeling(const MethodHost& host, const MethodOptions& options);
+
+  ImageNeeds needs() const override { return DepthComplexity::kNeeds; }
+  void setTarget(const MethodTarget& target) override;
+  void releaseTarget() override;
+  void draw(Frame& frame) override;
+  FrameStats stats() const override;
+
+ private:
+  void find(Frame& frame, UsedImage& last, UsedImage& found, VkDescriptorSet lastSet);
+  void blend(Frame& frame, UsedImage& found, VkDescriptorSet lastSet);
+
+  Gpu& gpu_;
+  DepthComplexity complexity_;
+  std::array<SingleSet, 2> sets_; // of each of the depths below, as the last layer's
+  SingleSet opaqueSet_;           // of the opaque scene's, which the first pass begins at
+  SurfacePipelines find_;
+  SurfacePipelines blend_;
+  VkExtent2D extent_{};
+  std::array<UsedImage, 2> depths_; // of the last layer and the present one, in turns
+};
 
 ReverseDepthPeeling::ReverseDepthPeeling(const MethodHost& host, const MethodOptions& options)
     : gpu_(host.gpu),
@@ -109,10 +147,16 @@ void ReverseDepthPeeling::blend(Frame& frame, UsedImage& found, VkDescriptorSet 
   vkCmdEndRendering(frame.commands());
 }
 
-MethodStats ReverseDepthPeeling::stats() const {
-  MethodStats stats = complexity_.stats();
+FrameStats ReverseDepthPeeling::stats() const {
+  FrameStats stats = complexity_.stats();
   stats.totalBytes += std::uint64_t{8} * extent_.width * extent_.height;
   return stats;
+}
+
+} // namespace
+
+std::unique_ptr<Method> makeReverseDepthPeeling(const MethodHost& host, const MethodOptions& options) {
+  return std::make_unique<ReverseDepthPeeling>(host, options);
 }
 
 } // namespace vitrail::tool

@@ -158,9 +158,10 @@ void DepthComplexity::reduce(Frame& frame, std::uint32_t source, std::uint32_t n
   measured_ = parts_.read<shaders::Complexity>();
 }
 
-MethodStats DepthComplexity::stats() const {
+FrameStats DepthComplexity::stats() const {
   const auto wide = [](std::uint32_t low, std::uint32_t high) { return std::uint64_t{high} << 32 | low; };
-  MethodStats stats;
+  FrameStats stats;
+  stats.counted = true;
   stats.fragmentsRequested = wide(measured_.surfacesLow, measured_.surfacesHigh);
   stats.fragmentsStored = wide(measured_.keptLow, measured_.keptHigh);
   stats.fragmentsMissing = stats.fragmentsRequested - stats.fragmentsStored;

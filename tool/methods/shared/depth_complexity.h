@@ -25,7 +25,7 @@ class DepthComplexity {
   DepthComplexity(const MethodHost& host, const std::string& method);
 
   // What its methods need at least.
-  static constexpr MethodNeeds kNeeds{.stencil = true, .depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT};
+  static constexpr ImageNeeds kNeeds{.stencil = true, .depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT};
 
   // How often its methods draw the surfaces in one submission, with a pass for the draw and one for what follows it.
   // They then wait, so that no submission takes too long.
@@ -41,7 +41,7 @@ class DepthComplexity {
 
   std::uint32_t deepest() const { return measured_.deepest; }
   // What was counted; exact where no surface is left out. Bytes are those of the counting.
-  MethodStats stats() const;
+  FrameStats stats() const;
 
  private:
   void makeCounts(VkExtent2D extent);

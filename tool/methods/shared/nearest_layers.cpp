@@ -6,6 +6,7 @@
 #include "layer_memory.h"
 #include "layers_shared.h"
 #include "shaders/layers_resolve.comp.h"
+#include "storing_surfaces.h"
 
 namespace vitrail::tool {
 
@@ -35,12 +36,7 @@ NearestLayers::NearestLayers(const MethodHost& host, const MethodOptions& option
 SurfacePipelines NearestLayers::makeSurfaces(const MethodHost& host, std::span<const std::uint32_t> shader,
                                              const std::string& name) const {
   const SurfaceProgram program{.set = set_.layout(), .constantBytes = sizeof(VkExtent2D), .name = name};
-  const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
-    info.fragmentShader = shader;
-    info.constants = {{1, layers_}};
-    info.depthFormat = PictureImages::depthFormat(false);
-  };
-  return {host.surfaces, host.surfaces.scene().transparentDraws(), program, describe};
+  return makeStoringSurfaces(host, program, shader, {{1, layers_}});
 }
 
 void NearestLayers::setTarget(const MethodTarget& target) {
@@ -81,10 +77,7 @@ void NearestLayers::clear(Frame& frame) const {
 }
 
 void NearestLayers::drawOnce(Frame& frame, const SurfacePipelines& surfaces) const {
-  cmdBeginScope(frame.commands(), frame.images().transparentScope({{0, 0}, extent_}));
-  vkCmdPushConstants(frame.commands(), surfaces.layout(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(extent_), &extent_);
-  frame.drawSurfaces(surfaces, set_.set());
-  vkCmdEndRendering(frame.commands());
+  cmdDrawStoring(frame, surfaces, set_.set(), &extent_);
 }
 
 void NearestLayers::blend(Frame& frame) const {
@@ -96,10 +89,12 @@ void NearestLayers::blend(Frame& frame) const {
   control_.cmdRead(commands, kComputeWrite);
 }
 
-MethodStats NearestLayers::stats() const {
+FrameStats NearestLayers::stats() const {
   const auto control = control_.read<shaders::LayersControl>();
   std::uint64_t covered = 0;
-  MethodStats stats;
+  FrameStats stats;
+  stats.counted = true;
+  stats.resolve = "compute";
   for (const shaders::LayersCounts& counts : control.counts) {
     covered += counts.coveredPixels;
     stats.fragmentsRequested += counts.fragments;

@@ -20,12 +20,10 @@ namespace vitrail::tool {
 
 class NearestLayers : public Method {
  public:
-  MethodNeeds needs() const override { return {}; }
-  std::string_view resolve() const override { return "compute"; }
   void setTarget(const MethodTarget& target) override;
   void releaseTarget() override;
   void draw(Frame& frame) override;
-  MethodStats stats() const override;
+  FrameStats stats() const override;
 
  protected:
   static constexpr std::uint32_t kLayers = 8; // by default

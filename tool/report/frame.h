@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "../render/renderer.h"
+#include "../render/frame_report.h"
 
 namespace vitrail::tool {
 
-// The JSON document of --json, which is an interface: names and units stay.
+// The JSON document of `vitrail render --json`.
 std::string toJson(const FrameReport& report);
 
 // One line without a newline: size, fragments, layers, time, device.
