@@ -96,9 +96,7 @@ TEST_F(LayerCountTest, PanesByHand) {
 }
 
 // No user chooses layer-count, which is not listed.
-TEST(LayerCountOptions, WhatIsNotAskedForIsNotRefused) {
-  EXPECT_NO_THROW(checkPictureOptions(kLayerCount, false));
-}
+TEST(LayerCountOptions, WhatIsNotAskedForIsNotRefused) { EXPECT_NO_THROW(checkPictureOptions(kLayerCount, false)); }
 
 } // namespace
 } // namespace vitrail::tool::test

@@ -10,8 +10,10 @@
 
 #include "bench/matrix.h"
 #include "bench/measurement.h"
+#include "bench/short_count.h"
 #include "bench/statistics.h"
 #include "bench/traffic.h"
+#include "methods/methods.h"
 #include "report/bench_csv.h"
 #include "report/bench_table.h"
 #include "report/cells.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "methods/methods.h"
 #include "report/comparison_table.h"
 
 namespace vitrail::tests {

@@ -2,16 +2,12 @@
 #ifndef VITRAIL_TOOL_PIXEL_PASS_SHARED_H
 #define VITRAIL_TOOL_PIXEL_PASS_SHARED_H
 
-#ifdef __cplusplus
-#include <cstdint>
-namespace vitrail::tool::shaders {
-using uint = std::uint32_t;
-#endif
+#include "gpu/glsl.h"
+
+VITRAIL_SHARED_BEGIN
 
 const uint PIXEL_GROUP_SIDE = 8u; // of a work group, in pixels
 
-#ifdef __cplusplus
-} // namespace vitrail::tool::shaders
-#endif
+VITRAIL_SHARED_END
 
 #endif

@@ -2,15 +2,17 @@
 #ifndef VITRAIL_TOOL_SHARED_H
 #define VITRAIL_TOOL_SHARED_H
 
-#ifdef __cplusplus
-#include <cstdint>
+#include "gpu/glsl.h"
 
+#ifdef __cplusplus
 #include <glm/glm.hpp>
 namespace vitrail::tool::shaders {
-using uint = std::uint32_t;
 using glm::mat4;
 using glm::vec4;
+} // namespace vitrail::tool::shaders
 #endif
+
+VITRAIL_SHARED_BEGIN
 
 const float LARGEST_HALF = 65504.0f; // of 16-bit floats
 
@@ -74,7 +76,8 @@ static_assert(sizeof(FrameData) == 192);
 static_assert(sizeof(DrawData) == 112);
 static_assert(sizeof(SlotData) == 32);
 static_assert(sizeof(MaterialData) == 256);
-} // namespace vitrail::tool::shaders
 #endif
+
+VITRAIL_SHARED_END
 
 #endif

@@ -2,11 +2,9 @@
 #ifndef VITRAIL_TOOL_A_BUFFER_SHARED_H
 #define VITRAIL_TOOL_A_BUFFER_SHARED_H
 
-#ifdef __cplusplus
-#include <cstdint>
-namespace vitrail::tool::shaders {
-using uint = std::uint32_t;
-#endif
+#include "gpu/glsl.h"
+
+VITRAIL_SHARED_BEGIN
 
 const uint A_BUFFER_SCAN_GROUP = 256u; // threads of a scan, which take two numbers each
 const uint A_BUFFER_ROW = 32768u;      // work groups in a row of a scan's dispatch
@@ -46,7 +44,8 @@ static_assert(sizeof(ABufferScan) == 12);
 static_assert(sizeof(ABufferResolve) == 12);
 static_assert(sizeof(ABufferCounts) == 64);
 static_assert(sizeof(ABufferControl) == 64 + 64 * A_BUFFER_SLOTS);
-} // namespace vitrail::tool::shaders
 #endif
+
+VITRAIL_SHARED_END
 
 #endif

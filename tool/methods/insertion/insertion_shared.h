@@ -2,11 +2,9 @@
 #ifndef VITRAIL_TOOL_INSERTION_SHARED_H
 #define VITRAIL_TOOL_INSERTION_SHARED_H
 
-#ifdef __cplusplus
-#include <cstdint>
-namespace vitrail::tool::shaders {
-using uint = std::uint32_t;
-#endif
+#include "gpu/glsl.h"
+
+VITRAIL_SHARED_BEGIN
 
 const uint INSERTION_LAYERS = 128u; // fragments of a pixel that are kept
 const uint INSERTION_SLOTS = 64u;   // so that few work groups count in one place
@@ -38,7 +36,8 @@ struct InsertionControl {
 static_assert(sizeof(InsertionNode) == 12);
 static_assert(sizeof(InsertionCounts) == 64);
 static_assert(sizeof(InsertionControl) == 64 + 64 * INSERTION_SLOTS);
-} // namespace vitrail::tool::shaders
 #endif
+
+VITRAIL_SHARED_END
 
 #endif

@@ -1,7 +1,8 @@
 // Per-pixel linked lists: exact transparency through libvitrail, as any host embeds it.
 //
-// A picture is drawn whole where that fits, into a pool that grows until it does. A picture that does not fit into the
-// memory budget, or by default into what the device can hold, is drawn in tiles.
+// A picture is drawn whole where that fits, into a pool that grows until it does: with a memory budget as the library
+// lets it grow, within the budget. A picture that does not fit into it, or by default into what the device can hold, is
+// drawn in tiles.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -87,12 +88,13 @@ class LinkedList final : public Method {
   void makeSurfaces();
   VitrailTargetDesc targetDesc() const;
   bool createTarget(const VitrailTargetDesc& desc);
-  bool createWholeTarget(std::uint32_t nodeCapacity);
+  bool createWholeTarget(std::uint64_t nodeCapacity);
+  void countMemory();
   void planTiles(std::span<const VitrailBounds> bounds);
   void drawTiles(Frame& frame);
   void drawArea(Frame& frame, const VkRect2D& area);
   VitrailStats readStats() const;
-  void grow(std::uint64_t fragments);
+  bool grow(std::uint64_t fragments);
   void add(const VitrailStats& stats);
   void check(VkResult result, const char* call) const;
 
@@ -225,27 +227,31 @@ void LinkedList::setTarget(const MethodTarget& target) {
   makeSurfaces();
   expected_ = 0;
   budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
-  const bool linksAll = pipelines_.listBuild == VITRAIL_LINKING_FRAGMENT ||
-                        pixelsOf(target.extent) <= VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE;
-  inTiles_ = target.memoryBudget.has_value() || !linksAll;
-  if (inTiles_) return; // drawTiles() knows how large the tiles are
+  const bool buildsAll = pipelines_.listBuild == VITRAIL_LINKING_FRAGMENT ||
+                         pixelsOf(target.extent) <= VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE;
   const std::uint64_t largest = context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
   const std::uint64_t guess = std::min({kNodesPerPixel * pixelsOf(target.extent), kLargestGuess, largest});
-  inTiles_ = !createWholeTarget(target.surfaces ? static_cast<std::uint32_t>(guess) : 0);
+  inTiles_ = !buildsAll || !createWholeTarget(target.surfaces ? guess : 0); // drawTiles() knows how large tiles are
 }
 
-bool LinkedList::createWholeTarget(std::uint32_t nodeCapacity) {
+// A target for the whole picture, whose pool begins with so many nodes; with a budget it follows what pictures need.
+// False where there is no memory for it.
+bool LinkedList::createWholeTarget(std::uint64_t nodeCapacity) {
   VitrailTargetDesc desc = targetDesc();
-  desc.nodeCapacity = nodeCapacity;
+  desc.nodeCapacity = static_cast<std::uint32_t>(nodeCapacity);
+  if (wanted_.memoryBudget) {
+    desc.memoryBudget = *wanted_.memoryBudget;
+    desc.nodeCapacity = std::max(desc.nodeCapacity, 1U); // 0 would be the library's guess
+  }
   return createTarget(desc);
 }
 
 // False where the device has no memory for it.
 bool LinkedList::createTarget(const VitrailTargetDesc& desc) {
-  if (target_ && made_.nodeCapacity == desc.nodeCapacity && made_.areaPixels == desc.areaPixels) {
-    return true; // the images are the same until releaseTarget()
-  }
-  target_ = Target(); // first: the old pool and the new one need not fit together
+  const bool same = made_.nodeCapacity == desc.nodeCapacity && made_.areaPixels == desc.areaPixels &&
+                    made_.memoryBudget == desc.memoryBudget;
+  if (target_ && same) return true; // the images are the same until releaseTarget()
+  target_ = Target();               // first: the old pool and the new one need not fit together
   gpu_.memoryFreed(std::exchange(counted_, 0));
   VitrailTargetDesc full = desc;
   full.views.count = 1;
@@ -257,9 +263,14 @@ bool LinkedList::createTarget(const VitrailTargetDesc& desc) {
   check(result, "vitrailCreateTarget");
   reason_.clear();
   made_ = desc;
-  counted_ = target_.memory().totalBytes;
-  gpu_.memoryAllocated(counted_);
+  countMemory();
   return true;
+}
+
+// What the target holds now, a pool that was replaced included.
+void LinkedList::countMemory() {
+  gpu_.memoryFreed(std::exchange(counted_, target_.memory().totalBytes));
+  gpu_.memoryAllocated(counted_);
 }
 
 void LinkedList::releaseTarget() {
@@ -276,6 +287,10 @@ void LinkedList::draw(Frame& frame) {
   coveredPixels_ = 0;
   wasInTiles_ = inTiles_;
   if (inTiles_) return drawTiles(frame);
+  if (wanted_.memoryBudget) {
+    check(target_.update(frame_ + 1), "vitrailUpdateTarget"); // frees the pool that grow() replaced
+    countMemory();
+  }
   drawArea(frame, {{0, 0}, wanted_.extent});
 }
 
@@ -351,16 +366,22 @@ bool LinkedList::finish() {
   const VitrailStats stats = readStats();
   add(stats);
   if (stats.fragmentsMissing == 0) return true;
-  grow(stats.fragmentsRequested);
+  inTiles_ = !grow(stats.fragmentsRequested);
+  expected_ = stats.fragmentsRequested;
   return false;
 }
 
-// Makes room for a picture of so many fragments: a larger pool, or tiles where the device has none that large.
-void LinkedList::grow(std::uint64_t fragments) {
-  const bool canBe = fragments <= context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
-  if (canBe && createWholeTarget(static_cast<std::uint32_t>(fragments))) return;
-  inTiles_ = true;
-  expected_ = fragments;
+// Makes room for a picture of so many fragments, which is what the last one turned out to have. False where the budget,
+// or the device, has no pool that large.
+bool LinkedList::grow(std::uint64_t fragments) {
+  if (!wanted_.memoryBudget) {
+    const bool canBe = fragments <= context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
+    return canBe && createWholeTarget(fragments);
+  }
+  const VkResult result = target_.update(frame_ + 1);
+  if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY) check(result, "vitrailUpdateTarget");
+  countMemory();
+  return target_.memory().nodeCapacity >= fragments;
 }
 
 void LinkedList::add(const VitrailStats& stats) {

@@ -2,11 +2,9 @@
 #ifndef VITRAIL_TOOL_COMPLEXITY_SHARED_H
 #define VITRAIL_TOOL_COMPLEXITY_SHARED_H
 
-#ifdef __cplusplus
-#include <cstdint>
-namespace vitrail::tool::shaders {
-using uint = std::uint32_t;
-#endif
+#include "gpu/glsl.h"
+
+VITRAIL_SHARED_BEGIN
 
 const uint COMPLEXITY_GROUP = 256u;     // threads that take two items each to one
 const uint COMPLEXITY_ROW = 32768u;     // work groups in a row of the dispatch
@@ -39,7 +37,8 @@ struct ComplexityReduction {
 #ifdef __cplusplus
 static_assert(sizeof(Complexity) == 32);
 static_assert(sizeof(ComplexityReduction) == 24);
-} // namespace vitrail::tool::shaders
 #endif
+
+VITRAIL_SHARED_END
 
 #endif

@@ -2,11 +2,9 @@
 #ifndef VITRAIL_TOOL_LAYERS_SHARED_H
 #define VITRAIL_TOOL_LAYERS_SHARED_H
 
-#ifdef __cplusplus
-#include <cstdint>
-namespace vitrail::tool::shaders {
-using uint = std::uint32_t;
-#endif
+#include "gpu/glsl.h"
+
+VITRAIL_SHARED_BEGIN
 
 const uint LAYERS_EMPTY = 0xffffffffu; // the order of an entry that holds nothing: farther than any fragment
 const uint LAYERS_TAIL_WORDS = 6u;     // of a pixel: the words of VitrailSums in memory, and how many fragments it has
@@ -28,7 +26,8 @@ struct LayersControl {
 #ifdef __cplusplus
 static_assert(sizeof(LayersCounts) == 64);
 static_assert(sizeof(LayersControl) == 64 * LAYERS_SLOTS);
-} // namespace vitrail::tool::shaders
 #endif
+
+VITRAIL_SHARED_END
 
 #endif

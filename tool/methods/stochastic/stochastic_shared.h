@@ -2,11 +2,9 @@
 #ifndef VITRAIL_TOOL_STOCHASTIC_SHARED_H
 #define VITRAIL_TOOL_STOCHASTIC_SHARED_H
 
-#ifdef __cplusplus
-#include <cstdint>
-namespace vitrail::tool::shaders {
-using uint = std::uint32_t;
-#endif
+#include "gpu/glsl.h"
+
+VITRAIL_SHARED_BEGIN
 
 const uint STOCHASTIC_ALL_CHANNELS = 3u; // the component of a transmittance that is alpha's, then that of all
 
@@ -17,8 +15,6 @@ struct StochasticPass {
   float share;  // of the pass in the mean
 };
 
-#ifdef __cplusplus
-} // namespace vitrail::tool::shaders
-#endif
+VITRAIL_SHARED_END
 
 #endif
