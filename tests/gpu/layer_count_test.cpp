@@ -3,7 +3,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "../../tool/methods/layer_count/layer_count.h"
+#include "../../tool/methods/methods.h"
 #include "../../tool/scene/builtin/builtin.h"
 #include "../reference/reference.h"
 #include "../reference/test_scenes.h"
