@@ -108,7 +108,7 @@ struct VitrailControl {
   (((((format)*4u + (samples) / 2u - (samples) / 8u) * 2u + (keepSums)) * 2u + (loose)) * 2u + (userWords))
 #define VITRAIL_LAYOUTS 96
 
-// What one vitrailCmdBegin sets (std140).
+// What one vitrailVkCmdBegin sets (std140).
 struct VitrailParameters {
   uint x; // the first pixel of the area
   uint y;
@@ -145,32 +145,30 @@ struct VitrailLayer {
 
 // Copied lists: a buffer that holds, one behind the other,
 //
-//   VitrailCopy         the first six words written by the host before the copy: x, y, width, height, capacity and 0s
+//   VitrailCopyHeader   written by the host before the copy, with 0 layers
 //   VitrailCopiedList   one a pixel of the rectangle, row by row
-//   VitrailLayer        from element VITRAIL_COPY_FIRST_LAYER(width * height) on, which is 32 times that many bytes:
-//                       `capacity` of them. Those of a list lie together in order, nearest first; fragments that are
+//   VitrailLayer        `capacity` of them. Those of a list lie together in order, nearest first; fragments that are
 //                       alike in all else are in the order of their words. Lists follow each other in any order.
-struct VitrailCopy {
-  uint x; // the rectangle, in pixels of the target; what of it lies outside of the frame's area has empty lists
+struct VitrailCopyHeader {
+  uint layers;   // of all lists of the rectangle: more than `capacity` where some found no room
+  uint capacity; // layers that the buffer has room for
+  uint x;        // the rectangle, in pixels of the target; what of it lies outside of the frame's area has empty lists
   uint y;
   uint width;
   uint height;
-  uint capacity;  // layers that the buffer has room for
-  uint requested; // layers that all lists of the rectangle have: more than `capacity` where some found no room
-  uint cut;       // lists that the driver did not let it finish
-  uint _reserved;
+  uint reserved[2];
 };
 struct VitrailCopiedList {
-  uint first; // its first layer, from VITRAIL_COPY_FIRST_LAYER on; VITRAIL_END: there was no room, none was copied
-  uint count; // its layers; with VITRAIL_COPY_CUT in it the list has more than these
+  // Its first layer. VITRAIL_END: it was left out, for want of room, because the frame overflowed, or because the
+  // driver did not let it be sorted.
+  uint first;
+  uint count; // its layers
 };
-#define VITRAIL_COPY_CUT 0x80000000u
-#define VITRAIL_COPY_FIRST_LAYER(pixels) (1u + ((pixels) + 3u) / 4u)
 
 #ifdef __cplusplus
 static_assert(sizeof(VitrailLayer) == 32);
-static_assert(sizeof(VitrailCopy) == 32);      // a layer's
-static_assert(sizeof(VitrailCopiedList) == 8); // a quarter of a layer's
+static_assert(sizeof(VitrailCopyHeader) == 32);
+static_assert(sizeof(VitrailCopiedList) == 8);
 static_assert(sizeof(VitrailNodeStandard) == 8);
 static_assert(sizeof(VitrailNodeCompact) == 8);
 static_assert(sizeof(VitrailNodeHdr) == 16);

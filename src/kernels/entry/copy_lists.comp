@@ -1,4 +1,4 @@
-// Copies the sorted lists of a rectangle out (VitrailCopy of vitrail/layout.h): one thread a pixel, between the
+// Copies the sorted lists of a rectangle out (VitrailCopyHeader of vitrail/layout.h): one thread a pixel, between the
 // collecting and the target's next frame, before the resolve or after it. Long lists are relinked in order on the way;
 // no picture changes by that.
 #version 460
@@ -28,7 +28,8 @@ VitrailSink copyList(uint pixelIndex) {
   return vitrailShort(walk);
 }
 
-VitrailCopiedList copyPixel(uint pixelIndex) {
+// Copies a list, if all of it can be. Returns its first layer, and their number.
+uvec2 copyPixel(uint pixelIndex) {
   VitrailWalk walk = VitrailWalk(vitrailHeads[pixelIndex], 0u, nodesInUse());
   while (vitrailMore(walk)) { // drivers that count turns get fewer of them
     vitrailStep(walk);
@@ -37,22 +38,19 @@ VitrailCopiedList copyPixel(uint pixelIndex) {
     if (vitrailMore(walk)) vitrailStep(walk);
   }
   copyCount = walk.count;
-  if (copyCount == 0u) return VitrailCopiedList(0u, 0u);
-  copyFirst = atomicAdd(copy.requested, copyCount);
-  if (copyFirst > copy.capacity || copyCount > copy.capacity - copyFirst) {
-    return VitrailCopiedList(VITRAIL_END, copyCount);
-  }
-  VitrailSink sink = copyList(pixelIndex);
-  if (sink.complete && !vitrailMore(walk)) return VitrailCopiedList(copyFirst, copyCount);
-  atomicAdd(copy.cut, 1u);
-  return VitrailCopiedList(copyFirst, sink.copied | VITRAIL_COPY_CUT);
+  if (copyCount == 0u) return uvec2(0u);
+  copyFirst = atomicAdd(copy.layers, copyCount);
+  bool fits = copyFirst < copy.capacity && copyCount <= copy.capacity - copyFirst;
+  bool whole = false;
+  if (fits && !vitrailMore(walk) && !overflowed()) whole = copyList(pixelIndex).complete;
+  return uvec2(whole ? copyFirst : VITRAIL_END, copyCount);
 }
 
 void main() {
   uvec2 place = gl_GlobalInvocationID.xy; // in the rectangle
   if (place.x >= copy.width || place.y >= copy.height) return;
   uvec2 local = place + uvec2(copy.x, copy.y) - uvec2(vitrailParameters.x, vitrailParameters.y);
-  VitrailCopiedList list = VitrailCopiedList(0u, 0u);
+  uvec2 list = uvec2(0u);
   if (isInArea(local)) list = copyPixel(pixelIndexOf(local)); // not left of it or above: those are far beyond
-  copiedLists[place.y * copy.width + place.x] = list;
+  copied[place.y * copy.width + place.x] = list;
 }
