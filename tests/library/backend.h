@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-#include <vitrail/vitrail.hpp>
+#include <vitrail/tiles.h>
 
 #include "host.h"
 
@@ -45,8 +45,8 @@ class Backend {
   virtual const Features& features() = 0;
   // Throws HostError where the library refuses the description.
   virtual std::unique_ptr<PointHost> makeHost(const HostDesc& desc) = 0;
-  // What draws a picture in tiles here.
-  virtual VkResult planTiles(const VitrailTilePlanDesc& desc, TilePlan& plan) = 0;
+  // What the device can hold, for plans of tiles.
+  virtual VitrailTileLimits tileLimits(VitrailNodeFormat format, std::uint32_t samples) = 0;
   // What the API's validation has found wrong since the last call, one text each. Any is a failed test.
   virtual std::vector<std::string> takeErrors() = 0;
   // Gives the device back; what outlived it is among the errors. Hosts are gone by then.

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include <vitrail/vulkan.h>
+#include <vitrail/types.h>
 
 #include "core/pool.h"
 
@@ -36,14 +36,6 @@ struct Point {
 using FloatColor = std::array<float, 4>;
 
 struct Extent {
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-};
-
-// Whole pixels of the picture, from its top left corner.
-struct Area {
-  std::uint32_t x = 0;
-  std::uint32_t y = 0;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
 };
@@ -120,7 +112,7 @@ class PointHost {
 
   // Draws the opaque scene once and the points over it, area by area, each a frame of its own, as `next` gives them; it
   // is told what became of the last one. Every area draws all points. The result's statistics are the last area's.
-  using NextArea = std::function<bool(const VitrailStats* last, Area& area)>;
+  using NextArea = std::function<bool(const VitrailStats* last, VitrailRect& area)>;
   virtual PointResult drawAreas(std::span<const Point> points, const NextArea& next) = 0;
 
   // As draw(), but between collecting and resolving every node moves to another place of the pool (scatterNodes()):

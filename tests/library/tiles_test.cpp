@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <vitrail/vitrail.hpp>
+
 #include "expected.h"
 
 namespace vitrail::tests {
@@ -18,28 +20,24 @@ VITRAIL_ON_EVERY_BACKEND(TilesTest);
 // Draws in the tiles of a plan. Counts the tiles that were drawn, in vain or not.
 std::vector<FloatColor> drawTiles(Backend& backend, HostDesc desc, VitrailTilePlanDesc planDesc,
                                   std::span<const Point> points, std::size_t& attempts) {
-  planDesc.extent = {desc.width, desc.height};
+  planDesc.width = desc.width;
+  planDesc.height = desc.height;
   planDesc.nodeFormat = desc.nodes;
-  planDesc.samples = static_cast<VkSampleCountFlagBits>(desc.samples);
+  planDesc.samples = desc.samples;
+  planDesc.limits = backend.tileLimits(desc.nodes, desc.samples);
   TilePlan plan;
-  EXPECT_EQ(backend.planTiles(planDesc, plan), VK_SUCCESS);
-  VitrailVkTargetDesc target{};
-  plan.prepare(target);
-  desc.capacity = target.nodeCapacity;
-  desc.areaPixels = target.areaPixels;
-  desc.overflow = target.overflow;
+  EXPECT_EQ(TilePlan::create(planDesc, plan), VITRAIL_SUCCESS);
+  desc.capacity = plan.nodeCapacity();
+  desc.areaPixels = plan.areaPixels();
+  desc.overflow = VITRAIL_OVERFLOW_SKIP;
   const auto host = backend.makeHost(desc);
   EXPECT_LE(host->memory().nodeBytes + host->memory().headBytes, planDesc.memoryBudget);
-  const PointResult result = host->drawAreas(points, [&](const VitrailStats* last, Area& area) {
+  const PointResult result = host->drawAreas(points, [&](const VitrailStats* last, VitrailRect& area) {
     if (last != nullptr) {
       ++attempts;
-      EXPECT_EQ(plan.finish(*last), VK_SUCCESS);
+      EXPECT_EQ(plan.finish(*last), VITRAIL_SUCCESS);
     }
-    VkRect2D tile{};
-    const bool more = plan.next(tile);
-    area = {static_cast<std::uint32_t>(tile.offset.x), static_cast<std::uint32_t>(tile.offset.y), tile.extent.width,
-            tile.extent.height};
-    return more;
+    return plan.next(area);
   });
   return result.pixels;
 }
@@ -83,12 +81,12 @@ TEST_P(TilesTest, BoundsAndCountsMakeFewerTiles) {
   bounds.max[1] = 50.0F / 32.0F - 1.0F;
   bounds.max[2] = 1.0F;
   for (int i = 0; i < 4; ++i) bounds.clipFromBox[5 * i] = 1.0F;
-  VkRect2D area{};
-  vitrailProjectBounds(1, &bounds, {64, 64}, &area);
-  EXPECT_EQ(area.offset.x, 18);
-  EXPECT_EQ(area.offset.y, 8);
-  EXPECT_EQ(area.extent.width, 24U);
-  EXPECT_EQ(area.extent.height, 44U);
+  VitrailRect area{};
+  vitrailProjectBounds(1, &bounds, 64, 64, &area);
+  EXPECT_EQ(area.x, 18U);
+  EXPECT_EQ(area.y, 8U);
+  EXPECT_EQ(area.width, 24U);
+  EXPECT_EQ(area.height, 44U);
   VitrailTilePlanDesc plan{};
   plan.memoryBudget = 64 << 10;
   plan.boundsCount = 1;

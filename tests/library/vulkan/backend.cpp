@@ -16,8 +16,10 @@ std::unique_ptr<PointHost> VulkanBackend::makeHost(const HostDesc& desc) {
   return std::make_unique<VulkanHost>(*this, desc);
 }
 
-VkResult VulkanBackend::planTiles(const VitrailTilePlanDesc& desc, TilePlan& plan) {
-  return TilePlan::create(context(0), desc, plan);
+VitrailTileLimits VulkanBackend::tileLimits(VitrailNodeFormat format, std::uint32_t samples) {
+  VitrailTileLimits limits{};
+  check(context(0).tileLimits(format, static_cast<VkSampleCountFlagBits>(samples), limits), "vitrailVkTileLimits");
+  return limits;
 }
 
 std::vector<std::string> VulkanBackend::takeErrors() {

@@ -15,6 +15,9 @@
 
 namespace vitrail::tests::vulkan {
 
+using vitrail::vulkan::Context;
+using vitrail::vulkan::Target;
+
 // A line of the library's log.
 struct LogLine {
   VitrailLogSeverity severity = VITRAIL_LOG_ERROR;
@@ -26,7 +29,7 @@ class VulkanBackend : public Backend {
   [[nodiscard]] std::string name() const override { return "vulkan"; }
   const Features& features() override { return device().features(); }
   std::unique_ptr<PointHost> makeHost(const HostDesc& desc) override;
-  VkResult planTiles(const VitrailTilePlanDesc& desc, TilePlan& plan) override;
+  VitrailTileLimits tileLimits(VitrailNodeFormat format, std::uint32_t samples) override;
   // Lines of the library's log that no test took are errors, too.
   std::vector<std::string> takeErrors() override;
   void close() override;

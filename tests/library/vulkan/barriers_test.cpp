@@ -15,7 +15,8 @@ TEST_F(BarriersTest, AsDataNameTheTargetsBuffers) {
   desc.capacity = 10;
   VulkanHost host(backend(), desc);
   for (const VitrailVkBarrierPoint point :
-       {VITRAIL_VK_BARRIER_BEFORE_CLEAR, VITRAIL_VK_BARRIER_BEFORE_COLLECT, VITRAIL_VK_BARRIER_COLLECTED}) {
+       {VITRAIL_VK_BARRIER_BEGIN, VITRAIL_VK_BARRIER_COLLECT, VITRAIL_VK_BARRIER_COLLECTED,
+        VITRAIL_VK_BARRIER_RESOLVE, VITRAIL_VK_BARRIER_END}) {
     const VitrailVkBarriers barriers = host.target().barriers(point);
     EXPECT_NE(barriers.source, 0U);
     EXPECT_NE(barriers.destination, 0U);

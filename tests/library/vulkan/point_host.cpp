@@ -113,10 +113,16 @@ void VulkanHost::guard(VitrailVkTargetDesc& desc) {
     // Writer: the fill. Readers and writers: the library, first its clears.
     cmdBarrier(commands, kTransferWrite, kTransferWrite);
   });
-  storage_ = layoutStorage(desc.extent.width * desc.extent.height, desc.nodeCapacity, desc.nodeFormat,
-                           desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE, needs.alignment);
+  StorageNeeds parts;
+  parts.areaPixels = desc.extent.width * desc.extent.height;
+  parts.nodeCapacity = desc.nodeCapacity;
+  parts.format = desc.nodeFormat;
+  parts.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
+  parts.alignment = needs.alignment;
+  storage_ = layoutStorage(parts);
   desc.buffer = memory_.get();
   desc.bufferOffset = guardBytes_;
+  desc.bufferSize = needs.size;
 }
 
 // The pipelines of points for a target, or for what HostDesc says in its place.
@@ -256,7 +262,6 @@ std::array<PointResult, 2> VulkanHost::drawAcrossResize(std::span<const Point> f
     desc_.height = extent.height;
     makeImages();
     VitrailVkResizeInfo resize{};
-    resize.frame = frame + 1;
     resize.extent = {extent.width, extent.height};
     resize.views = views();
     check(target_.resize(resize), "vitrailVkResizeTarget");
@@ -273,7 +278,7 @@ PointResult VulkanHost::drawAreas(std::span<const Point> points, const NextArea&
   PointImages& images = images_[0];
   commands_.run([&](VkCommandBuffer commands) { images.cmdOpaque(commands, *pipelines_); });
   VitrailStats stats{};
-  Area area;
+  VitrailRect area{};
   for (bool more = next(nullptr, area); more; more = next(&stats, area)) {
     const std::uint64_t frame = frame_++;
     const VkRect2D part = {{static_cast<std::int32_t>(area.x), static_cast<std::int32_t>(area.y)},
