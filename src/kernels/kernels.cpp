@@ -29,9 +29,11 @@ struct Variant {
   Spirv code;
 };
 
-#define VITRAIL_VARIANT(stage, name, color, samples, sorting, access, symbol)                               \
-  Variant{Stage::stage,     VITRAIL_ENUMERATOR_##stage(name), Color::color,   Samples::samples,             \
-          Sorting::sorting, Access::access,                   shaders::symbol},
+#define VITRAIL_VARIANT(stage, name, color, samples, sorting, access, symbol) \
+  Variant{Stage::stage,     VITRAIL_ENUMERATOR_##stage(name),                 \
+          Color::color,     Samples::samples,                                 \
+          Sorting::sorting, Access::access,                                   \
+          shaders::symbol},
 constexpr std::array kVariants = {
 #include "kernels/variants.inc"
 };
@@ -75,9 +77,7 @@ Spirv fragmentCode(FragmentResolve resolve, bool byAddress, bool networks) {
                Spirv{}});
 }
 
-Spirv vertexCode() {
-  return find({Stage::vert, 0, Color::any, Samples::any, Sorting::any, Access::any, Spirv{}});
-}
+Spirv vertexCode() { return find({Stage::vert, 0, Color::any, Samples::any, Sorting::any, Access::any, Spirv{}}); }
 
 const char* kernelName(Kernel kernel) {
 #define VITRAIL_NAME_comp(name, words) words,

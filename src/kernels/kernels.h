@@ -1,5 +1,5 @@
-// The SPIR-V of the library's kernels, by name and variant. kernels.table has the one list of them, from which the build
-// makes what is included here.
+// The SPIR-V of the library's kernels, by name and variant. kernels.table has the one list of them, from which the
+// build makes what is included here.
 #pragma once
 
 #include <cstdint>

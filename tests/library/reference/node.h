@@ -27,7 +27,7 @@ struct NodeCoding {
   std::uint32_t samples = 1; // 1, 2, 4, 8
   bool nearestIsOne = false;
   // VITRAIL_LIST_BUILD_COMPUTE: on their way into `standard` nodes at 1 sample colours are rounded once more
-  // (shaders/vitrail/unlinked.glsl).
+  // (shaders/vitrail/loose.glsl).
   bool builtByCompute = false;
 };
 

@@ -131,8 +131,8 @@ TEST_F(RefusedTest, MemoryThatIsNotThere) {
   EXPECT_LE(context().maxNodeCapacity(VITRAIL_NODE_HDR, VK_SAMPLE_COUNT_8_BIT), (1U << 24U) - 2);
 }
 
-// A node has 24 bits for its pixel until it is linked.
-TEST_F(RefusedTest, AreasThatAreTooLargeToLinkByCompute) {
+// A loose node has 24 bits for its pixel.
+TEST_F(RefusedTest, AreasThatAreTooLargeForListsBuiltByCompute) {
   VitrailVkTargetDesc desc = desc_;
   desc.listBuild = VITRAIL_LIST_BUILD_COMPUTE;
   desc.overflow = VITRAIL_OVERFLOW_SKIP;
