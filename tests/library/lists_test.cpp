@@ -372,7 +372,8 @@ struct Rounding {
 Rounding roundingOf(VitrailNodeFormat format, std::uint32_t samples, VitrailListBuild listBuild) {
   switch (format) {
     case VITRAIL_NODE_STANDARD:
-      if (listBuild == VITRAIL_LIST_BUILD_COMPUTE && samples == 1) return {{0.7 / 255, 0.7 / 255, 0.9 / 255}, 0.5 / 255};
+      if (listBuild == VITRAIL_LIST_BUILD_COMPUTE && samples == 1)
+        return {{0.7 / 255, 0.7 / 255, 0.9 / 255}, 0.5 / 255};
       return {{0.5 / 255, 0.5 / 255, 0.5 / 255}, 0.5 / 255};
     case VITRAIL_NODE_COMPACT:
       if (samples > 1) return {{0.5 / 31, 0.5 / 31, 0.5 / 31}, 0.5 / 31};
