@@ -107,7 +107,7 @@ struct VitrailLayer { uint w[8]; };
   (((((format)*4u + (samples) / 2u - (samples) / 8u) * 2u + (keepSums)) * 2u + (loose)) * 2u + (userWords))
 #define VITRAIL_LAYOUTS 96
 
-// What one vitrailCmdBegin sets (std140).
+// What one vitrailVkCmdBegin sets (std140).
 struct VitrailParameters {
   uint x; // the first pixel of the area
   uint y;
