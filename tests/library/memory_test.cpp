@@ -215,6 +215,36 @@ TEST_P(MemoryTest, ShadersThatDoNotReachThePoolAreCounted) {
   }
 }
 
+// A pool that has more than a binding reaches: shaders that look there count as missing, others draw.
+TEST_P(MemoryTest, PoolsBeyondABindingAreReachedByAddressOnly) {
+  constexpr std::uint64_t kAffordable = 512 * kMebibyte;
+  if (!features().addresses) GTEST_SKIP() << "this device has no buffer addresses";
+  if (features().bindingBytes > kAffordable) GTEST_SKIP() << "this device's bindings reach further than tests allocate";
+  for (const VitrailListBuild listBuild : {VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE}) {
+    for (const bool specialized : {false, true}) {
+      for (const bool byAddress : {true, false}) {
+        SCOPED_TRACE("list build " + std::to_string(listBuild) + (specialized ? ", specialized" : "") +
+                     (byAddress ? ", by address" : ", by binding"));
+        HostDesc desc;
+        desc.listBuild = listBuild;
+        desc.specialized = specialized;
+        desc.addresses = true;
+        desc.shaderByAddress = byAddress;
+        desc.overflow = VITRAIL_OVERFLOW_SKIP;
+        desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
+        const std::vector<Point> points = randomLists(desc, {1, 2, 40}, 9);
+        desc.capacity = static_cast<std::uint32_t>(features().bindingBytes / vitrailNodePoolSize(desc.nodes, 1)) + 1000;
+        const PointResult result = draw(desc, points);
+        EXPECT_EQ(result.stats.fragmentsRequested, points.size());
+        EXPECT_EQ(result.stats.fragmentsMissing, byAddress ? 0U : points.size());
+        EXPECT_EQ(result.stats.exact, byAddress ? 1U : 0U);
+        const auto seen = byAddress ? points : std::vector<Point>{};
+        EXPECT_LT(largestError(result.pixels, expectedFrame(desc, seen).pixels), kTolerance);
+      }
+    }
+  }
+}
+
 TEST_P(MemoryTest, RequirementsAndReportsAgree) {
   HostDesc desc = squareHost();
   desc.capacity = 1000;

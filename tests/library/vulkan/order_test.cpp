@@ -157,6 +157,40 @@ TEST_F(OrderTest, EveryWrongOrderIsSeen) {
   }
 }
 
+// The call goes on with what there is, and says so.
+TEST_F(OrderTest, AreasAndViewsThatAreNotThereAreTakenFromWhatIs) {
+  HostDesc desc;
+  desc.capacity = 4;
+  desc.areaPixels = 16;
+  VulkanHost host(backend(), desc);
+  const std::vector<Point> points = {{0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}}};
+  const auto expectWarning = [](const std::string& word) {
+    const std::vector<LogLine> lines = backend().takeLog();
+    ASSERT_EQ(lines.size(), 1U) << word;
+    EXPECT_EQ(lines[0].severity, VITRAIL_LOG_WARNING);
+    EXPECT_NE(lines[0].text.find(word), std::string::npos) << lines[0].text;
+  };
+  EXPECT_EQ(host.draw(points).stats.exact, 0U); // 8x8 pixels
+  expectWarning("areaPixels");
+
+  Target& target = host.target();
+  Commands commands(backend().device());
+  commands.run([&](VkCommandBuffer buffer) {
+    VitrailVkBeginInfo begin{};
+    begin.area = {{0, 0}, {4, 4}};
+    target.begin(buffer, begin);
+    target.collected(buffer);
+    VitrailVkResolveInfo resolve{};
+    resolve.view = 5;
+    target.resolve(buffer, resolve);
+    target.end(buffer);
+  });
+  expectWarning("view 5");
+  VitrailStats stats{};
+  ASSERT_EQ(target.readStats(target.frame(), stats), VK_SUCCESS);
+  EXPECT_EQ(stats.exact, 0U);
+}
+
 // Frames that the library numbers are 0, 1, 2, ... and their statistics are theirs.
 TEST_F(OrderTest, TheLibraryNumbersFramesWhereTheHostDoesNot) {
   HostDesc desc;
