@@ -30,7 +30,8 @@ struct Point {
   std::array<float, 4> color{};
   std::uint32_t blend = VITRAIL_BLEND_OVER;
   std::uint32_t coverage = 0xff;
-  bool stranger = false; // drawn by HostDesc::strangersFor
+  bool stranger = false;  // drawn by HostDesc::strangersFor
+  std::uint32_t word = 0; // for HostDesc::userWords
 };
 
 using FloatColor = std::array<float, 4>;
@@ -68,7 +69,10 @@ struct HostDesc {
   std::optional<VitrailListBuild> specializedForListBuild;
   // Strangers among the points are drawn by a shader that is specialized for a target that differs in this.
   std::optional<VitrailOverflow> strangersFor;
-  bool guarded = false; // the memory is this host's, between guard words
+  bool narrowShader = false;    // the collecting shader is compiled for `standard` at 1 sample and nothing else
+  bool userWords = false;       // nodes carry the points' words
+  std::uint32_t copyLayers = 0; // not 0: every frame's lists are copied out, so many layers at most
+  bool guarded = false;         // the memory is this host's, between guard words
   // The fragments that are taken to have asked for a node before the first point. `guarded` only.
   std::uint32_t requestedBefore = 0;
 

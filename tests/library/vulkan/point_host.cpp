@@ -18,7 +18,7 @@ PointVertex toVertex(const Point& point, const HostDesc& desc) {
   const auto clip = [](std::uint32_t pixel, std::uint32_t size) {
     return (static_cast<float>(pixel) + 0.5F) * 2.0F / static_cast<float>(size) - 1.0F;
   };
-  return {{clip(point.x, desc.width), clip(point.y, desc.height), point.depth}, point.color, point.blend};
+  return {{clip(point.x, desc.width), clip(point.y, desc.height), point.depth}, point.color, point.blend, point.word};
 }
 
 std::uint32_t featureBits(VulkanBackend& backend, const HostDesc& desc) {
@@ -93,6 +93,8 @@ VitrailVkTargetDesc VulkanHost::targetDesc() {
   desc.nodeCapacity = desc_.capacity;
   desc.memoryBudget = desc_.memoryBudget;
   desc.areaPixels = desc_.areaPixels;
+  desc.userWords = desc_.userWords ? VK_TRUE : VK_FALSE;
+  desc.copyLayers = desc_.copyLayers;
   desc.colorFormat = PointImages::colorFormat(desc_);
   desc.views = views();
   desc.hostBarriers = options_.hostBarriers ? VK_TRUE : VK_FALSE;
@@ -121,6 +123,8 @@ void VulkanHost::guard(VitrailVkTargetDesc& desc) {
   parts.areaPixels = desc.extent.width * desc.extent.height;
   parts.nodeCapacity = desc.nodeCapacity;
   parts.format = desc.nodeFormat;
+  parts.userWords = desc_.userWords;
+  parts.copyLayers = desc_.copyLayers;
   parts.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
   parts.alignment = needs.alignment;
   storage_ = layoutStorage(parts);
@@ -237,8 +241,35 @@ void VulkanHost::recordFrame(VkCommandBuffer commands, std::uint64_t frame, Poin
   recordBegin(commands, frame, area);
   if (!vertices.points.empty()) recordPoints(commands, images, vertices);
   recordCollected(commands);
+  if (desc_.copyLayers > 0) recordCopy(commands, area);
   recordResolve(commands, images, static_cast<std::uint64_t>(&images - images_.data()));
   recordEnd(commands);
+}
+
+void VulkanHost::recordCopy(VkCommandBuffer commands, const VkRect2D& area) {
+  copy_ = Buffer(device_, target_.copySize(area.extent.width, area.extent.height), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                 Memory::Host);
+  VitrailVkCopyInfo info{};
+  info.area = area;
+  info.buffer = copy_.get();
+  target_.copyLists(commands, info);
+  // Writer: the copy. Reader: the host.
+  cmdBarrier(commands, kCopyWrite, kHostAccess);
+}
+
+CopiedLists VulkanHost::copied() const {
+  CopiedLists copied;
+  const auto* bytes = static_cast<const std::byte*>(copy_.mapped());
+  const auto read = [&](void* to, std::size_t size) {
+    std::memcpy(to, bytes, size);
+    bytes += size;
+  };
+  read(&copied.header, sizeof(copied.header));
+  copied.lists.resize(std::size_t{copied.header.width} * copied.header.height);
+  read(copied.lists.data(), copied.lists.size() * sizeof(copied.lists[0]));
+  copied.layers.resize(copied.header.capacity);
+  read(copied.layers.data(), copied.layers.size() * sizeof(copied.layers[0]));
+  return copied;
 }
 
 PointResult VulkanHost::read(const PointImages& images, std::uint64_t frame) const {

@@ -29,6 +29,13 @@ struct VulkanOptions {
   std::optional<VitrailVkBarrierPoint> omitted;
 };
 
+// What vitrailVkCmdCopyLists() wrote.
+struct CopiedLists {
+  VitrailVkCopyHeader header{};
+  std::vector<VitrailVkCopiedList> lists;
+  std::vector<VitrailLayer> layers;
+};
+
 class VulkanHost : public PointHost {
  public:
   VulkanHost(VulkanBackend& backend, const HostDesc& desc, const VulkanOptions& options = {});
@@ -61,6 +68,7 @@ class VulkanHost : public PointHost {
   [[nodiscard]] Target& target() { return target_; }
   [[nodiscard]] const Context& context() const { return *context_; }
   [[nodiscard]] VitrailVkTargetDesc targetDesc(); // what the target is made with
+  [[nodiscard]] CopiedLists copied() const;       // of the last frame, where HostDesc::copyLayers are
 
  private:
   // Points in memory that the device reads.
@@ -84,6 +92,7 @@ class VulkanHost : public PointHost {
   void recordPoints(VkCommandBuffer commands, PointImages& images, const Vertices& vertices);
   void recordRequests(VkCommandBuffer commands);
   void recordResolve(VkCommandBuffer commands, PointImages& images, std::uint64_t view);
+  void recordCopy(VkCommandBuffer commands, const VkRect2D& area);
   void recordFrame(VkCommandBuffer commands, std::uint64_t frame, PointImages& images, const VkRect2D& area,
                    const Vertices& vertices);
   void scatter();
@@ -97,6 +106,7 @@ class VulkanHost : public PointHost {
   VulkanOptions options_;
   bool postDepthCoverage_ = false;
   std::uint64_t frame_ = 0;
+  Buffer copy_; // what the last frame's lists were copied to
   Context* context_ = nullptr;
   std::array<PointImages, kFramesTogether> images_; // of frame n: n % kFramesTogether
   // What views() points to.
