@@ -24,6 +24,7 @@
 #include "../../gpu/counters.h"
 #include "../../gpu/descriptors.h"
 #include "../../gpu/pixel_pass.h"
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/counts.h"
 #include "../shared/fragment_pool.h"

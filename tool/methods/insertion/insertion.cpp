@@ -12,6 +12,7 @@
 #include "../../gpu/descriptors.h"
 #include "../../gpu/pixel_pass.h"
 #include "../../gpu/used_image.h"
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/counts.h"
 #include "../shared/fragment_pool.h"

@@ -19,6 +19,7 @@
 #include "../../gpu/device.h"
 #include "../../gpu/vk.h"
 #include "../../stage/picture_images.h"
+#include "../method.h"
 #include "../methods.h"
 #include "shaders/collect.frag.h"
 #include "shaders/collect_address.frag.h"

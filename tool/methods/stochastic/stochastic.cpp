@@ -20,6 +20,7 @@
 
 #include "../../gpu/accesses.h"
 #include "../../stage/surface_shared.h"
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/composite.h"
 #include "../shared/device_needs.h"
