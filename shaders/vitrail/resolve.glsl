@@ -5,7 +5,7 @@
 //   VitrailLayout vitrailNodes()      how the nodes are stored; constants, so that what is not needed falls away
 //   uvec4 vitrailLoadNode(uint index, VitrailLayout nodes)             pool.glsl has it
 //   uint vitrailVisible(uvec4 key)    the samples that a fragment adds to, one bit each; bit 0 with one accumulator
-//   uint vitrailMaxLayers()           VitrailTargetDesc::maxLayers
+//   uint vitrailMaxLayers()           VitrailVkTargetDesc::maxLayers
 //   VITRAIL_NETWORKS                  1: sorting networks, 0: insertion (sort.glsl says which suits what)
 //
 // Lists that are longer than the registers take are left to another kernel: one for every length would make the many

@@ -91,7 +91,7 @@ TEST(BenchMatrix, EveryChoiceWithEveryOther) {
 TEST(BenchMatrix, ListBuildsAreOfTheMethodsThatHaveThem) {
   BenchMatrix matrix;
   matrix.methods = {"linked-list", "insertion"};
-  matrix.listBuilds = {VITRAIL_LINKING_FRAGMENT, VITRAIL_LINKING_COMPUTE};
+  matrix.listBuilds = {VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE};
   EXPECT_EQ(describeAll(matrix), (std::vector<std::string>{"unsorted", "linked-list, standard, list build fragment",
                                                            "linked-list, standard, list build compute", "insertion"}));
 }
@@ -382,7 +382,7 @@ TEST(BenchTable, SaysWhatItIs) {
   const std::string other = toTable(report);
   EXPECT_NE(other.find("only the ratios"), std::string::npos);
   EXPECT_NE(other.find("not exact: linked-list, standard left out 12 of 700"), std::string::npos) << other;
-  report.scenes[0].measurements[1].options.listBuild = VITRAIL_LINKING_FRAGMENT;
+  report.scenes[0].measurements[1].options.listBuild = VITRAIL_LIST_BUILD_FRAGMENT;
   EXPECT_NE(toTable(report).find("linked-list, standard, compute, list build fragment  "), std::string::npos);
   frame.tiles = 3;
   EXPECT_NE(toTable(report).find("drew 3 tiles"), std::string::npos) << toTable(report);

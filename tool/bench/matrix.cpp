@@ -47,7 +47,7 @@ void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t s
   if (!hasChoices(method)) return addSetting(settings, options);
   for (const VitrailNodeFormat nodes : matrix.nodes) {
     for (const VitrailResolve resolve : matrix.resolves) {
-      for (const VitrailLinking listBuild : matrix.listBuilds) {
+      for (const VitrailListBuild listBuild : matrix.listBuilds) {
         options.nodes = nodes;
         options.resolve = resolve;
         options.listBuild = listBuild;
@@ -104,7 +104,7 @@ std::string describe(const MethodOptions& options) {
   if (hasChoices(options.name) && options.resolve != VITRAIL_RESOLVE_DEFAULT) {
     text.append(", ").append(nameOf(options.resolve));
   }
-  if (hasChoices(options.name) && options.listBuild != VITRAIL_LINKING_DEFAULT) {
+  if (hasChoices(options.name) && options.listBuild != VITRAIL_LIST_BUILD_DEFAULT) {
     text.append(", list build ").append(nameOf(options.listBuild));
   }
   if (options.maxLayers > 0)

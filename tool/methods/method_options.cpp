@@ -15,8 +15,8 @@ constexpr Names<VitrailNodeFormat, 3> kNodeFormats{
     {{VITRAIL_NODE_COMPACT, "compact"}, {VITRAIL_NODE_STANDARD, "standard"}, {VITRAIL_NODE_HDR, "hdr"}}};
 constexpr Names<VitrailResolve, 2> kResolves{
     {{VITRAIL_RESOLVE_COMPUTE, "compute"}, {VITRAIL_RESOLVE_FRAGMENT, "fragment"}}};
-constexpr Names<VitrailLinking, 2> kListBuilds{
-    {{VITRAIL_LINKING_FRAGMENT, "fragment"}, {VITRAIL_LINKING_COMPUTE, "compute"}}};
+constexpr Names<VitrailListBuild, 2> kListBuilds{
+    {{VITRAIL_LIST_BUILD_FRAGMENT, "fragment"}, {VITRAIL_LIST_BUILD_COMPUTE, "compute"}}};
 constexpr Names<VitrailMsaaResolve, 2> kMsaaResolves{
     {{VITRAIL_MSAA_RESOLVE_PER_PIXEL, "per-pixel"}, {VITRAIL_MSAA_RESOLVE_PER_SAMPLE, "per-sample"}}};
 
@@ -37,12 +37,12 @@ std::optional<Choice> choiceIn(const Names<Choice, count>& table, std::string_vi
 
 std::string_view nameOf(VitrailNodeFormat nodes) { return nameIn(kNodeFormats, nodes); }
 std::string_view nameOf(VitrailResolve resolve) { return nameIn(kResolves, resolve); }
-std::string_view nameOf(VitrailLinking listBuild) { return nameIn(kListBuilds, listBuild); }
+std::string_view nameOf(VitrailListBuild listBuild) { return nameIn(kListBuilds, listBuild); }
 std::string_view nameOf(VitrailMsaaResolve msaaResolve) { return nameIn(kMsaaResolves, msaaResolve); }
 
 std::optional<VitrailNodeFormat> nodeFormatNamed(std::string_view name) { return choiceIn(kNodeFormats, name); }
 std::optional<VitrailResolve> resolveNamed(std::string_view name) { return choiceIn(kResolves, name); }
-std::optional<VitrailLinking> listBuildNamed(std::string_view name) { return choiceIn(kListBuilds, name); }
+std::optional<VitrailListBuild> listBuildNamed(std::string_view name) { return choiceIn(kListBuilds, name); }
 std::optional<VitrailMsaaResolve> msaaResolveNamed(std::string_view name) { return choiceIn(kMsaaResolves, name); }
 
 } // namespace vitrail::tool

@@ -48,7 +48,7 @@ Json toJson(const SkippedSetting& skipped) {
   FrameStats chosen;
   if (traitsOf(options.name).takes(kTakesNodes)) chosen.nodes = nameOf(options.nodes);
   if (options.resolve != VITRAIL_RESOLVE_DEFAULT) chosen.resolve = nameOf(options.resolve);
-  if (options.listBuild != VITRAIL_LINKING_DEFAULT) chosen.listBuild = nameOf(options.listBuild);
+  if (options.listBuild != VITRAIL_LIST_BUILD_DEFAULT) chosen.listBuild = nameOf(options.listBuild);
   Json json = settingOf(options, chosen);
   json["reason"] = skipped.reason;
   return json;

@@ -43,7 +43,7 @@ std::string settingOf(const Measurement& measured) {
   for (const std::string& part : {measured.report.nodes, measured.report.resolve}) {
     if (!part.empty()) text.append(", ").append(part);
   }
-  if (measured.options.listBuild != VITRAIL_LINKING_DEFAULT) {
+  if (measured.options.listBuild != VITRAIL_LIST_BUILD_DEFAULT) {
     text.append(", list build ").append(measured.report.listBuild);
   }
   return text;

@@ -29,7 +29,7 @@ std::string makePage(const PageParts& parts) {
   const std::pair<std::string_view, std::string_view> contents[] = {{"@title@", parts.title},
                                                                     {"@style@", textOf(files::page_css)},
                                                                     {"@body@", textOf(parts.body)},
-                                                                    {"@version@", VITRAIL_VERSION},
+                                                                    {"@version@", VITRAIL_TOOL_VERSION},
                                                                     {"@data@", parts.data},
                                                                     {"@charts@", textOf(files::chart_min_js)},
                                                                     {"@common@", textOf(files::page_js)},

@@ -43,10 +43,16 @@ void remember(VitrailLogSeverity severity, const char* message, void* reason) {
 
 std::uint32_t libraryFeatures(const GpuFeatures& features) {
   std::uint32_t bits = 0;
-  if (features.poolByAddress) bits |= VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS;
-  if (features.dualSourceBlending) bits |= VITRAIL_FEATURE_DUAL_SRC_BLEND;
-  if (features.sampleRateShading) bits |= VITRAIL_FEATURE_SAMPLE_RATE_SHADING;
+  if (features.poolByAddress) bits |= VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS;
+  if (features.dualSourceBlending) bits |= VITRAIL_VK_FEATURE_DUAL_SRC_BLEND;
+  if (features.sampleRateShading) bits |= VITRAIL_VK_FEATURE_SAMPLE_RATE_SHADING;
   return bits;
+}
+
+// Plans of tiles know no Vulkan.
+VkResult resultOf(VitrailResult result) {
+  if (result == VITRAIL_SUCCESS) return VK_SUCCESS;
+  return result == VITRAIL_ERROR_OUT_OF_MEMORY ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_ERROR_INITIALIZATION_FAILED;
 }
 
 std::uint64_t pixelsOf(VkExtent2D extent) { return std::uint64_t{extent.width} * extent.height; }
@@ -87,8 +93,8 @@ class LinkedList final : public Method {
   void makeContext();
   void chooseResolve();
   void makeSurfaces();
-  VitrailTargetDesc targetDesc() const;
-  bool createTarget(const VitrailTargetDesc& desc);
+  VitrailVkTargetDesc targetDesc() const;
+  bool createTarget(const VitrailVkTargetDesc& desc);
   bool createWholeTarget(std::uint64_t nodeCapacity);
   void countMemory();
   void planTiles(std::span<const VitrailBounds> bounds);
@@ -101,7 +107,7 @@ class LinkedList final : public Method {
 
   // What pipelines differ in beside the options.
   struct PipelineKind {
-    VitrailLinking listBuild = VITRAIL_LINKING_DEFAULT;
+    VitrailListBuild listBuild = VITRAIL_LIST_BUILD_DEFAULT;
     bool depthFromW = false; // collect.frag
     bool operator==(const PipelineKind&) const = default;
   };
@@ -111,13 +117,13 @@ class LinkedList final : public Method {
   MethodOptions options_;
   ImageNeeds needs_;
   std::string reason_; // what the library last logged
-  Context context_;
+  vulkan::Context context_;
   PipelineKind pipelines_; // of surfaces_
   std::optional<SurfacePipelines> surfaces_;
-  Target target_;
+  vulkan::Target target_;
   std::uint64_t frame_ = 0;  // of the target: rises with every area
   TilePlan plan_;            // where inTiles_
-  VitrailTargetDesc made_{}; // what target_ was made for; its pointers are not kept
+  VitrailVkTargetDesc made_{}; // what target_ was made for; its pointers are not kept
   MethodTarget wanted_;
   std::uint64_t budget_ = 0;   // bytes for a tile
   bool inTiles_ = false;       // the next picture is
@@ -137,7 +143,7 @@ LinkedList::LinkedList(const MethodHost& host, const MethodOptions& options)
 LinkedList::~LinkedList() { gpu_.memoryFreed(counted_); }
 
 void LinkedList::makeContext() {
-  VitrailContextDesc desc{};
+  VitrailVkContextDesc desc{};
   desc.instance = gpu_.instance();
   desc.physicalDevice = gpu_.physicalDevice();
   desc.device = gpu_.device();
@@ -145,7 +151,7 @@ void LinkedList::makeContext() {
   desc.features = libraryFeatures(gpu_.features());
   desc.log = remember;
   desc.logUser = &reason_;
-  check(Context::create(desc, context_), "vitrailCreateContext");
+  check(vulkan::Context::create(desc, context_), "vitrailVkCreateContext");
 }
 
 void LinkedList::chooseResolve() {
@@ -156,7 +162,7 @@ void LinkedList::chooseResolve() {
                                gpu_.properties().deviceName));
   }
   if (options_.resolve == VITRAIL_RESOLVE_DEFAULT) {
-    VitrailTargetDesc target = targetDesc();
+    VitrailVkTargetDesc target = targetDesc();
     const VkImageView anyView = VK_NULL_HANDLE;
     target.views = {1, &anyView, nullptr, nullptr}; // the colour image can be written by compute
     options_.resolve = context_.defaultResolve(target);
@@ -170,18 +176,18 @@ void LinkedList::chooseResolve() {
 void LinkedList::makeSurfaces() {
   const bool coverage = options_.samples > 1 && gpu_.features().postDepthCoverage;
   const bool address = gpu_.features().poolByAddress;
-  VitrailTargetDesc desc = targetDesc();
-  desc.linking = options_.listBuild != VITRAIL_LINKING_DEFAULT ? options_.listBuild : context_.defaultLinking(desc);
+  VitrailVkTargetDesc desc = targetDesc();
+  desc.listBuild = options_.listBuild != VITRAIL_LIST_BUILD_DEFAULT ? options_.listBuild : context_.defaultListBuild(desc);
   PipelineKind kind;
-  kind.listBuild = desc.linking;
+  kind.listBuild = desc.listBuild;
   // To spare the fragment shaders of GPUs; Mesa's CPU driver takes longer. Where samples are tested in the resolve,
   // depths are compared with those of the depth image.
   const bool isCpu = gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  const bool spares = !isCpu || kind.listBuild == VITRAIL_LINKING_COMPUTE;
+  const bool spares = !isCpu || kind.listBuild == VITRAIL_LIST_BUILD_COMPUTE;
   kind.depthFromW = spares && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
   if (surfaces_ && kind == pipelines_) return;
   pipelines_ = kind;
-  const VitrailSpecialization specialization = context_.collectSpecialization(desc);
+  const VitrailVkSpecialization specialization = context_.collectSpecialization(desc);
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     if (coverage && address) info.fragmentShader = shaders::collect_coverage_address_frag;
     if (coverage && !address) info.fragmentShader = shaders::collect_coverage_frag;
@@ -193,15 +199,15 @@ void LinkedList::makeSurfaces() {
     info.constants.emplace_back(kDepthFromW, kind.depthFromW ? VK_TRUE : VK_FALSE);
     info.samples = flagOf(options_.samples);
     info.depthFormat = PictureImages::depthFormat(needs_.stencil);
-    if (needs_.stencil) vitrailStencilMark(&info.stencil.emplace());
+    if (needs_.stencil) vitrailVkStencilMark(&info.stencil.emplace());
   };
   const SurfaceProgram program{.set = context_.descriptorSetLayout(), .name = "collect"};
   surfaces_.emplace(source_, source_.scene().transparentDraws(), program, describe);
 }
 
 // All but the memory and the images.
-VitrailTargetDesc LinkedList::targetDesc() const {
-  VitrailTargetDesc desc{};
+VitrailVkTargetDesc LinkedList::targetDesc() const {
+  VitrailVkTargetDesc desc{};
   desc.extent = wanted_.extent;
   desc.samples = flagOf(options_.samples);
   desc.nodeFormat = options_.nodes;
@@ -210,7 +216,7 @@ VitrailTargetDesc LinkedList::targetDesc() const {
   desc.msaaResolve = options_.msaaResolve;
   desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
   desc.maxLayers = options_.maxLayers;
-  desc.linking = pipelines_.listBuild;
+  desc.listBuild = pipelines_.listBuild;
   desc.overflow = VITRAIL_OVERFLOW_SKIP; // the picture is drawn again, with a larger pool or in tiles
   desc.colorFormat = PictureImages::kColorFormat;
   if (needs_.stencil) {
@@ -228,8 +234,8 @@ void LinkedList::setTarget(const MethodTarget& target) {
   makeSurfaces();
   expected_ = 0;
   budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
-  const bool buildsAll = pipelines_.listBuild == VITRAIL_LINKING_FRAGMENT ||
-                         pixelsOf(target.extent) <= VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE;
+  const bool buildsAll = pipelines_.listBuild == VITRAIL_LIST_BUILD_FRAGMENT ||
+                         pixelsOf(target.extent) <= VITRAIL_LIST_BUILD_COMPUTE_MAX_PIXELS;
   const std::uint64_t largest = context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
   const std::uint64_t guess = std::min({kNodesPerPixel * pixelsOf(target.extent), kLargestGuess, largest});
   inTiles_ = !buildsAll || !createWholeTarget(target.surfaces ? guess : 0); // drawTiles() knows how large tiles are
@@ -238,30 +244,27 @@ void LinkedList::setTarget(const MethodTarget& target) {
 // A target for the whole picture, whose pool begins with so many nodes; with a budget it follows what pictures need.
 // False where there is no memory for it.
 bool LinkedList::createWholeTarget(std::uint64_t nodeCapacity) {
-  VitrailTargetDesc desc = targetDesc();
-  desc.nodeCapacity = static_cast<std::uint32_t>(nodeCapacity);
-  if (wanted_.memoryBudget) {
-    desc.memoryBudget = *wanted_.memoryBudget;
-    desc.nodeCapacity = std::max(desc.nodeCapacity, 1U); // 0 would be the library's guess
-  }
+  VitrailVkTargetDesc desc = targetDesc();
+  desc.nodeCapacity = static_cast<std::uint32_t>(std::max<std::uint64_t>(nodeCapacity, 1)); // 0: the library's guess
+  if (wanted_.memoryBudget) desc.memoryBudget = *wanted_.memoryBudget;
   return createTarget(desc);
 }
 
 // False where the device has no memory for it.
-bool LinkedList::createTarget(const VitrailTargetDesc& desc) {
+bool LinkedList::createTarget(const VitrailVkTargetDesc& desc) {
   const bool same = made_.nodeCapacity == desc.nodeCapacity && made_.areaPixels == desc.areaPixels &&
                     made_.memoryBudget == desc.memoryBudget;
   if (target_ && same) return true; // the images are the same until releaseTarget()
-  target_ = Target();               // first: the old pool and the new one need not fit together
+  target_ = vulkan::Target();               // first: the old pool and the new one need not fit together
   gpu_.memoryFreed(std::exchange(counted_, 0));
-  VitrailTargetDesc full = desc;
+  VitrailVkTargetDesc full = desc;
   full.views.count = 1;
   full.views.color = &wanted_.color;
   if (options_.samples > 1 && !needs_.perSample) full.views.opaque = &wanted_.opaque;
   if (needs_.depthUsage != 0) full.views.depth = &wanted_.depth;
-  const VkResult result = Target::create(context_, full, target_);
+  const VkResult result = vulkan::Target::create(context_, full, target_);
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) return false; // the reason stays, in case that it ends the program
-  check(result, "vitrailCreateTarget");
+  check(result, "vitrailVkCreateTarget");
   reason_.clear();
   made_ = desc;
   countMemory();
@@ -275,7 +278,7 @@ void LinkedList::countMemory() {
 }
 
 void LinkedList::releaseTarget() {
-  target_ = Target();
+  target_ = vulkan::Target();
   plan_ = TilePlan();
   wanted_ = {};
   gpu_.memoryFreed(std::exchange(counted_, 0));
@@ -289,7 +292,7 @@ void LinkedList::draw(Frame& frame) {
   wasInTiles_ = inTiles_;
   if (inTiles_) return drawTiles(frame);
   if (wanted_.memoryBudget) {
-    check(target_.update(frame_ + 1), "vitrailUpdateTarget"); // frees the pool that grow() replaced
+    check(target_.update(frame_ + 1), "vitrailVkUpdateTarget"); // frees the pool that grow() replaced
     countMemory();
   }
   drawArea(frame, {{0, 0}, wanted_.extent});
@@ -299,12 +302,12 @@ void LinkedList::draw(Frame& frame) {
 void LinkedList::drawTiles(Frame& frame) {
   frame.submitAndWait(); // the opaque scene
   planTiles(boxesOf(frame.surfaces()));
-  VkRect2D tile{};
+  VitrailRect tile{};
   while (plan_ && plan_.next(tile)) {
-    drawArea(frame, tile);
+    drawArea(frame, {{static_cast<std::int32_t>(tile.x), static_cast<std::int32_t>(tile.y)}, {tile.width, tile.height}});
     frame.submitAndWait();
     const VitrailStats stats = readStats();
-    check(plan_.finish(stats), "vitrailFinishTile");
+    check(resultOf(plan_.finish(stats)), "vitrailFinishTile");
     if (stats.fragmentsMissing == 0) add(stats); // else its parts come next
     expected_ = stats_.fragmentsRequested;
   }
@@ -313,14 +316,14 @@ void LinkedList::drawTiles(Frame& frame) {
 void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
   VkCommandBuffer commands = frame.commands();
   PictureImages& images = frame.images();
-  target_.begin(commands, {++frame_, area});
+  target_.begin(commands, {nullptr, ++frame_, area});
   frame.endPass("clear");
   cmdBeginScope(commands, images.transparentScope(area));
   frame.drawSurfaces(*surfaces_, target_.descriptorSet());
   vkCmdEndRendering(commands);
-  if (pipelines_.listBuild == VITRAIL_LINKING_COMPUTE) frame.endPass("collect");
+  if (pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE) frame.endPass("collect");
   target_.collected(commands);
-  frame.endPass(pipelines_.listBuild == VITRAIL_LINKING_COMPUTE ? "build lists" : "collect");
+  frame.endPass(pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE ? "build lists" : "collect");
   if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT) {
     cmdBeginScope(commands, images.resolveScope(commands, area));
     target_.resolve(commands);
@@ -339,18 +342,22 @@ void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
   const bool everyPixel = options_.samples > 1 && !needs_.perSample; // is written by the resolve
   if (bounds.empty() && !everyPixel) return;                         // nothing to draw
   VitrailTilePlanDesc desc{};
-  desc.extent = wanted_.extent;
-  desc.samples = flagOf(options_.samples);
+  desc.width = wanted_.extent.width;
+  desc.height = wanted_.extent.height;
+  desc.samples = options_.samples;
   desc.nodeFormat = options_.nodes;
+  check(context_.tileLimits(options_.nodes, flagOf(options_.samples), desc.limits), "vitrailVkTileLimits");
+  desc.log = remember;
+  desc.logUser = &reason_;
   desc.boundsCount = everyPixel ? 0 : static_cast<std::uint32_t>(bounds.size());
   desc.bounds = bounds.data();
   desc.expectedFragments = expected_;
   // The device may have less memory left than it says that it can give: then less is tried.
   for (;;) {
     desc.memoryBudget = budget_;
-    check(TilePlan::create(context_, desc, plan_), "vitrailCreateTilePlan");
-    VitrailTargetDesc target = targetDesc();
-    plan_.prepare(target);
+    check(resultOf(TilePlan::create(desc, plan_)), "vitrailCreateTilePlan");
+    VitrailVkTargetDesc target = targetDesc();
+    vitrailVkTilePlanTarget(plan_.handle(), &target);
     if (createTarget(target)) return;
     budget_ = vitrailNodePoolSize(options_.nodes, target.nodeCapacity) / 2;
   }
@@ -358,7 +365,7 @@ void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
 
 VitrailStats LinkedList::readStats() const {
   VitrailStats stats{};
-  check(target_.readStats(frame_, stats), "vitrailReadStats");
+  check(target_.readStats(frame_, stats), "vitrailVkReadStats");
   return stats;
 }
 
@@ -380,7 +387,7 @@ bool LinkedList::grow(std::uint64_t fragments) {
     return canBe && createWholeTarget(fragments);
   }
   const VkResult result = target_.update(frame_ + 1);
-  if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY) check(result, "vitrailUpdateTarget");
+  if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY) check(result, "vitrailVkUpdateTarget");
   countMemory();
   return target_.memory().nodeCapacity >= fragments;
 }
