@@ -1,17 +1,13 @@
-// Sorts one long fragment list by relinking it, and blends it front to back. No bindings: beside what resolve.glsl asks
-// for, the including shader defines, before the include,
-//
-//   uint vitrailLoadNext(uint index, VitrailLayout nodes);              pool.glsl has both
-//   void vitrailStoreNext(uint index, uint next, VitrailLayout nodes);
-//
-// Blocks of 16 are sorted in registers and relinked, and merged (Knuth, The Art of Computer Programming, volume 3,
-// 5.4: balanced two-way merge; its two input and two output tapes are linked lists here, so that nothing is copied). A
-// list of n takes n log2(n / 16) steps, where taking the nearest fragments in repeated walks takes n^2 / 16: more than
-// some drivers let a shader loop.
-#ifndef VITRAIL_RESOLVE_LONG_GLSL
-#define VITRAIL_RESOLVE_LONG_GLSL
+// Lists of any length: one invocation sorts one by relinking its nodes, which are in the pool, and hands it over.
+// Between the pool (list/walk.glsl) and a sink (sink/blend.glsl), which the shader includes before. Blocks of 16 are
+// sorted in registers and relinked, and merged (Knuth, The Art of Computer Programming, volume 3, 5.4: balanced two-way
+// merge; its two input and two output tapes are linked lists here, so that nothing is copied). A list of n takes n
+// log2(n / 16) steps, where taking the nearest fragments in repeated walks takes n^2 / 16: more than some drivers let a
+// shader loop.
+#ifndef VITRAIL_LONG_GLSL
+#define VITRAIL_LONG_GLSL
 
-#include "resolve.glsl"
+#include "list/short.glsl"
 
 // A list that is being written: its sorted runs stand one after the other.
 struct VitrailOutput {
@@ -62,23 +58,25 @@ void vitrailSortBlock(inout VitrailWalk walk, inout VitrailOutput list) {
 
 // A list that is being read, run by run.
 struct VitrailTape {
-  uint index; // the node under the head, and its content
-  uvec4 key;
+  VitrailEntry entry; // of the node under the head
   uint next;
   uint run;  // nodes left of the current run, this one included
   uint rest; // nodes behind the current run
 };
 
 void vitrailSeek(inout VitrailTape tape, uint index, uint nodeCount) {
-  tape.index = index;
+  tape.entry.index = index;
   if (index >= nodeCount) return; // past the end of the tape
   uvec4 node = vitrailLoadNode(index, vitrailNodes());
-  tape.key = vitrailKey(node, vitrailNodes());
+  tape.entry.key = vitrailKey(node, vitrailNodes());
+#ifdef VITRAIL_SORT_WORDS
+  tape.entry.word = vitrailWordOf(index);
+#endif
   tape.next = node.w & vitrailNextMask(vitrailNodes());
 }
 
 VitrailTape vitrailOpen(VitrailOutput list, uint nodeCount) {
-  VitrailTape tape = VitrailTape(VITRAIL_END, uvec4(0u), VITRAIL_END, 0u, list.count);
+  VitrailTape tape = VitrailTape(VITRAIL_LAST, VITRAIL_END, 0u, list.count);
   vitrailSeek(tape, list.head, nodeCount);
   return tape;
 }
@@ -104,10 +102,10 @@ void vitrailMergeStep(inout VitrailMerge merge, uint width, uint nodeCount) {
     vitrailSwap(merge.current, merge.other);
     if (merge.a.run + merge.b.run == 0u) return;
   }
-  bool takeA = merge.a.run > 0u && (merge.b.run == 0u || !vitrailBefore(merge.b.key, merge.a.key));
+  bool takeA = merge.a.run > 0u && (merge.b.run == 0u || !VITRAIL_BEFORE(merge.b.entry, merge.a.entry));
   VitrailTape tape = merge.b; // one load for both: lanes that take from different tapes stay together
   if (takeA) tape = merge.a;
-  vitrailAppend(merge.current, tape.index, tape.index, 1u);
+  vitrailAppend(merge.current, tape.entry.index, tape.entry.index, 1u);
   --tape.run;
   vitrailSeek(tape, tape.next, nodeCount);
   if (takeA) {
@@ -157,40 +155,40 @@ VitrailSorted vitrailSortLong(uint head, uint nodeCount) {
   return sorted;
 }
 
-// Blends the next node of a sorted list, if there is one.
-void vitrailBlendNext(inout VitrailResolved result, inout VitrailWalk sorted) {
+// Hands over the next node of a sorted list, if there is one.
+void vitrailPutNext(inout VitrailSink sink, inout VitrailWalk sorted) {
   uint number = sorted.count;
   if (!vitrailMore(sorted)) return;
   VitrailEntry entry = vitrailTake(sorted);
-  vitrailBlendSorted(result, entry.key, number);
+  vitrailPut(sink, entry, number);
 }
 
 // A list that lies sorted, from its head.
-VitrailResolved vitrailBlendList(uint head, uint nodeCount) {
-  VitrailResolved result = vitrailNothing();
+VitrailSink vitrailSortedList(uint head, uint nodeCount) {
+  VitrailSink sink = vitrailBegin();
   VitrailWalk walk = VitrailWalk(head, 0u, nodeCount);
-  bool opaque = false;
-  while (vitrailMore(walk) && !opaque) {
-    vitrailBlendNext(result, walk);
-    vitrailBlendNext(result, walk);
-    vitrailBlendNext(result, walk);
-    vitrailBlendNext(result, walk);
-    opaque = vitrailIsOpaque(result);
+  bool enough = false;
+  while (vitrailMore(walk) && !enough) {
+    vitrailPutNext(sink, walk);
+    vitrailPutNext(sink, walk);
+    vitrailPutNext(sink, walk);
+    vitrailPutNext(sink, walk);
+    enough = vitrailHasEnough(sink);
   }
-  if (vitrailMaxLayers() != 0u) vitrailBlendTail(result);
-  result.layers = walk.count;
-  result.complete = opaque || !vitrailMore(walk);
-  return result;
+  vitrailEnd(sink);
+  sink.layers = walk.count;
+  sink.complete = enough || !vitrailMore(walk);
+  return sink;
 }
 
 // A list of any length, from its head, which another node is afterwards.
-VitrailResolved vitrailResolveLong(inout uint head, uint nodeCount) {
+VitrailSink vitrailLong(inout uint head, uint nodeCount) {
   VitrailSorted sorted = vitrailSortLong(head, nodeCount);
   head = sorted.head;
-  VitrailResolved result = vitrailBlendList(sorted.head, nodeCount);
-  result.layers = sorted.count;
-  result.complete = result.complete && sorted.complete;
-  return result;
+  VitrailSink sink = vitrailSortedList(sorted.head, nodeCount);
+  sink.layers = sorted.count;
+  sink.complete = sink.complete && sorted.complete;
+  return sink;
 }
 
 #endif

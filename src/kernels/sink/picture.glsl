@@ -3,15 +3,18 @@
 #ifndef VITRAIL_PICTURE_GLSL
 #define VITRAIL_PICTURE_GLSL
 
-#include "deep_lists.glsl"
+#include "list/deep.glsl"
+#include "list/walk.glsl"
 #include "missing.glsl"
-#include "samples.glsl"
-#include "vitrail/resolve.glsl"
+#include "sink/samples.glsl"
+#include "sink/blend.glsl"
+#include "list/sums.glsl"
 
 layout(set = 1, binding = VITRAIL_VIEW_BINDING_COLOR, VITRAIL_COLOR_FORMAT) uniform image2D colorImage;
 
 uvec2 imagePixel(uint pixelIndex) {
-  return uvec2(parameters.x + pixelIndex % parameters.width, parameters.y + pixelIndex / parameters.width);
+  uint width = vitrailParameters.width;
+  return uvec2(vitrailParameters.x, vitrailParameters.y) + uvec2(pixelIndex % width, pixelIndex / width);
 }
 
 // Before a list of this pixel is looked at.
@@ -21,7 +24,7 @@ void beginPixel(uvec2 pixel) {
 #endif
 }
 
-void writePixel(uvec2 pixel, VitrailResolved r) {
+void writePixel(uvec2 pixel, VitrailSink r) {
 #ifdef VITRAIL_MULTISAMPLED
   vec4 sum = vec4(0.0);
 #define VITRAIL_ADD_SAMPLE(s) if (s < kSamples) sum += over(r.pairs[s], texelFetch(opaqueImage, ivec2(pixel), s));
@@ -33,21 +36,21 @@ void writePixel(uvec2 pixel, VitrailResolved r) {
 }
 
 // A list that the first dispatch left, and counted, if it followed it to the end.
-void writeDeepPixel(uint pixelIndex, VitrailResolved r) {
+void writeDeepPixel(uint pixelIndex, VitrailSink r) {
   writePixel(imagePixel(pixelIndex), r);
-  if (!r.complete) atomicAdd(control.cutPixels, 1u);
+  if (!r.complete) atomicAdd(vitrailControl.cutPixels, 1u);
 #ifndef VITRAIL_GROUPS
   countLayers(r.layers);
-  if (kMaxLayers != 0u && r.layers > kMaxLayers) atomicAdd(control.approximatePixels, 1u);
+  if (kMaxLayers != 0u && r.layers > kMaxLayers) atomicAdd(vitrailControl.approximatePixels, 1u);
 #endif
 }
 
 // A pixel of a frame that overflowed: all fragments by their sums, which it clears. Returns how many are stored.
 uint writeSums(uvec2 local) {
-  uint pixelIndex = local.y * parameters.width + local.x;
-  VitrailResolved r = vitrailResolveSums(heads[pixelIndex], nodesInUse(), readMissing(pixelIndex));
+  uint pixelIndex = pixelIndexOf(local);
+  VitrailSink r = vitrailSummed(vitrailHeads[pixelIndex], nodesInUse(), readMissing(pixelIndex));
   clearMissing(pixelIndex);
-  writePixel(uvec2(parameters.x, parameters.y) + local, r);
+  writePixel(uvec2(vitrailParameters.x, vitrailParameters.y) + local, r);
   return r.layers;
 }
 

@@ -1,12 +1,9 @@
 // Where the parts of a long list begin, 16 fragments each, so that several invocations can follow it at once: one that
-// follows it alone waits for memory at every node. No bindings: the including shader defines what resolve.glsl asks
-// for, and
-//
-//   uint vitrailLoadNext(uint index, VitrailLayout nodes);   pool.glsl has it
+// follows it alone waits for memory at every node. Of the pool (list/walk.glsl) only.
 #ifndef VITRAIL_PARTS_GLSL
 #define VITRAIL_PARTS_GLSL
 
-#include "resolve.glsl"
+#include "list/walk.glsl"
 
 // Steps over a node without looking at it.
 void vitrailStep(inout VitrailWalk walk) {
