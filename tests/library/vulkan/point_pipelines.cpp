@@ -43,10 +43,11 @@ struct Draws {
   VkPipelineRenderingCreateInfo rendering;
 };
 
-constexpr std::array<VkVertexInputAttributeDescription, 3> kAttributes = {
+constexpr std::array<VkVertexInputAttributeDescription, 4> kAttributes = {
     VkVertexInputAttributeDescription{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(PointVertex, position)},
     VkVertexInputAttributeDescription{1, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(PointVertex, color)},
     VkVertexInputAttributeDescription{2, 0, VK_FORMAT_R32_UINT, offsetof(PointVertex, blend)},
+    VkVertexInputAttributeDescription{3, 0, VK_FORMAT_R32_UINT, offsetof(PointVertex, word)},
 };
 constexpr VkVertexInputBindingDescription kBinding = {0, sizeof(PointVertex), VK_VERTEX_INPUT_RATE_VERTEX};
 

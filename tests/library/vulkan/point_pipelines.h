@@ -20,6 +20,7 @@ struct PointVertex {
   std::array<float, 3> position; // clip space
   std::array<float, 4> color;
   std::uint32_t blend;
+  std::uint32_t word;
 };
 
 // Specialization constants of collecting shaders.
