@@ -2,7 +2,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include <vitrail/vitrail.h>
+#include <vitrail/vulkan.h>
 #include <vulkan/vulkan.h>
 
 #ifdef __cplusplus
@@ -18,13 +18,13 @@ extern VkPhysicalDevice physicalDevice;
 extern VkDevice device;
 extern VkResult result;
 
-extern VitrailContextDesc contextDesc;
-extern VitrailContext context;
-extern VitrailTargetDesc targetDesc;
-extern VitrailTargetDesc desc;
-extern VitrailTarget target;
-extern VitrailBeginInfo begin;
-extern VitrailResolveInfo resolve;
+extern VitrailVkContextDesc contextDesc;
+extern VitrailVkContext context;
+extern VitrailVkTargetDesc targetDesc;
+extern VitrailVkTargetDesc desc;
+extern VitrailVkTarget target;
+extern VitrailVkBeginInfo begin;
+extern VitrailVkResolveInfo resolve;
 extern VitrailBounds bounds;
 extern uint64_t frame;
 extern uint32_t framesInFlight;
@@ -42,6 +42,7 @@ extern VkImageView multisampledColorView;
 extern VkImageView multisampledDepthView;
 extern VkBuffer poolBuffer;
 extern VkDeviceSize firstFreeByte;
+extern VkDeviceSize poolBufferSize;
 
 extern VkRenderPass resolvePass;
 extern VkRenderingInfo colorAndDepth;
@@ -59,7 +60,9 @@ void imageBarrier(VkCommandBuffer commandBuffer, VkImage image, VkImageLayout ol
                   VkAccessFlags newAccess);
 void drawOpaque(VkCommandBuffer commandBuffer);
 void drawInterface(VkCommandBuffer commandBuffer);
-void drawTransparentFrame(VitrailTarget drawnTarget, const VitrailBeginInfo* info);
+void waitForFenceOf(uint64_t pastFrame);
+void recordFrame(VitrailVkTarget drawnTarget, uint64_t frameNumber);
+void drawTransparentFrame(VitrailVkTarget drawnTarget, const VitrailVkBeginInfo* info);
 void graphUsesBuffer(VkBuffer buffer, VkDeviceSize offset, VkDeviceSize size, VkPipelineStageFlags source,
                      VkPipelineStageFlags destination);
 
