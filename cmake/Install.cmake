@@ -57,4 +57,6 @@ install(DIRECTORY shaders/vitrail DESTINATION ${vitrail_shader_folder} COMPONENT
 install(FILES ${PROJECT_BINARY_DIR}/package/vitrailConfig.cmake ${PROJECT_BINARY_DIR}/package/vitrailConfigVersion.cmake
         DESTINATION ${vitrail_package_folder} COMPONENT development)
 install(FILES ${PROJECT_BINARY_DIR}/package/vitrail.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+# The guides, whose links to each other and to README.md hold there as here.
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)

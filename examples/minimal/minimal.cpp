@@ -134,7 +134,7 @@ struct Frame {
   vk::UniquePipeline glass;
 };
 
-void record(vk::CommandBuffer commands, const vitrail::Target& target, const Frame& frame) {
+void record(vk::CommandBuffer commands, const vitrail::vulkan::Target& target, const Frame& frame) {
   const std::array kSky{0.70F, 0.77F, 0.84F, 1.0F};
   const vk::ClearValue clears[] = {vk::ClearColorValue{kSky}, vk::ClearDepthStencilValue{.depth = 1.0F}};
   vk::RenderPassBeginInfo begin{.renderPass = *frame.pass, .framebuffer = *frame.framebuffer};
@@ -187,23 +187,24 @@ void draw(const char* path) {
   const auto check = [&](VkResult result) {
     if (result != VK_SUCCESS) throw std::runtime_error(reason);
   };
-  VitrailContextDesc contextDesc{*gpu.instance, gpu.physicalDevice, *gpu.device, vkGetInstanceProcAddr};
+  VitrailVkContextDesc contextDesc{.instance = *gpu.instance, .physicalDevice = gpu.physicalDevice, .device = *gpu.device};
+  contextDesc.getInstanceProcAddr = vkGetInstanceProcAddr;
   contextDesc.log = [](VitrailLogSeverity, const char* message, void* user) {
     *static_cast<std::string*>(user) = message;
   };
   contextDesc.logUser = &reason;
-  vitrail::Context context;
-  check(vitrail::Context::create(contextDesc, context));
+  vitrail::vulkan::Context context;
+  check(vitrail::vulkan::Context::create(contextDesc, context));
 
   using Usage = vk::ImageUsageFlagBits;
   const Image color = createImage(gpu, kColorFormat, Usage::eColorAttachment | Usage::eStorage | Usage::eTransferSrc);
   const Image depth = createImage(gpu, kDepthFormat, Usage::eDepthStencilAttachment);
   const VkImageView colorView = *color.view;
-  VitrailTargetDesc targetDesc{.extent = kExtent, .nodeCapacity = 8'000'000};
+  VitrailVkTargetDesc targetDesc{.extent = kExtent, .nodeCapacity = 8'000'000};
   targetDesc.colorFormat = static_cast<VkFormat>(kColorFormat);
   targetDesc.views = {.count = 1, .color = &colorView};
-  vitrail::Target target;
-  check(vitrail::Target::create(context, targetDesc, target));
+  vitrail::vulkan::Target target;
+  check(vitrail::vulkan::Target::create(context, targetDesc, target));
 
   const vk::Device device = *gpu.device;
   Frame frame;

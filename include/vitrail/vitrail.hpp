@@ -1,101 +1,21 @@
-// Move-only C++ wrappers of vitrail.h: they own the handles and change nothing else. Every function is documented
-// there.
+// Move-only C++ wrappers of Vitrail's C headers: they own the handles and change nothing else. Every function is
+// documented in vulkan.h and tiles.h. C++17 or later. VITRAIL_NO_VULKAN leaves out what needs Vulkan's headers.
 #pragma once
 
-#include <vitrail/vitrail.h>
+#include <vitrail/tiles.h>
+#include <vitrail/types.h>
+#ifndef VITRAIL_NO_VULKAN
+#include <vitrail/vulkan.h>
+#endif
 
+#include <cstdint>
 #include <utility>
 
+#if __cplusplus < 201703L && !(defined(_MSVC_LANG) && _MSVC_LANG >= 201703L)
+#error vitrail.hpp needs C++17 or later; the C headers need none
+#endif
+
 namespace vitrail {
-
-// Owns a VitrailContext.
-class Context {
- public:
-  Context() = default;
-  ~Context() { vitrailDestroyContext(handle_); }
-  Context(Context&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
-  Context& operator=(Context&& other) noexcept {
-    std::swap(handle_, other.handle_);
-    return *this;
-  }
-
-  // Replaces what `context` owns. On error it owns nothing.
-  static VkResult create(const VitrailContextDesc& desc, Context& context) {
-    context = Context();
-    return vitrailCreateContext(&desc, &context.handle_);
-  }
-
-  explicit operator bool() const { return handle_ != nullptr; }
-  VitrailContext handle() const { return handle_; }
-  VkDescriptorSetLayout descriptorSetLayout() const { return vitrailDescriptorSetLayout(handle_); }
-  uint32_t maxNodeCapacity(VitrailNodeFormat format, VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT) const {
-    return vitrailMaxNodeCapacity(handle_, format, samples);
-  }
-  VitrailResolve defaultResolve(const VitrailTargetDesc& desc) const { return vitrailDefaultResolve(handle_, &desc); }
-  VitrailLinking defaultLinking(const VitrailTargetDesc& desc) const { return vitrailDefaultLinking(handle_, &desc); }
-  VitrailSpecialization collectSpecialization(const VitrailTargetDesc& desc) const {
-    VitrailSpecialization specialization{};
-    vitrailCollectSpecialization(handle_, &desc, &specialization);
-    return specialization;
-  }
-  VkResult targetRequirements(const VitrailTargetDesc& desc, VitrailRequirements& requirements) const {
-    return vitrailTargetRequirements(handle_, &desc, &requirements);
-  }
-
- private:
-  VitrailContext handle_ = nullptr;
-};
-
-// Owns a VitrailTarget. Its context must outlive it.
-class Target {
- public:
-  Target() = default;
-  ~Target() { vitrailDestroyTarget(handle_); }
-  Target(Target&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
-  Target& operator=(Target&& other) noexcept {
-    std::swap(handle_, other.handle_);
-    return *this;
-  }
-
-  // Replaces what `target` owns. On error it owns nothing.
-  static VkResult create(const Context& context, const VitrailTargetDesc& desc, Target& target) {
-    target = Target();
-    return vitrailCreateTarget(context.handle(), &desc, &target.handle_);
-  }
-
-  explicit operator bool() const { return handle_ != nullptr; }
-  VitrailTarget handle() const { return handle_; }
-  VkDescriptorSet descriptorSet() const { return vitrailTargetDescriptorSet(handle_); }
-  VitrailLinking linking() const { return vitrailTargetLinking(handle_); }
-  VitrailMemory memory() const {
-    VitrailMemory memory{};
-    vitrailTargetMemory(handle_, &memory);
-    return memory;
-  }
-
-  // Both change the descriptor set.
-  VkResult update(uint64_t frame) { return vitrailUpdateTarget(handle_, frame); }
-  VkResult resize(const VitrailResizeInfo& info) { return vitrailResizeTarget(handle_, &info); }
-
-  void begin(VkCommandBuffer commandBuffer, const VitrailBeginInfo& info = {}) const {
-    vitrailCmdBegin(commandBuffer, handle_, &info);
-  }
-  void collected(VkCommandBuffer commandBuffer) const { vitrailCmdCollected(commandBuffer, handle_); }
-  void resolve(VkCommandBuffer commandBuffer, const VitrailResolveInfo& info = {}) const {
-    vitrailCmdResolve(commandBuffer, handle_, &info);
-  }
-  void end(VkCommandBuffer commandBuffer) const { vitrailCmdEnd(commandBuffer, handle_); }
-
-  VitrailBarriers barriers(VitrailBarrierPoint point) const {
-    VitrailBarriers barriers{};
-    vitrailBarriers(handle_, point, &barriers);
-    return barriers;
-  }
-  VkResult readStats(uint64_t frame, VitrailStats& stats) const { return vitrailReadStats(handle_, frame, &stats); }
-
- private:
-  VitrailTarget handle_ = nullptr;
-};
 
 // Owns a VitrailTilePlan.
 class TilePlan {
@@ -109,21 +29,135 @@ class TilePlan {
   }
 
   // Replaces what `plan` owns. On error it owns nothing.
-  static VkResult create(const Context& context, const VitrailTilePlanDesc& desc, TilePlan& plan) {
+  static VitrailResult create(const VitrailTilePlanDesc& desc, TilePlan& plan) {
     plan = TilePlan();
-    return vitrailCreateTilePlan(context.handle(), &desc, &plan.handle_);
+    return vitrailCreateTilePlan(&desc, &plan.handle_);
   }
 
   explicit operator bool() const { return handle_ != nullptr; }
   VitrailTilePlan handle() const { return handle_; }
-  // Sets the fields of a target that draws this plan's tiles.
-  void prepare(VitrailTargetDesc& desc) const { vitrailTilePlanTarget(handle_, &desc); }
+  // What a target that draws this plan's tiles is made with.
+  std::uint32_t nodeCapacity() const { return vitrailTilePlanNodeCapacity(handle_); }
+  std::uint32_t areaPixels() const { return vitrailTilePlanAreaPixels(handle_); }
   // False: all tiles are done.
-  bool next(VkRect2D& tile) { return vitrailNextTile(handle_, &tile) != VK_FALSE; }
-  VkResult finish(const VitrailStats& stats) { return vitrailFinishTile(handle_, &stats); }
+  bool next(VitrailRect& tile) { return vitrailNextTile(handle_, &tile) != 0; }
+  VitrailResult finish(const VitrailStats& stats) { return vitrailFinishTile(handle_, &stats); }
 
  private:
   VitrailTilePlan handle_ = nullptr;
 };
+
+#ifndef VITRAIL_NO_VULKAN
+namespace vulkan {
+
+// Owns a VitrailVkContext.
+class Context {
+ public:
+  Context() = default;
+  ~Context() { vitrailVkDestroyContext(handle_); }
+  Context(Context&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+  Context& operator=(Context&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+
+  // Replaces what `context` owns. On error it owns nothing.
+  static VkResult create(const VitrailVkContextDesc& desc, Context& context) {
+    context = Context();
+    return vitrailVkCreateContext(&desc, &context.handle_);
+  }
+
+  explicit operator bool() const { return handle_ != nullptr; }
+  VitrailVkContext handle() const { return handle_; }
+  VkDescriptorSetLayout descriptorSetLayout() const { return vitrailVkDescriptorSetLayout(handle_); }
+  std::uint32_t maxNodeCapacity(VitrailNodeFormat format, VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT) const {
+    return vitrailVkMaxNodeCapacity(handle_, format, samples);
+  }
+  VitrailResolve defaultResolve(const VitrailVkTargetDesc& desc) const {
+    return vitrailVkDefaultResolve(handle_, &desc);
+  }
+  VitrailListBuild defaultListBuild(const VitrailVkTargetDesc& desc) const {
+    return vitrailVkDefaultListBuild(handle_, &desc);
+  }
+  VitrailVkSpecialization collectSpecialization(const VitrailVkTargetDesc& desc) const {
+    VitrailVkSpecialization specialization{};
+    vitrailVkCollectSpecialization(handle_, &desc, &specialization);
+    return specialization;
+  }
+  VkResult targetRequirements(const VitrailVkTargetDesc& desc, VitrailVkRequirements& requirements) const {
+    return vitrailVkTargetRequirements(handle_, &desc, &requirements);
+  }
+  VkResult tileLimits(VitrailNodeFormat format, VkSampleCountFlagBits samples, VitrailTileLimits& limits) const {
+    return vitrailVkTileLimits(handle_, format, samples, &limits);
+  }
+
+ private:
+  VitrailVkContext handle_ = nullptr;
+};
+
+// Owns a VitrailVkTarget. Its context outlives it.
+class Target {
+ public:
+  Target() = default;
+  ~Target() { vitrailVkDestroyTarget(handle_); }
+  Target(Target&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+  Target& operator=(Target&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+
+  // Replaces what `target` owns. On error it owns nothing.
+  static VkResult create(const Context& context, const VitrailVkTargetDesc& desc, Target& target) {
+    target = Target();
+    return vitrailVkCreateTarget(context.handle(), &desc, &target.handle_);
+  }
+
+  explicit operator bool() const { return handle_ != nullptr; }
+  VitrailVkTarget handle() const { return handle_; }
+  VkDescriptorSet descriptorSet() const { return vitrailVkTargetDescriptorSet(handle_); }
+  VitrailResolve resolveKind() const { return vitrailVkTargetResolve(handle_); }
+  VitrailListBuild listBuild() const { return vitrailVkTargetListBuild(handle_); }
+  std::uint64_t frame() const { return vitrailVkTargetFrame(handle_); }
+  VitrailMemory memory() const {
+    VitrailMemory memory{};
+    vitrailVkTargetMemory(handle_, &memory);
+    return memory;
+  }
+
+  // Both change the descriptor set.
+  VkResult update(std::uint64_t frame = 0) { return vitrailVkUpdateTarget(handle_, frame); }
+  VkResult resize(const VitrailVkResizeInfo& info) { return vitrailVkResizeTarget(handle_, &info); }
+
+  void begin(VkCommandBuffer commandBuffer, const VitrailVkBeginInfo& info = {}) const {
+    vitrailVkCmdBegin(commandBuffer, handle_, &info);
+  }
+  void collected(VkCommandBuffer commandBuffer) const { vitrailVkCmdCollected(commandBuffer, handle_); }
+  void resolve(VkCommandBuffer commandBuffer, const VitrailVkResolveInfo& info = {}) const {
+    vitrailVkCmdResolve(commandBuffer, handle_, &info);
+  }
+  void end(VkCommandBuffer commandBuffer) const { vitrailVkCmdEnd(commandBuffer, handle_); }
+
+  VkDeviceSize copySize(std::uint32_t width, std::uint32_t height) const {
+    return vitrailVkCopySize(handle_, width, height);
+  }
+  void copyLists(VkCommandBuffer commandBuffer, const VitrailVkCopyInfo& info) const {
+    vitrailVkCmdCopyLists(commandBuffer, handle_, &info);
+  }
+
+  VitrailVkBarriers barriers(VitrailVkBarrierPoint point) const {
+    VitrailVkBarriers barriers{};
+    vitrailVkBarriers(handle_, point, &barriers);
+    return barriers;
+  }
+  VkResult readStats(std::uint64_t frame, VitrailStats& stats) const {
+    return vitrailVkReadStats(handle_, frame, &stats);
+  }
+
+ private:
+  VitrailVkTarget handle_ = nullptr;
+};
+
+} // namespace vulkan
+#endif
 
 } // namespace vitrail

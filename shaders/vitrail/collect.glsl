@@ -10,12 +10,19 @@
 // before the shader (early_fragment_tests), so fragments behind opaque geometry never enter a list. discard still
 // works: call it before vitrailCollect(), or do not call vitrailCollect() at all.
 //
+// Where the target's nodes carry a word of the host's, vitrailCollectWord(color, word) hands one over: the number of an
+// object, a material; shaders that do not store 0.
+//
 // Define before the include
-//   VITRAIL_SET                   required: the descriptor set number of vitrailTargetDescriptorSet() in your layout
-//   VITRAIL_POST_DEPTH_COVERAGE   with several samples and VK_EXT_post_depth_coverage: VitrailTargetDesc says the same
-//   VITRAIL_BUFFER_REFERENCE      where the context has VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS
-//   VITRAIL_CONSTANT_ID           the first of four specialization constants, default 1700; see
-//                                 vitrailCollectSpecialization()
+//   VITRAIL_SET                   required: the descriptor set number of vitrailVkTargetDescriptorSet() in your layout
+//   VITRAIL_POST_DEPTH_COVERAGE   with several samples and VK_EXT_post_depth_coverage: VitrailVkTargetDesc says the same
+//   VITRAIL_BUFFER_REFERENCE      to reach the pool by its address, where the context has
+//                                 VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS. Pools larger than maxStorageBufferRange need
+//                                 it. A shader that cannot reach the pool stores nothing, its fragments count as missing.
+//   VITRAIL_CPU_DRIVER            for drivers that run shaders on the CPU, as Mesa's lavapipe: the same result, by a flow
+//                                 that suits them
+//   VITRAIL_CONSTANT_ID           the first of five specialization constants, default 1700; see
+//                                 vitrailVkCollectSpecialization()
 #ifndef VITRAIL_COLLECT_GLSL
 #define VITRAIL_COLLECT_GLSL
 
@@ -27,10 +34,11 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 #endif
 
+#include "bindings.h"
 #include "layout.h"
 
 #ifndef VITRAIL_SET
-#error define VITRAIL_SET, the descriptor set number of vitrailTargetDescriptorSet() in your pipeline layout
+#error define VITRAIL_SET, the descriptor set number of vitrailVkTargetDescriptorSet() in your pipeline layout
 #endif
 #ifndef VITRAIL_CONSTANT_ID
 #define VITRAIL_CONSTANT_ID 1700
@@ -45,19 +53,30 @@ layout(early_fragment_tests) in;
 layout(constant_id = VITRAIL_CONSTANT_ID) const uint VITRAIL_NODE_FORMAT = 0xffffffffu;
 layout(constant_id = VITRAIL_CONSTANT_ID + 1) const uint VITRAIL_SAMPLES = 0u;
 layout(constant_id = VITRAIL_CONSTANT_ID + 2) const uint VITRAIL_KEEP_SUMS = 0xffffffffu; // 0 or 1
-layout(constant_id = VITRAIL_CONSTANT_ID + 3) const uint VITRAIL_UNLINKED = 0xffffffffu;  // 0 or 1
+layout(constant_id = VITRAIL_CONSTANT_ID + 3) const uint VITRAIL_LOOSE = 0xffffffffu; // 0 or 1
+layout(constant_id = VITRAIL_CONSTANT_ID + 4) const uint VITRAIL_USER_WORDS = 0xffffffffu; // 0 or 1
 
-layout(set = VITRAIL_SET, binding = 0, std140) uniform VitrailParametersBlock { VitrailParameters vitrailParameters; };
-layout(set = VITRAIL_SET, binding = 1, std430) buffer VitrailControlBlock { VitrailControl vitrailControl; };
-layout(set = VITRAIL_SET, binding = 2, std430) buffer VitrailHeadsBlock { uint vitrailHeads[]; };
-layout(set = VITRAIL_SET, binding = 4, std430) buffer VitrailSumsBlock { uint vitrailPixelSums[]; };
-#ifndef VITRAIL_BUFFER_REFERENCE
+layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_PARAMETERS, std140) uniform VitrailParametersBlock {
+  VitrailParameters vitrailParameters;
+};
+layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_CONTROL, std430) buffer VitrailControlBlock {
+  VitrailControl vitrailControl;
+};
+layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_HEADS, std430) buffer VitrailHeadsBlock { uint vitrailHeads[]; };
+layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_SUMS, std430) buffer VitrailSumsBlock { uint vitrailPixelSums[]; };
+#ifdef VITRAIL_CPU_DRIVER
 // The same memory again. Mesa's lavapipe waits before every draw until the draws before it are done where it sees that
 // the draw's shader writes a buffer; where a binding is declared more than once, as the pool's is, it does not look.
 // Draws need not wait: what they share is changed by atomics or set by all to one value, and a node has one writer.
-layout(set = VITRAIL_SET, binding = 1, std430) buffer VitrailControlAgain { uint vitrailControlAgain[]; };
-layout(set = VITRAIL_SET, binding = 2, std430) buffer VitrailHeadsAgain { uint vitrailHeadsAgain[]; };
-layout(set = VITRAIL_SET, binding = 4, std430) buffer VitrailSumsAgain { uint vitrailPixelSumsAgain[]; };
+layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_CONTROL, std430) buffer VitrailControlAgain {
+  uint vitrailControlAgain[];
+};
+layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_HEADS, std430) buffer VitrailHeadsAgain {
+  uint vitrailHeadsAgain[];
+};
+layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_SUMS, std430) buffer VitrailSumsAgain {
+  uint vitrailPixelSumsAgain[];
+};
 #endif
 
 uint vitrailPoolCapacity() { return vitrailParameters.capacity; }
@@ -65,10 +84,9 @@ uint vitrailPoolCapacity() { return vitrailParameters.capacity; }
 uvec2 vitrailPoolAddress() { return uvec2(vitrailParameters.nodesLow, vitrailParameters.nodesHigh); }
 #endif
 #define VITRAIL_POOL_SET VITRAIL_SET
-#define VITRAIL_POOL_BINDING 3
 #include "pool.glsl"
+#include "loose.glsl"
 #include "sums.glsl"
-#include "unlinked.glsl"
 
 VitrailLayout vitrailTargetLayout() {
   return VitrailLayout(VITRAIL_NODE_FORMAT == 0xffffffffu ? vitrailParameters.format : VITRAIL_NODE_FORMAT,
@@ -80,40 +98,56 @@ bool vitrailKeepsSums() {
   return VITRAIL_KEEP_SUMS == 0xffffffffu ? vitrailParameters.keepSums != 0u : VITRAIL_KEEP_SUMS != 0u;
 }
 
-// Whether a compute pass links the nodes.
-bool vitrailLinksLater() {
-  return VITRAIL_UNLINKED == 0xffffffffu ? vitrailParameters.unlinked != 0u : VITRAIL_UNLINKED != 0u;
+// Whether a compute pass builds the lists.
+bool vitrailKeepsLoose() {
+  return VITRAIL_LOOSE == 0xffffffffu ? vitrailParameters.loose != 0u : VITRAIL_LOOSE != 0u;
+}
+
+// Whether nodes carry a word of the host's.
+bool vitrailKeepsWords() {
+  return VITRAIL_USER_WORDS == 0xffffffffu ? vitrailParameters.userWords != 0u : VITRAIL_USER_WORDS != 0u;
+}
+
+// The width of the area for shaders that reach the pool as this one does: 0 where it cannot.
+uint vitrailReachedWidth() {
+#ifdef VITRAIL_BUFFER_REFERENCE
+  return vitrailParameters.widthByAddress;
+#else
+  return vitrailParameters.widthByBinding;
+#endif
 }
 
 // The nodes that this shader may write: none where it was specialized for another target.
 uint vitrailCapacity() {
   VitrailLayout nodes = vitrailTargetLayout();
-  uint keepSums = vitrailKeepsSums() ? 1u : 0u;
-  uint number = VITRAIL_LAYOUT(nodes.format, nodes.samples, keepSums, vitrailLinksLater() ? 1u : 0u);
+  uint number = VITRAIL_LAYOUT(nodes.format, nodes.samples, uint(vitrailKeepsSums()), uint(vitrailKeepsLoose()),
+                               uint(vitrailKeepsWords()));
   return vitrailParameters.capacities[number / 4u][number % 4u];
 }
 
-// Calls for the dispatch that blends the sums.
-void vitrailCallForSums() {
-  vitrailControl.overflowGroupsX = (vitrailParameters.width + 7u) / 8u;
-  vitrailControl.overflowGroupsY = (vitrailParameters.height + 7u) / 8u;
-  vitrailControl.overflowGroupsZ = 1u;
+// Two flows for fragments that find no node. Their shader may not suit the target: it may have been specialized for
+// another one, or not reach the pool. It writes to no memory that it does not know then, and counts what is missing.
+#ifndef VITRAIL_CPU_DRIVER
+// The pixels of the area, as far as the first question goes: outside is also where the shader cannot reach the pool.
+uint vitrailWidth() { return vitrailReachedWidth(); }
+
+// For a fragment outside: whether that is why.
+void vitrailCountUnreached(uvec2 pixel) {
+  if (pixel.x < vitrailParameters.width && pixel.y < vitrailParameters.height) atomicAdd(vitrailControl.misfits, 1u);
 }
 
-#ifdef VITRAIL_BUFFER_REFERENCE
 // Takes a node: its index, or where there is none one from `capacity` on, which is the shader's own. Whether the shader
 // suits the target is not asked before: GPUs were seen to take longer for that.
 uint vitrailTakeNode(uint capacity) { return atomicAdd(vitrailControl.requested, 1u); }
 
 // For a fragment whose shader was specialized for another target. The node that it was given, if any, is left as one
-// that changes nothing: who links nodes later links all of them.
+// that changes nothing: who builds lists later takes all nodes.
 void vitrailTurnAway(uint index, uint pixelIndex) {
   if (index < vitrailParameters.capacity) {
     atomicAdd(vitrailControl.misfitNodes, 1u);
     VitrailLayout target = VitrailLayout(vitrailParameters.format, vitrailParameters.samples, false);
     vitrailStoreNode(index, uvec4(0u, 0u, 0u, pixelIndex & VITRAIL_PIXEL_MASK), target);
   }
-  if (vitrailParameters.keepSums != 0u) vitrailCallForSums();
 }
 
 // What else the fragment that was given this index, and no node, does for the counters. One branch round all of it,
@@ -130,12 +164,16 @@ void vitrailCountMissing(uint index, uint pixelIndex, uint capacity) {
   }
 }
 #else
-// The same where the pool is reached by its binding, as on lavapipe, which executes every branch and every loop's body
-// once, for no fragment if need be, and is slow where memory is reached: a fragment whose shader is for another target
-// takes no index, and there is one atomic for all else.
+// For drivers that execute every branch and every loop's body once, for no fragment if need be, and are slow where
+// memory is reached: a fragment whose shader does not suit the target takes no index, and there is one atomic for all
+// else.
+uint vitrailWidth() { return vitrailParameters.width; }
+
+void vitrailCountUnreached(uvec2 pixel) {}
+
 uint vitrailTakeNode(uint capacity) {
   uint index = VITRAIL_END;
-  if (capacity != 0u) index = atomicAdd(vitrailControl.requested, 1u);
+  if (capacity != 0u && vitrailReachedWidth() != 0u) index = atomicAdd(vitrailControl.requested, 1u);
   return index;
 }
 
@@ -161,12 +199,11 @@ void vitrailAddMissing(uint pixelIndex, uvec4 node, uint coverage, VitrailLayout
 }
 
 // Names the declarations that are there twice, so that compilers keep them, in code that no pipeline has. They are
-// written and changed as the first ones are: the validation layer takes an atomic for a read, and a read of one by the
+// changed as the first ones are, by atomics: the validation layer takes an atomic for a read, and a read of one by the
 // side of a write of the other for a hazard between draws.
 void vitrailKeepDeclarations() {
-#ifndef VITRAIL_BUFFER_REFERENCE
+#ifdef VITRAIL_CPU_DRIVER
   if (VITRAIL_SAMPLES != 0xffffffffu) return; // a specialization constant, never so
-  vitrailControlAgain[0] = 0u;
   atomicAdd(vitrailHeadsAgain[0], 0u);
   atomicAdd(vitrailPixelSumsAgain[0], 0u);
 #endif
@@ -190,40 +227,48 @@ uvec2 vitrailAreaPixel(uint samples) {
 // fma(gl_FragCoord.w, P[3][2], -P[2][2]), where P[2][3] is -1 and P[0][2], P[1][2], P[0][3], P[1][3] and P[3][3] are
 // 0. With several samples only together with VITRAIL_POST_DEPTH_COVERAGE: else the resolve compares depths with those
 // of the depth image.
-void vitrailCollect(vec4 color, uint blend, float depth) {
+//
+// `word` is the host's, for targets whose nodes carry one; others do not look at it.
+void vitrailCollect(vec4 color, uint blend, float depth, uint word) {
   vitrailKeepDeclarations();
   VitrailLayout nodes = vitrailTargetLayout();
   uvec2 pixel = vitrailAreaPixel(nodes.samples);
-  if (pixel.x >= vitrailParameters.width || pixel.y >= vitrailParameters.height) return; // also those left and above
+  if (pixel.x >= vitrailWidth() || pixel.y >= vitrailParameters.height) { // also those left and above
+    vitrailCountUnreached(pixel);
+    return;
+  }
   uint coverage = nodes.samples == 1u ? 1u : uint(gl_SampleMaskIn[0]) & ((1u << nodes.samples) - 1u);
   uvec4 node;
   bool changes;
-  if (vitrailLinksLater()) {
-    changes = vitrailPackUnlinked(color, blend, depth, coverage, nodes, node);
+  if (vitrailKeepsLoose()) {
+    changes = vitrailPackLoose(color, blend, depth, coverage, nodes, node);
   } else {
     changes = vitrailPack(color, blend, depth, coverage, nodes, node);
   }
   if (!changes || coverage == 0u) return;
 
-  uint pixelIndex = pixel.y * vitrailParameters.width + pixel.x;
+  uint pixelIndex = pixel.y * vitrailWidth() + pixel.x;
   uint capacity = vitrailCapacity();
   uint index = vitrailTakeNode(capacity);
   if (index >= capacity) {
     vitrailCountMissing(index, pixelIndex, capacity);
     if (vitrailKeepsSums() && vitrailParameters.keepSums != 0u) { // a shader for another target looks at both
-      if (index == vitrailParameters.capacity || index == VITRAIL_END) vitrailCallForSums();
-      if (vitrailLinksLater()) node = vitrailFinish(node, nodes);
+      if (vitrailKeepsLoose()) node = vitrailFinish(node, nodes);
       vitrailAddMissing(pixelIndex, node, coverage, nodes);
     }
     return;
   }
   uint next = pixelIndex;
-  if (!vitrailLinksLater()) next = atomicExchange(vitrailHeads[pixelIndex], index);
+  if (!vitrailKeepsLoose()) next = atomicExchange(vitrailHeads[pixelIndex], index);
   node.w |= next & vitrailNextMask(nodes);
   vitrailStoreNode(index, node, nodes);
+  if (vitrailKeepsWords()) vitrailStoreWord(index, word, nodes);
 }
 
+void vitrailCollect(vec4 color, uint blend, float depth) { vitrailCollect(color, blend, depth, 0u); }
 void vitrailCollect(vec4 color, uint blend) { vitrailCollect(color, blend, gl_FragCoord.z); }
 void vitrailCollect(vec4 color) { vitrailCollect(color, VITRAIL_OVER); }
+void vitrailCollectWord(vec4 color, uint blend, uint word) { vitrailCollect(color, blend, gl_FragCoord.z, word); }
+void vitrailCollectWord(vec4 color, uint word) { vitrailCollectWord(color, VITRAIL_OVER, word); }
 
 #endif

@@ -44,45 +44,68 @@ struct VitrailNodeCompact {
 struct VitrailNodeHdr {
   uvec4 words;
 };
-// Nodes that a compute pass links (VitrailLinking) hold in place of `next`, until then, the number of their pixel in 24
-// bits: VITRAIL_PIXELS_TO_LINK of them at most. `standard` ones at 1 sample then also are as unlinked.glsl says.
+// A loose node, which is not on a list yet (VitrailListBuild), holds in place of `next` the number of its pixel in 24
+// bits: VITRAIL_LOOSE_PIXELS of them at most. `standard` ones at 1 sample then also are as loose.glsl says.
+//
+// Where nodes carry a word of the host's, those words lie behind all that the format has of the pool's nodes: the word
+// of node i is 32-bit word i from byte capacity * (bytes of a node) on.
 
 // Counters of one thing, to be added up: work groups that add to one word at once wait for each other.
 #define VITRAIL_COUNTERS 16
+
+// The lists of one class of lengths, which a dispatch leaves to a later one: how many, and the work groups of that
+// dispatch as vkCmdDispatchIndirect reads them.
+struct VitrailListClass {
+  uint count;
+  uint groupsX;
+  uint groupsY;
+  uint groupsZ;
+};
+// Without networks there is one class, VITRAIL_CLASS_LONG, for all that are not short.
+#define VITRAIL_CLASS_MEDIUM 0u
+#define VITRAIL_CLASS_LONG 1u
+#define VITRAIL_CLASS_LONGEST 2u
+#define VITRAIL_LIST_CLASSES 3
 
 // What a frame counts. All zero when the collect pass starts.
 struct VitrailControl {
   uint requested;   // fragments that asked for a node: the index of the next one's, which may be beyond the pool
   uint wraps;       // VITRAIL_WRAP_STEP of them each are not in `requested`
-  uint misfits;     // fragments of shaders for another target that did not ask for a node: they are missing too
+  uint misfits;     // fragments whose shader cannot write to this target and that took no node: they are missing too
   uint misfitNodes; // nodes that such fragments were given, and left empty
   uint layersMax;   // this and the next three are written by the resolve
   uint coveredPixels[VITRAIL_COUNTERS];
   uint cutPixels; // lists that the driver did not let it finish
   uint approximatePixels;
-  uint mediumLists;   // lists that are left to the second dispatch
-  uint mediumGroupsX; // the work groups of that dispatch, as vkCmdDispatchIndirect reads them
-  uint mediumGroupsY;
-  uint mediumGroupsZ;
-  uint longLists; // lists that are left to the third dispatch; without networks to the second
-  uint longGroupsX;
-  uint longGroupsY;
-  uint longGroupsZ;
-  uint longestLists; // lists that are left to the fourth dispatch
-  uint longestGroupsX;
-  uint longestGroupsY;
-  uint longestGroupsZ;
-  // The dispatch that blends a frame that overflowed; written by the first fragment without a node.
-  uint overflowGroupsX;
+  VitrailListClass classes[VITRAIL_LIST_CLASSES];
+  // The arguments of indirect commands, which follow from the first four (src/kernels/arguments.glsl). Of a frame
+  // without a fragment all are 0 but for `plain`.
+  uint overflowGroupsX; // the dispatch that blends a frame that overflowed by its sums
   uint overflowGroupsY;
   uint overflowGroupsZ;
+  uint pixelGroupsX; // dispatches over all pixels of the area
+  uint pixelGroupsY;
+  uint pixelGroupsZ;
+  uint plainGroupsX; // the dispatch that averages the opaque samples of a frame without a fragment
+  uint plainGroupsY;
+  uint plainGroupsZ;
+  uint drawVertices; // the draw of the fragment resolve, as vkCmdDrawIndirect reads it
+  uint drawInstances;
+  uint drawFirstVertex;
+  uint drawFirstInstance;
+  uint plainVertices; // its draw for a frame without a fragment
+  uint plainInstances;
+  uint plainFirstVertex;
+  uint plainFirstInstance;
 };
 
+struct VitrailCopyHeader { uint layers, capacity, x, y, width, height; uint reserved[2]; };
+struct VitrailLayer { uint w[8]; };
 // How nodes are collected, as a number: a shader that was specialized for another target must not write to this one.
-// Samples are 1, 2, 4 or 8, the others 0 or 1.
-#define VITRAIL_LAYOUT(format, samples, keepSums, unlinked) \
-  ((((format)*4u + (samples) / 2u - (samples) / 8u) * 2u + (keepSums)) * 2u + (unlinked))
-#define VITRAIL_LAYOUTS 48
+// Samples are 1, 2, 4 or 8, the others behind them 0 or 1.
+#define VITRAIL_LAYOUT(format, samples, keepSums, loose, userWords) \
+  (((((format)*4u + (samples) / 2u - (samples) / 8u) * 2u + (keepSums)) * 2u + (loose)) * 2u + (userWords))
+#define VITRAIL_LAYOUTS 96
 
 // What one vitrailCmdBegin sets (std140).
 struct VitrailParameters {
@@ -95,9 +118,15 @@ struct VitrailParameters {
   uint samples;      // 1, 2, 4, 8
   uint nearestIsOne; // 1: reversed depth
   uint keepSums;     // 1: fragments without a node are added to their pixel's sums
-  uint unlinked;     // 1: a compute pass links the nodes
+  uint loose;        // 1: a compute pass builds the lists
   uint nodesLow;     // the address of the pool, where it is reached by address
   uint nodesHigh;
+  // `width` for collecting shaders that reach the whole pool by its binding, and for those that reach it by its address
+  // (VITRAIL_BUFFER_REFERENCE); 0 where they cannot. Asking whether a pixel is in the area asks both questions at once.
+  uint widthByBinding;
+  uint widthByAddress;
+  uint userWords; // 1: nodes carry a word of the host's
+  uint _reserved;
   // The nodes for shaders of each VITRAIL_LAYOUT: `capacity` for those that suit the target, else 0. Asking whether a
   // fragment's node is one of them asks both questions at once.
   uvec4 capacities[VITRAIL_LAYOUTS / 4];
@@ -107,10 +136,16 @@ struct VitrailParameters {
 static_assert(sizeof(VitrailNodeStandard) == 8);
 static_assert(sizeof(VitrailNodeCompact) == 8);
 static_assert(sizeof(VitrailNodeHdr) == 16);
-static_assert(sizeof(VitrailControl) == 152);
+static_assert(sizeof(VitrailListClass) == 16);
+static_assert(sizeof(VitrailControl) == 208);
 static_assert(offsetof(VitrailControl, wraps) == 4); // collect.glsl reaches both as words
 static_assert(offsetof(VitrailControl, misfits) == 8);
-static_assert(sizeof(VitrailParameters) == 240);
+static_assert(offsetof(VitrailControl, classes) == 92);
+static_assert(offsetof(VitrailControl, overflowGroupsX) == 140);
+static_assert(offsetof(VitrailControl, plainFirstInstance) == 204);
+static_assert(offsetof(VitrailParameters, widthByBinding) == 48);
+static_assert(offsetof(VitrailParameters, capacities) == 64);
+static_assert(sizeof(VitrailParameters) == 448);
 #define VITRAIL_CONSTANT constexpr uint
 #else
 #define VITRAIL_CONSTANT const uint
@@ -129,7 +164,7 @@ VITRAIL_CONSTANT VITRAIL_FORMAT_STANDARD = 0u;
 VITRAIL_CONSTANT VITRAIL_FORMAT_COMPACT = 1u;
 VITRAIL_CONSTANT VITRAIL_FORMAT_HDR = 2u;
 
-VITRAIL_CONSTANT VITRAIL_PIXELS_TO_LINK = 0x1000000u; // of an area whose nodes a compute pass links
+VITRAIL_CONSTANT VITRAIL_LOOSE_PIXELS = 0x1000000u; // of an area whose lists a compute pass builds
 
 // Blend modes, with the values of VitrailBlend.
 VITRAIL_CONSTANT VITRAIL_OVER = 0u;

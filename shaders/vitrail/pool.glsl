@@ -1,14 +1,15 @@
 // Reaches a target's node pool, in any format, through a binding or, where the including shader defines
 // VITRAIL_BUFFER_REFERENCE, through its address, which has no limit of size. Before the include, define
 //
-//   VITRAIL_POOL_SET, VITRAIL_POOL_BINDING   where the pool is bound
-//   uint vitrailPoolCapacity()               its nodes
-//   uvec2 vitrailPoolAddress()               its address (VITRAIL_BUFFER_REFERENCE only)
+//   VITRAIL_POOL_SET             the set of the target, where the pool is bound
+//   uint vitrailPoolCapacity()   its nodes
+//   uvec2 vitrailPoolAddress()   its address (VITRAIL_BUFFER_REFERENCE only)
 //
 // A node is handled as four words, as in node.glsl: `w` is the word that holds `next`.
 #ifndef VITRAIL_POOL_GLSL
 #define VITRAIL_POOL_GLSL
 
+#include "bindings.h"
 #include "node.glsl"
 
 #ifdef VITRAIL_BUFFER_REFERENCE
@@ -16,6 +17,7 @@ layout(buffer_reference, std430, buffer_reference_align = 16) buffer VitrailStan
   VitrailNodeStandard nodes[];
 };
 layout(buffer_reference, std430, buffer_reference_align = 8) buffer VitrailLinks { uint links[]; };
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer VitrailWords { uint words[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer VitrailCompactNodes {
   VitrailNodeCompact nodes[];
 };
@@ -28,23 +30,35 @@ uvec2 vitrailLinksAddress() {
   uint low = uaddCarry(pool.x, vitrailPoolCapacity() << 3, carry);
   return uvec2(low, pool.y + (vitrailPoolCapacity() >> 29) + carry);
 }
+// Behind all nodes, of `perNode` words each.
+uvec2 vitrailWordsAddress(uint perNode) {
+  uvec2 pool = vitrailPoolAddress();
+  uint high;
+  uint bytes;
+  umulExtended(vitrailPoolCapacity(), 4u * perNode, high, bytes);
+  uint carry;
+  uint low = uaddCarry(pool.x, bytes, carry);
+  return uvec2(low, pool.y + high + carry);
+}
 #define VITRAIL_STANDARD(index) VitrailStandardNodes(vitrailPoolAddress()).nodes[index].words
 #define VITRAIL_LINK(index) VitrailLinks(vitrailLinksAddress()).links[index]
+#define VITRAIL_WORD(index, perNode) VitrailWords(vitrailWordsAddress(perNode)).words[index]
 #define VITRAIL_COMPACT(index) VitrailCompactNodes(vitrailPoolAddress()).nodes[index].words
 #define VITRAIL_HDR(index) VitrailHdrNodes(vitrailPoolAddress()).nodes[index].words
 #else
-layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailStandardBlock {
+layout(set = VITRAIL_POOL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailStandardBlock {
   VitrailNodeStandard vitrailStandardNodes[];
 };
-layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailLinkBlock { uint vitrailLinks[]; };
-layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailCompactBlock {
+layout(set = VITRAIL_POOL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailLinkBlock { uint vitrailLinks[]; };
+layout(set = VITRAIL_POOL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailCompactBlock {
   VitrailNodeCompact vitrailCompactNodes[];
 };
-layout(set = VITRAIL_POOL_SET, binding = VITRAIL_POOL_BINDING, std430) buffer VitrailHdrBlock {
+layout(set = VITRAIL_POOL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailHdrBlock {
   VitrailNodeHdr vitrailHdrNodes[];
 };
 #define VITRAIL_STANDARD(index) vitrailStandardNodes[index].words
 #define VITRAIL_LINK(index) vitrailLinks[2u * vitrailPoolCapacity() + index]
+#define VITRAIL_WORD(index, perNode) vitrailLinks[(perNode) * vitrailPoolCapacity() + (index)]
 #define VITRAIL_COMPACT(index) vitrailCompactNodes[index].words
 #define VITRAIL_HDR(index) vitrailHdrNodes[index].words
 #endif
@@ -92,5 +106,16 @@ void vitrailStoreNext(uint index, uint next, VitrailLayout nodes) {
     VITRAIL_HDR(index).w = word;
   }
 }
+
+// The words of a node, in however many arrays they lie.
+uint vitrailNodeWords(VitrailLayout nodes) {
+  return nodes.format == VITRAIL_FORMAT_STANDARD ? 3u : nodes.format == VITRAIL_FORMAT_COMPACT ? 2u : 4u;
+}
+
+// The host's word of a node, of targets whose nodes carry one.
+void vitrailStoreWord(uint index, uint word, VitrailLayout nodes) {
+  VITRAIL_WORD(index, vitrailNodeWords(nodes)) = word;
+}
+uint vitrailLoadWord(uint index, VitrailLayout nodes) { return VITRAIL_WORD(index, vitrailNodeWords(nodes)); }
 
 #endif

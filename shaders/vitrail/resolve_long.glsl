@@ -183,9 +183,10 @@ VitrailResolved vitrailBlendList(uint head, uint nodeCount) {
   return result;
 }
 
-// A list of any length.
-VitrailResolved vitrailResolveLong(uint head, uint nodeCount) {
+// A list of any length, from its head, which another node is afterwards.
+VitrailResolved vitrailResolveLong(inout uint head, uint nodeCount) {
   VitrailSorted sorted = vitrailSortLong(head, nodeCount);
+  head = sorted.head;
   VitrailResolved result = vitrailBlendList(sorted.head, nodeCount);
   result.layers = sorted.count;
   result.complete = result.complete && sorted.complete;

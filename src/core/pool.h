@@ -8,15 +8,16 @@
 
 namespace vitrail {
 
-// Bytes of a node; 0 where `format` is none of VITRAIL_FORMAT_*.
-constexpr std::uint32_t nodeBytes(std::uint32_t format) {
+// Bytes of a node, with or without a word of the host's; 0 where `format` is none of VITRAIL_FORMAT_*.
+constexpr std::uint32_t nodeBytes(std::uint32_t format, bool userWords = false) {
+  const std::uint32_t word = userWords ? sizeof(layout::uint) : 0; // behind all nodes
   switch (format) {
     case layout::VITRAIL_FORMAT_STANDARD:
-      return sizeof(layout::VitrailNodeStandard) + sizeof(layout::uint); // the link lies apart
+      return sizeof(layout::VitrailNodeStandard) + sizeof(layout::uint) + word; // the link lies apart
     case layout::VITRAIL_FORMAT_COMPACT:
-      return sizeof(layout::VitrailNodeCompact);
+      return sizeof(layout::VitrailNodeCompact) + word;
     case layout::VITRAIL_FORMAT_HDR:
-      return sizeof(layout::VitrailNodeHdr);
+      return sizeof(layout::VitrailNodeHdr) + word;
     default:
       return 0;
   }
@@ -41,8 +42,8 @@ constexpr std::uint32_t maxNodeIndexCount(std::uint32_t format, std::uint32_t sa
 }
 
 // Bytes of a pool. A pool without nodes still has the room of one: a buffer cannot be empty.
-constexpr std::uint64_t nodePoolBytes(std::uint32_t format, std::uint32_t capacity) {
-  return std::max<std::uint64_t>(capacity, 1) * nodeBytes(format);
+constexpr std::uint64_t nodePoolBytes(std::uint32_t format, std::uint32_t capacity, bool userWords = false) {
+  return std::max<std::uint64_t>(capacity, 1) * nodeBytes(format, userWords);
 }
 
 // Bytes of the head pointers of an area.
@@ -72,6 +73,15 @@ constexpr std::uint64_t sumBytes(std::uint32_t areaPixels) {
   return std::uint64_t{areaPixels} * layout::VITRAIL_SUM_WORDS * sizeof(layout::uint);
 }
 
+// Bytes of a copy of lists: what precedes the layers of an area of so many pixels, and the whole.
+constexpr std::uint64_t copyListsOffset() { return sizeof(layout::VitrailCopyHeader); }
+constexpr std::uint64_t copyLayersOffset(std::uint64_t pixels) {
+  return copyListsOffset() + pixels * 2 * sizeof(layout::uint);
+}
+constexpr std::uint64_t copyBytes(std::uint64_t pixels, std::uint32_t layers) {
+  return copyLayersOffset(pixels) + std::uint64_t{layers} * sizeof(layout::VitrailLayer);
+}
+
 // A part of a buffer, in bytes.
 struct StoragePart {
   std::uint64_t offset = 0;
@@ -86,43 +96,54 @@ struct StorageLayout {
   StoragePart mediumLists; // pixels whose lists one invocation takes
   StoragePart longLists;   // lists that groups of invocations take, or pixels
   StoragePart sums;        // VITRAIL_SUM_WORDS a pixel of the area; 16 unused bytes where none are kept
+  StoragePart copy;        // copied lists, of at most as many pixels as layers; 16 unused bytes where none are
   StoragePart nodes;       // the pool
   std::uint64_t total = 0; // bytes of the buffer
 };
 
-// Places the parts one after the other, each at a multiple of `alignment` bytes (a power of two, at least 4).
-constexpr StorageLayout layoutStorage(std::uint32_t areaPixels, std::uint32_t nodeCapacity, std::uint32_t format,
-                                      bool keepSums, std::uint64_t alignment) {
+// What that depends on.
+struct StorageNeeds {
+  std::uint32_t areaPixels = 0;
+  std::uint32_t nodeCapacity = 0;
+  std::uint32_t format = 0; // VITRAIL_FORMAT_*
+  bool keepSums = false;
+  bool userWords = false;
+  std::uint32_t copyLayers = 0;
+  std::uint64_t alignment = 256; // of each part, in bytes: a power of two, at least 4
+};
+
+// Places the parts one after the other.
+constexpr StorageLayout layoutStorage(const StorageNeeds& needs) {
   constexpr std::uint64_t kEmpty = 16; // a binding cannot be empty
   StorageLayout storage;
   const auto place = [&](std::uint64_t size) {
-    const StoragePart part{(storage.total + alignment - 1) / alignment * alignment, size};
+    const StoragePart part{(storage.total + needs.alignment - 1) / needs.alignment * needs.alignment, size};
     storage.total = part.offset + part.size;
     return part;
   };
   storage.parameters = place(sizeof(layout::VitrailParameters));
   storage.control = place(sizeof(layout::VitrailControl));
-  storage.heads = place(headBytes(areaPixels));
-  storage.mediumLists = place(listBytes(areaPixels, nodeCapacity, layout::VITRAIL_SHORT_LIST));
+  storage.heads = place(headBytes(needs.areaPixels));
+  storage.mediumLists = place(listBytes(needs.areaPixels, needs.nodeCapacity, layout::VITRAIL_SHORT_LIST));
   // Where lists are not left to groups of invocations, it holds the pixels of all that are not short, which are fewer.
-  storage.longLists = place(groupListBytes(areaPixels, nodeCapacity));
-  storage.sums = place(keepSums ? std::max(sumBytes(areaPixels), kEmpty) : kEmpty);
-  storage.nodes = place(nodePoolBytes(format, nodeCapacity));
+  storage.longLists = place(groupListBytes(needs.areaPixels, needs.nodeCapacity));
+  storage.sums = place(needs.keepSums ? std::max(sumBytes(needs.areaPixels), kEmpty) : kEmpty);
+  storage.copy = place(needs.copyLayers > 0 ? copyBytes(needs.copyLayers, needs.copyLayers) : kEmpty);
+  storage.nodes = place(nodePoolBytes(needs.format, needs.nodeCapacity, needs.userWords));
   return storage;
 }
 
-// The most nodes for which layoutStorage() takes no more than `bytes`, and that the format can have; 0 where not even
-// one fits.
-constexpr std::uint32_t nodeCapacityFor(std::uint64_t bytes, std::uint32_t areaPixels, std::uint32_t format,
-                                        std::uint32_t samples, bool keepSums, std::uint64_t alignment) {
+// The most nodes for which layoutStorage() takes no more than `bytes`, and that the format can have at that sample
+// count; 0 where not even one fits. `needs` with any nodeCapacity.
+constexpr std::uint32_t nodeCapacityFor(std::uint64_t bytes, StorageNeeds needs, std::uint32_t samples) {
   std::uint32_t fits = 0;
-  std::uint32_t most = maxNodeIndexCount(format, samples);
+  std::uint32_t most = maxNodeIndexCount(needs.format, samples);
   while (fits < most) { // the size grows with the capacity
-    const std::uint32_t middle = most - (most - fits) / 2;
-    if (layoutStorage(areaPixels, middle, format, keepSums, alignment).total <= bytes) {
-      fits = middle;
+    needs.nodeCapacity = most - (most - fits) / 2;
+    if (layoutStorage(needs).total <= bytes) {
+      fits = needs.nodeCapacity;
     } else {
-      most = middle - 1;
+      most = needs.nodeCapacity - 1;
     }
   }
   return fits;

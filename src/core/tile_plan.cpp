@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kHeadroom = 1.1;    // fragments are not spread evenly over a tile's parts
 constexpr std::uint64_t kGrowth = 2; // of one tile over the one before it
-constexpr std::uint64_t kParts = 7;  // of layoutStorage(); each wastes less than the alignment
+constexpr std::uint64_t kParts = 8;  // of layoutStorage(); each wastes less than the alignment
 
 std::uint64_t pixelsOf(const Rectangle& r) { return std::uint64_t{r.width} * r.height; }
 
@@ -34,7 +34,12 @@ TilePlan::TilePlan(const TilePlanInfo& info) : info_(info) {
   const std::uint64_t most = info.areaPixelsLimit != 0 ? info.areaPixelsLimit : 0xffffffffU;
   areaPixels_ = static_cast<std::uint32_t>(
       std::clamp<std::uint64_t>(std::min(pixels, pixelsFor(info.memoryBudget / 4, info.alignment)), 1, most));
-  nodeCapacity_ = nodeCapacityFor(info.memoryBudget, areaPixels_, info.format, info.samples, false, info.alignment);
+  StorageNeeds needs;
+  needs.areaPixels = areaPixels_;
+  needs.format = info.format;
+  needs.userWords = info.userWords;
+  needs.alignment = info.alignment;
+  nodeCapacity_ = nodeCapacityFor(info.memoryBudget, needs, info.samples);
   if (info.nodeCapacityLimit != 0) nodeCapacity_ = std::min(nodeCapacity_, info.nodeCapacityLimit);
   tilePixels_ = areaPixels_;
   if (info.expectedFragments != 0) {
@@ -81,7 +86,7 @@ bool TilePlan::finish(std::uint64_t requested, std::uint64_t missing, std::uint3
   }
   if (pixelsOf(last_) <= 1) {
     // Head pointers and lists have their quarter.
-    bytesNeeded_ = (requested * nodeBytes(info_.format) + kParts * info_.alignment) / 3 * 4 + 4;
+    bytesNeeded_ = (requested * nodeBytes(info_.format, info_.userWords) + kParts * info_.alignment) / 3 * 4 + 4;
     return false;
   }
   const std::uint64_t parts = std::max<std::uint64_t>(2, partsFor(requested, capacity));

@@ -11,6 +11,7 @@ namespace vitrail {
 struct TilePlanInfo {
   Rectangle area;           // what has to be drawn; may be empty
   std::uint32_t format = 0; // VITRAIL_FORMAT_*
+  bool userWords = false;
   std::uint32_t samples = 1;
   std::uint64_t memoryBudget = 0;      // bytes for layoutStorage() of one tile, already clamped to the device
   std::uint64_t alignment = 256;       // of layoutStorage(); at least 256

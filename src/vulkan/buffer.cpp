@@ -20,7 +20,7 @@ double mebibytes(VkDeviceSize bytes) { return static_cast<double>(bytes) / (1024
 
 } // namespace
 
-VkResult Buffer::create(const VitrailContext_T& context, VkDeviceSize bytes, VkBufferUsageFlags usage,
+VkResult Buffer::create(const VitrailVkContext_T& context, VkDeviceSize bytes, VkBufferUsageFlags usage,
                         VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred, const char* prefix,
                         const char* what) {
   size = bytes;
@@ -62,7 +62,7 @@ VkResult Buffer::create(const VitrailContext_T& context, VkDeviceSize bytes, VkB
   return VK_SUCCESS;
 }
 
-void Buffer::destroy(const VitrailContext_T& context) {
+void Buffer::destroy(const VitrailVkContext_T& context) {
   context.vk.DestroyBuffer(context.device, buffer, context.allocator);
   context.vk.FreeMemory(context.device, memory, context.allocator); // unmaps
   *this = {};

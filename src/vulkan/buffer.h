@@ -14,11 +14,11 @@ struct Buffer {
 
   // Creates the buffer in a memory type with the `required` properties, preferring one that has `preferred` too; maps
   // it where `required` has HOST_VISIBLE. `what` names it in the log ("node pool") and, after `prefix`, in debuggers.
-  VkResult create(const VitrailContext_T& context, VkDeviceSize bytes, VkBufferUsageFlags usage,
+  VkResult create(const VitrailVkContext_T& context, VkDeviceSize bytes, VkBufferUsageFlags usage,
                   VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred, const char* prefix,
                   const char* what);
 
-  void destroy(const VitrailContext_T& context);
+  void destroy(const VitrailVkContext_T& context);
 };
 
 } // namespace vitrail

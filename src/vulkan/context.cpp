@@ -5,14 +5,16 @@
 #include <memory>
 #include <new>
 
-#include "core/pool.h"
+#include "check.h"
+#include "core/target_rules.h"
+#include "vitrail/bindings.h"
 
 namespace vitrail {
 
 namespace {
 
 // The host says that its device was created with these; a physical device without them tells that it was not.
-VkResult checkFeatures(const VitrailContext_T& context, const char* deviceName) {
+VkResult checkFeatures(const VitrailVkContext_T& context, const char* deviceName) {
   VkPhysicalDeviceVulkan12Features features12{};
   features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
   VkPhysicalDeviceFeatures2 features{};
@@ -24,21 +26,21 @@ VkResult checkFeatures(const VitrailContext_T& context, const char* deviceName) 
     return context.log.fail(VK_ERROR_FEATURE_NOT_PRESENT, "%s lacks %s, which %s", deviceName, feature, use);
   };
   if (core.fragmentStoresAndAtomics == VK_FALSE) return lacks("fragmentStoresAndAtomics", "collects fragments");
-  if (context.has(VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS) && features12.bufferDeviceAddress == VK_FALSE) {
-    return lacks("bufferDeviceAddress", "VitrailContextDesc::features names");
+  if (context.has(VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS) && features12.bufferDeviceAddress == VK_FALSE) {
+    return lacks("bufferDeviceAddress", "VitrailVkContextDesc::features names");
   }
-  if (context.has(VITRAIL_FEATURE_DUAL_SRC_BLEND) && core.dualSrcBlend == VK_FALSE) {
-    return lacks("dualSrcBlend", "VitrailContextDesc::features names");
+  if (context.has(VITRAIL_VK_FEATURE_DUAL_SRC_BLEND) && core.dualSrcBlend == VK_FALSE) {
+    return lacks("dualSrcBlend", "VitrailVkContextDesc::features names");
   }
-  if (context.has(VITRAIL_FEATURE_SAMPLE_RATE_SHADING) && core.sampleRateShading == VK_FALSE) {
-    return lacks("sampleRateShading", "VitrailContextDesc::features names");
+  if (context.has(VITRAIL_VK_FEATURE_SAMPLE_RATE_SHADING) && core.sampleRateShading == VK_FALSE) {
+    return lacks("sampleRateShading", "VitrailVkContextDesc::features names");
   }
   return VK_SUCCESS;
 }
 
-void readLimits(VitrailContext_T& context, const VkPhysicalDeviceProperties& device, VkDeviceSize allocationSize) {
+void readLimits(VitrailVkContext_T& context, const VkPhysicalDeviceProperties& device, VkDeviceSize allocationSize) {
   const VkPhysicalDeviceLimits& limits = device.limits;
-  Limits& kept = context.limits;
+  DeviceLimits& kept = context.limits;
   constexpr VkDeviceSize kLeastAlignment = 256; // of the parts that are cleared and copied, on every device
   kept.storageBufferRange = limits.maxStorageBufferRange;
   kept.allocationSize = allocationSize;
@@ -47,6 +49,13 @@ void readLimits(VitrailContext_T& context, const VkPhysicalDeviceProperties& dev
   kept.sampleCounts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts &
                       limits.sampledImageColorSampleCounts & limits.sampledImageDepthSampleCounts;
   kept.isCpu = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  kept.networks = !kept.isCpu;
+#ifdef VITRAIL_TEST_USE_NETWORKS // so that a CPU device tests what GPUs run
+  kept.networks = true;
+#endif
+  kept.poolByAddress = context.has(VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS);
+  kept.dualSourceBlending = context.has(VITRAIL_VK_FEATURE_DUAL_SRC_BLEND);
+  kept.sampleShading = context.has(VITRAIL_VK_FEATURE_SAMPLE_RATE_SHADING);
   // NVIDIA's GH100 (H100, H200 and their like), of which 2 of 66 texture processing clusters draw. Vulkan does not tell
   // such things of a device.
   constexpr std::uint32_t kNvidia = 0x10de;
@@ -61,13 +70,13 @@ void readLimits(VitrailContext_T& context, const VkPhysicalDeviceProperties& dev
   }
 }
 
-// What src/shaders/resolve_group.comp asks for.
+// What the kernels ask for in which groups of invocations resolve a list.
 bool exchangesInGroups(const VkPhysicalDeviceSubgroupProperties& subgroups) {
   return (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0 &&
          (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT) != 0 && subgroups.subgroupSize >= 8;
 }
 
-VkResult checkDevice(VitrailContext_T& context) {
+VkResult checkDevice(VitrailVkContext_T& context) {
   VkPhysicalDeviceSubgroupProperties subgroups{};
   subgroups.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
   VkPhysicalDeviceMaintenance3Properties maintenance3{};
@@ -88,7 +97,7 @@ VkResult checkDevice(VitrailContext_T& context) {
   return checkFeatures(context, device.deviceName);
 }
 
-VkResult createSetLayout(const VitrailContext_T& context, std::span<const VkDescriptorSetLayoutBinding> bindings,
+VkResult createSetLayout(const VitrailVkContext_T& context, std::span<const VkDescriptorSetLayoutBinding> bindings,
                          const char* name, VkDescriptorSetLayout* layout) {
   VkDescriptorSetLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
@@ -99,31 +108,31 @@ VkResult createSetLayout(const VitrailContext_T& context, std::span<const VkDesc
   return result;
 }
 
-VkResult createSetLayouts(VitrailContext_T& context) {
-  std::array<VkDescriptorSetLayoutBinding, kBindingCount> buffers{};
-  for (std::uint32_t i = 0; i < kBindingCount; ++i) {
+VkResult createSetLayouts(VitrailVkContext_T& context) {
+  std::array<VkDescriptorSetLayoutBinding, VITRAIL_BINDINGS> buffers{};
+  for (std::uint32_t i = 0; i < VITRAIL_BINDINGS; ++i) {
     buffers[i].binding = i;
     buffers[i].descriptorType =
-        i == kParametersBinding ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        i == VITRAIL_BINDING_PARAMETERS ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     buffers[i].descriptorCount = 1;
     buffers[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-    if (i != kMediumListsBinding && i != kLongListsBinding) buffers[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
+    if (i < VITRAIL_BINDING_MEDIUM_LISTS) buffers[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
   }
   VkResult result = createSetLayout(context, buffers, "vitrail target set layout", &context.setLayout);
   if (result != VK_SUCCESS) return result;
 
-  std::array<VkDescriptorSetLayoutBinding, kViewBindingCount> images{};
-  for (std::uint32_t i = 0; i < kViewBindingCount; ++i) {
+  std::array<VkDescriptorSetLayoutBinding, VITRAIL_VIEW_BINDINGS> images{};
+  for (std::uint32_t i = 0; i < VITRAIL_VIEW_BINDINGS; ++i) {
     images[i].binding = i;
-    images[i].descriptorType = i == kColorBinding ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    images[i].descriptorType = i == VITRAIL_VIEW_BINDING_COLOR ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
     images[i].descriptorCount = 1;
     images[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-    if (i != kColorBinding) images[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
+    if (i != VITRAIL_VIEW_BINDING_COLOR) images[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
   }
   return createSetLayout(context, images, "vitrail view set layout", &context.viewSetLayout);
 }
 
-VkResult createResolveLayout(VitrailContext_T& context) {
+VkResult createResolveLayout(VitrailVkContext_T& context) {
   const std::array<VkDescriptorSetLayout, 2> sets = {context.setLayout, context.viewSetLayout};
   VkPipelineLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
@@ -136,7 +145,7 @@ VkResult createResolveLayout(VitrailContext_T& context) {
   return VK_SUCCESS;
 }
 
-VkResult build(VitrailContext_T& context) {
+VkResult build(VitrailVkContext_T& context) {
   VkResult result = checkDevice(context);
   if (result != VK_SUCCESS) return result;
   result = createSetLayouts(context);
@@ -149,7 +158,7 @@ VkResult build(VitrailContext_T& context) {
 
 } // namespace vitrail
 
-void VitrailContext_T::name(VkObjectType type, std::uint64_t handle, const char* text) const {
+void VitrailVkContext_T::name(VkObjectType type, std::uint64_t handle, const char* text) const {
   if (vk.SetDebugUtilsObjectNameEXT == nullptr) return;
   VkDebugUtilsObjectNameInfoEXT info{};
   info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
@@ -159,17 +168,38 @@ void VitrailContext_T::name(VkObjectType type, std::uint64_t handle, const char*
   vk.SetDebugUtilsObjectNameEXT(device, &info); // a name that cannot be kept changes nothing
 }
 
-extern "C" VkResult vitrailCreateContext(const VitrailContextDesc* desc, VitrailContext* context) {
-  if (context == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
-  *context = nullptr;
-  if (desc == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
-  const vitrail::Log log{desc->log, desc->logUser};
+void vitrail::releaseContext(VitrailVkContext context) {
+  if (context->owners.fetch_sub(1) > 1) return;
+  const std::unique_ptr<VitrailVkContext_T> owned(context);
+  const Functions& vk = context->vk;
+  for (const auto& [key, pipeline] : context->pipelines) {
+    vk.DestroyPipeline(context->device, pipeline, context->allocator);
+  }
+  vk.DestroyPipelineLayout(context->device, context->resolveLayout, context->allocator);
+  vk.DestroyDescriptorSetLayout(context->device, context->viewSetLayout, context->allocator);
+  vk.DestroyDescriptorSetLayout(context->device, context->setLayout, context->allocator);
+}
+
+extern "C" VkResult vitrailVkCreateContext(const VitrailVkContextDesc* desc, VitrailVkContext* context) {
+  using namespace vitrail;
+  if (context != nullptr) *context = nullptr;
+  const Log log = desc != nullptr ? Log{desc->log, desc->logUser} : Log{};
+  if (desc == nullptr || context == nullptr) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "vitrailVkCreateContext: an argument is null");
+  }
+  if (checkNext(log, desc->next, "VitrailVkContextDesc") != VK_SUCCESS) return VK_ERROR_INITIALIZATION_FAILED;
   if (desc->instance == VK_NULL_HANDLE || desc->physicalDevice == VK_NULL_HANDLE || desc->device == VK_NULL_HANDLE ||
       desc->getInstanceProcAddr == nullptr) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED,
-                    "VitrailContextDesc needs instance, physicalDevice, device and getInstanceProcAddr");
+                    "VitrailVkContextDesc needs instance, physicalDevice, device and getInstanceProcAddr");
   }
-  std::unique_ptr<VitrailContext_T> made(new (std::nothrow) VitrailContext_T);
+  constexpr std::uint32_t kKnown = VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS | VITRAIL_VK_FEATURE_DUAL_SRC_BLEND |
+                                   VITRAIL_VK_FEATURE_SAMPLE_RATE_SHADING;
+  if ((desc->features & ~kKnown) != 0) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "features 0x%x: 0x%x is none of VitrailVkFeatureBits",
+                    desc->features, desc->features & ~kKnown);
+  }
+  std::unique_ptr<VitrailVkContext_T> made(new (std::nothrow) VitrailVkContext_T);
   if (!made) return log.fail(VK_ERROR_OUT_OF_HOST_MEMORY, "no memory for a context");
   made->log = log;
   made->physicalDevice = desc->physicalDevice;
@@ -181,41 +211,54 @@ extern "C" VkResult vitrailCreateContext(const VitrailContextDesc* desc, Vitrail
     return log.fail(VK_ERROR_INITIALIZATION_FAILED,
                     "the driver has no %s: create instance and device for Vulkan 1.2 or later", missing);
   }
-  const VkResult result = vitrail::build(*made);
+  const VkResult result = build(*made);
   if (result != VK_SUCCESS) {
-    vitrailDestroyContext(made.release());
+    releaseContext(made.release());
     return result;
   }
   *context = made.release();
   return VK_SUCCESS;
 }
 
-extern "C" void vitrailDestroyContext(VitrailContext context) {
+extern "C" void vitrailVkDestroyContext(VitrailVkContext context) {
   if (context == nullptr) return;
-  const std::unique_ptr<VitrailContext_T> owned(context);
-  const vitrail::Dispatch& vk = context->vk;
-  for (const auto& [key, pipeline] : context->pipelines) {
-    vk.DestroyPipeline(context->device, pipeline, context->allocator);
+  const std::uint32_t targets = context->owners.load() - 1;
+  if (targets > 0) {
+    context->log.error("vitrailVkDestroyContext: %u targets are left: destroy them first; the context is freed with the "
+                       "last of them, which its device must outlive",
+                       targets);
   }
-  vk.DestroyPipelineLayout(context->device, context->resolveLayout, context->allocator);
-  vk.DestroyDescriptorSetLayout(context->device, context->viewSetLayout, context->allocator);
-  vk.DestroyDescriptorSetLayout(context->device, context->setLayout, context->allocator);
+  context->destroyed = true;
+  vitrail::releaseContext(context);
 }
 
-extern "C" VkDescriptorSetLayout vitrailDescriptorSetLayout(VitrailContext context) { return context->setLayout; }
-
-extern "C" uint32_t vitrailMaxNodeCapacity(VitrailContext context, VitrailNodeFormat format,
-                                           VkSampleCountFlagBits samples) {
-  const std::uint32_t bytes = vitrail::nodeBytes(format);
-  if (bytes == 0) return 0;
-  const vitrail::Limits& limits = context->limits;
-  std::uint64_t most = std::min(limits.allocationSize, limits.heapSize);
-  if (!context->has(VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS)) most = std::min(most, limits.storageBufferRange);
-  const std::uint64_t listed = vitrail::nodesForGroupLists(limits.storageBufferRange);
-  const std::uint32_t indices = vitrail::maxNodeIndexCount(format, samples != 0 ? samples : 1);
-  return static_cast<std::uint32_t>(std::min<std::uint64_t>({most / bytes, listed, indices}));
+extern "C" VkDescriptorSetLayout vitrailVkDescriptorSetLayout(VitrailVkContext context) {
+  return context != nullptr ? context->setLayout : VK_NULL_HANDLE;
 }
 
-extern "C" VkDeviceSize vitrailNodePoolSize(VitrailNodeFormat format, uint32_t nodeCapacity) {
-  return vitrail::nodePoolBytes(format, nodeCapacity);
+extern "C" uint32_t vitrailVkMaxNodeCapacity(VitrailVkContext context, VitrailNodeFormat format,
+                                             VkSampleCountFlagBits samples) {
+  if (context == nullptr) return 0;
+  return vitrail::maxNodeCapacity(context->limits, format, samples, false);
+}
+
+extern "C" VkResult vitrailVkTileLimits(VitrailVkContext context, VitrailNodeFormat format,
+                                        VkSampleCountFlagBits samples, VitrailTileLimits* limits) {
+  using namespace vitrail;
+  if (limits != nullptr) clearKeepingNext(*limits);
+  if (context == nullptr || limits == nullptr) return nullArgument(context, "vitrailVkTileLimits");
+  const DeviceLimits& device = context->limits;
+  if (nodeBytes(format) == 0) {
+    return context->log.fail(VK_ERROR_INITIALIZATION_FAILED, "nodeFormat %d is none of VitrailNodeFormat", format);
+  }
+  limits->memoryBytes = std::min(device.allocationSize, device.heapSize);
+  limits->alignment = device.alignment;
+  limits->nodeCapacity = maxNodeCapacity(device, format, samples, false);
+  limits->areaPixels = static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(device.storageBufferRange / sizeof(layout::uint), 0xffffffffU));
+  if (limits->nodeCapacity == 0) {
+    return context->log.fail(VK_ERROR_FORMAT_NOT_SUPPORTED, "nodeFormat %d has no nodes at %d samples", format,
+                             static_cast<int>(samples));
+  }
+  return VK_SUCCESS;
 }

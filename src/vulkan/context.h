@@ -1,54 +1,24 @@
 // What the library keeps for one VkDevice: functions, layouts, compute pipelines, limits.
 #pragma once
 
-#include <array>
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <mutex>
 
-#include "dispatch.h"
-#include "log.h"
+#include "core/device_limits.h"
+#include "core/log.h"
+#include "functions.h"
 #include "pipelines.h"
-#include "vitrail/vitrail.h"
+#include "vitrail/vulkan.h"
 
-namespace vitrail {
-
-// The bindings of the target's descriptor set, as shaders/vitrail/collect.glsl and src/shaders name them.
-enum Binding : std::uint32_t {
-  kParametersBinding,
-  kControlBinding,
-  kHeadsBinding,
-  kNodesBinding,
-  kSumsBinding,
-  kMediumListsBinding,
-  kLongListsBinding,
-  kBindingCount
-};
-
-// The bindings of the set of images, one set for each of a target's views, as src/shaders/samples.glsl and picture.glsl
-// name them.
-enum ViewBinding : std::uint32_t { kColorBinding, kOpaqueBinding, kDepthBinding, kViewBindingCount };
-
-struct Limits {
-  std::uint64_t storageBufferRange = 0;
-  std::uint64_t allocationSize = 0;
-  std::uint64_t heapSize = 0;          // the largest device-local one
-  std::uint64_t alignment = 1;         // of every part of a target's buffer
-  VkSampleCountFlags sampleCounts = 0; // that colour and depth attachments and sampled images share
-  bool isCpu = false;                  // a driver that runs on the CPU
-  bool exchangesInGroups = false;      // compute shaders exchange values within at least 8 invocations
-  bool fewFragmentCores = false;       // a GPU that runs fragment shaders on a small part of its cores
-};
-
-} // namespace vitrail
-
-struct VitrailContext_T {
-  vitrail::Dispatch vk;
+struct VitrailVkContext_T {
+  vitrail::Functions vk;
   vitrail::Log log;
-  vitrail::Limits limits;
+  vitrail::DeviceLimits limits;
   VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
-  std::uint32_t features = 0; // VitrailFeatureBits
+  std::uint32_t features = 0; // VitrailVkFeatureBits
   const VkAllocationCallbacks* allocator = nullptr;
   VkPhysicalDeviceMemoryProperties memory{};
   VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;     // the target's resources
@@ -57,8 +27,11 @@ struct VitrailContext_T {
   VkPipelineCache cache = VK_NULL_HANDLE;
   std::mutex pipelinesMutex; // guards `pipelines`
   std::map<vitrail::ComputeKey, VkPipeline> pipelines;
+  // The handle and its targets: what the context has is freed with the last of them.
+  std::atomic<std::uint32_t> owners{1};
+  std::atomic<bool> destroyed{false}; // the handle is gone
 
-  [[nodiscard]] bool has(VitrailFeatureBits feature) const { return (features & feature) != 0; }
+  [[nodiscard]] bool has(VitrailVkFeatureBits feature) const { return (features & feature) != 0; }
 
   // Names a Vulkan object for debuggers and the validation layer, where the host has enabled debug utils.
   void name(VkObjectType type, std::uint64_t handle, const char* text) const;
@@ -69,3 +42,10 @@ struct VitrailContext_T {
     name(type, reinterpret_cast<std::uint64_t>(handle), text);
   }
 };
+
+namespace vitrail {
+
+// One owner less.
+void releaseContext(VitrailVkContext context);
+
+} // namespace vitrail

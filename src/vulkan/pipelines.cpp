@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdio>
 
 #include "context.h"
 
@@ -22,34 +23,18 @@ VkSpecializationInfo specializationInfo(const Specialization& constants) {
   return {static_cast<std::uint32_t>(kConstants.size()), kConstants.data(), sizeof(constants), &constants};
 }
 
-const char* kernelName(Kernel kernel) {
-  switch (kernel) {
-    case Kernel::Resolve:
-      return "vitrail resolve";
-    case Kernel::ResolveMedium:
-      return "vitrail resolve medium";
-    case Kernel::ResolveGroup:
-      return "vitrail resolve group";
-    case Kernel::ResolveLong:
-      return "vitrail resolve long";
-    case Kernel::ResolveOverflow:
-      return "vitrail resolve overflow";
-    case Kernel::Link:
-      return "vitrail link";
-    case Kernel::SortFind:
-      return "vitrail sort find";
-    case Kernel::SortLong:
-      return "vitrail sort long";
-    case Kernel::ClearSums:
-      break;
-  }
-  return "vitrail clear sums";
+// "vitrail" and what it is.
+template <class Handle>
+void nameOf(const VitrailVkContext_T& context, VkObjectType type, Handle handle, const char* what) {
+  char text[64];
+  std::snprintf(text, sizeof(text), "vitrail %s", what);
+  context.name(type, handle, text);
 }
 
 // A shader module for as long as a pipeline is being made.
 class Module {
  public:
-  explicit Module(const VitrailContext_T& context) : context_(context) {}
+  explicit Module(const VitrailVkContext_T& context) : context_(context) {}
   ~Module() { context_.vk.DestroyShaderModule(context_.device, module_, context_.allocator); }
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
@@ -60,7 +45,7 @@ class Module {
     info.codeSize = code.size_bytes();
     info.pCode = code.data();
     const VkResult result = context_.vk.CreateShaderModule(context_.device, &info, context_.allocator, &module_);
-    if (result == VK_SUCCESS) context_.name(VK_OBJECT_TYPE_SHADER_MODULE, module_, name);
+    if (result == VK_SUCCESS) nameOf(context_, VK_OBJECT_TYPE_SHADER_MODULE, module_, name);
     return result;
   }
 
@@ -76,11 +61,11 @@ class Module {
   }
 
  private:
-  const VitrailContext_T& context_;
+  const VitrailVkContext_T& context_;
   VkShaderModule module_ = VK_NULL_HANDLE;
 };
 
-VkResult createComputePipeline(const VitrailContext_T& context, const ComputeKey& key, VkPipeline* pipeline) {
+VkResult createComputePipeline(const VitrailVkContext_T& context, const ComputeKey& key, VkPipeline* pipeline) {
   Module shader(context);
   const char* name = kernelName(key.kernel);
   VkResult result =
@@ -92,7 +77,7 @@ VkResult createComputePipeline(const VitrailContext_T& context, const ComputeKey
   info.stage = shader.stage(VK_SHADER_STAGE_COMPUTE_BIT, &constants);
   info.layout = context.resolveLayout;
   result = context.vk.CreateComputePipelines(context.device, context.cache, 1, &info, context.allocator, pipeline);
-  if (result == VK_SUCCESS) context.name(VK_OBJECT_TYPE_PIPELINE, *pipeline, name);
+  if (result == VK_SUCCESS) nameOf(context, VK_OBJECT_TYPE_PIPELINE, *pipeline, name);
   return result;
 }
 
@@ -101,7 +86,7 @@ VkPipelineColorBlendAttachmentState blendState(FragmentResolve resolve) {
   VkPipelineColorBlendAttachmentState state{};
   state.colorWriteMask =
       VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  if (resolve == FragmentResolve::PerPixel) return state;
+  if (resolve == FragmentResolve::PerPixel || resolve == FragmentResolve::Plain) return state;
   const bool dual = resolve == FragmentResolve::SingleDual || resolve == FragmentResolve::PerSampleDual ||
                     resolve == FragmentResolve::PerSampleDualDepth;
   state.blendEnable = VK_TRUE;
@@ -112,7 +97,7 @@ VkPipelineColorBlendAttachmentState blendState(FragmentResolve resolve) {
   return state;
 }
 
-VkPipelineDepthStencilStateCreateInfo stencilState(const VitrailScope& scope) {
+VkPipelineDepthStencilStateCreateInfo stencilState(const VitrailVkScope& scope) {
   VkPipelineDepthStencilStateCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
   info.stencilTestEnable = scope.stencilMark;
@@ -124,7 +109,7 @@ VkPipelineDepthStencilStateCreateInfo stencilState(const VitrailScope& scope) {
 
 } // namespace
 
-VkResult computePipeline(VitrailContext_T& context, const ComputeKey& key, VkPipeline* pipeline) {
+VkResult computePipeline(VitrailVkContext_T& context, const ComputeKey& key, VkPipeline* pipeline) {
   const std::lock_guard lock(context.pipelinesMutex);
   VkPipeline& kept = context.pipelines[key];
   if (kept == VK_NULL_HANDLE) {
@@ -135,13 +120,13 @@ VkResult computePipeline(VitrailContext_T& context, const ComputeKey& key, VkPip
   return VK_SUCCESS;
 }
 
-VkResult createFragmentPipeline(const VitrailContext_T& context, const FragmentInfo& info, VkPipeline* pipeline) {
+VkResult createFragmentPipeline(const VitrailVkContext_T& context, const FragmentInfo& info, VkPipeline* pipeline) {
   Module vertexShader(context);
   Module fragmentShader(context);
-  VkResult result = vertexShader.create(vertexCode(), "vitrail resolve vertex");
+  VkResult result = vertexShader.create(vertexCode(), "resolve vertex");
   if (result == VK_SUCCESS) {
     result =
-        fragmentShader.create(fragmentCode(info.resolve, info.byAddress, info.networks), "vitrail resolve fragment");
+        fragmentShader.create(fragmentCode(info.resolve, info.byAddress, info.networks), "resolve fragment");
   }
   if (result != VK_SUCCESS) return context.log.fail(result, "the fragment resolve's shaders could not be created");
   const VkSpecializationInfo constants = specializationInfo(info.constants);

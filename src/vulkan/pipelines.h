@@ -7,12 +7,12 @@
 
 #include <vulkan/vulkan_core.h>
 
-#include "shaders/shader_code.h"
-#include "vitrail/vitrail.h"
+#include "kernels/kernels.h"
+#include "vitrail/vulkan.h"
 
 namespace vitrail {
 
-// The specialization constants of src/shaders/target.glsl, in the order of their ids.
+// The specialization constants of src/kernels/entry/target.glsl, in the order of their ids.
 struct Specialization {
   std::uint32_t format = 0;
   std::uint32_t samples = 1;
@@ -37,7 +37,7 @@ struct ComputeKey {
 };
 
 // The context's pipeline of that key, which is made where it is missing. Logs its errors.
-VkResult computePipeline(VitrailContext_T& context, const ComputeKey& key, VkPipeline* pipeline);
+VkResult computePipeline(VitrailVkContext_T& context, const ComputeKey& key, VkPipeline* pipeline);
 
 // Which graphics pipeline.
 struct FragmentInfo {
@@ -47,10 +47,10 @@ struct FragmentInfo {
   Specialization constants;
   VkSampleCountFlagBits scopeSamples = VK_SAMPLE_COUNT_1_BIT;
   VkFormat colorFormat = VK_FORMAT_UNDEFINED;
-  VitrailScope scope{};
+  VitrailVkScope scope{};
 };
 
 // Makes a graphics pipeline, which the caller destroys. Logs its errors.
-VkResult createFragmentPipeline(const VitrailContext_T& context, const FragmentInfo& info, VkPipeline* pipeline);
+VkResult createFragmentPipeline(const VitrailVkContext_T& context, const FragmentInfo& info, VkPipeline* pipeline);
 
 } // namespace vitrail

@@ -6,42 +6,40 @@
 #include <cstdint>
 
 #include "buffer.h"
+#include "core/frame_numbers.h"
+#include "core/parameters.h"
 #include "core/pool.h"
-#include "vitrail/vitrail.h"
+#include "vitrail/vulkan.h"
 
 namespace vitrail {
 
 struct StorageInfo {
-  std::uint32_t areaPixels = 0;
-  std::uint32_t nodeCapacity = 0;
-  VitrailNodeFormat format = VITRAIL_NODE_STANDARD;
-  bool keepSums = false;
+  StorageNeeds needs;
   VkBuffer buffer = VK_NULL_HANDLE; // the host's own; null: makes one
   VkDeviceSize bufferOffset = 0;
-  VitrailViews views{}; // read during create() only
+  VitrailVkViews views{}; // read during create() only
   const char* debugName = nullptr;
 };
 
 // Usage of the buffer.
-VkBufferUsageFlags storageUsage(const VitrailContext_T& context);
+VkBufferUsageFlags storageUsage(const VitrailVkContext_T& context);
 
 struct Storage {
-  std::uint32_t areaPixels = 0;
-  std::uint32_t nodeCapacity = 0;
+  StorageNeeds needs;
   StorageLayout layout; // of `buffer`, from `offset` on
   VkBuffer buffer = VK_NULL_HANDLE;
   VkDeviceSize offset = 0;
-  VkDeviceAddress nodesAddress = 0; // 0 where the pool is reached through its binding
-  Buffer own;                       // empty where the host brought its own
-  VkDescriptorPool pool = VK_NULL_HANDLE;
+  PoolAccess pool;
+  Buffer own; // empty where the host brought its own
+  VkDescriptorPool descriptors = VK_NULL_HANDLE;
   VkDescriptorSet set = VK_NULL_HANDLE;
   std::uint32_t viewCount = 0;
-  std::array<VkDescriptorSet, VITRAIL_MAX_COLOR_VIEWS> viewSets{};
-  bool sumsAreClear = false; // once all that was recorded has run; a new buffer holds anything
+  std::array<VkDescriptorSet, VITRAIL_MAX_VIEWS> viewSets{};
+  FrameUse use;
 
   // Logs its errors. On error the storage is to be destroyed.
-  VkResult create(const VitrailContext_T& context, const StorageInfo& info);
-  void destroy(const VitrailContext_T& context);
+  VkResult create(const VitrailVkContext_T& context, const StorageInfo& info);
+  void destroy(const VitrailVkContext_T& context);
 };
 
 } // namespace vitrail

@@ -3,97 +3,71 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "buffer.h"
 #include "context.h"
+#include "core/call_order.h"
+#include "core/frame_numbers.h"
+#include "core/frame_plan.h"
+#include "core/growth.h"
+#include "core/statistics.h"
+#include "core/sums_clear.h"
 #include "pipelines.h"
 #include "storage.h"
-#include "vitrail/layout.h"
-#include "vitrail/vitrail.h"
+#include "vitrail/vulkan.h"
 
-namespace vitrail {
-
-// What the GPU leaves behind for vitrailReadStats. The tag is 0 from the start of a frame until its counters are there:
-// a slot whose tag is right, before and after the counters are read, is whole.
-struct StatsSlot {
-  layout::VitrailControl control;
-  std::uint32_t nodeCapacity; // of the pool that the frame used
-  std::uint32_t sumsCleared;  // VitrailTarget_T::sumsCleared of the frame; read without the tag
-  std::uint64_t tag;          // frame + 1, so that a slot never written names no frame
-};
-static_assert(sizeof(StatsSlot) == 168);
-
-// The pipelines of a target, from linking to the resolve; null where its kind does not need one.
-struct ResolvePipelines {
-  VkPipeline link = VK_NULL_HANDLE;
-  VkPipeline shortLists = VK_NULL_HANDLE;
-  VkPipeline mediumLists = VK_NULL_HANDLE;
-  VkPipeline longLists = VK_NULL_HANDLE;
-  VkPipeline longestLists = VK_NULL_HANDLE;
-  VkPipeline overflow = VK_NULL_HANDLE;
-  VkPipeline sortFind = VK_NULL_HANDLE;
-  VkPipeline sortLong = VK_NULL_HANDLE;
-  VkPipeline clearSums = VK_NULL_HANDLE;
-  VkPipeline fragment = VK_NULL_HANDLE; // the target's own
-};
-
-// Memory that frames up to `lastFrame` use.
-struct Retired {
-  Storage storage;
-  std::uint64_t lastFrame = 0;
-};
-
-// What recent frames needed, for vitrailUpdateTarget.
-struct Demand {
-  std::uint64_t newestFrame = 0; // that was looked at, + 1
-  std::uint32_t lowFrames = 0;   // in a row that needed less than a quarter of the pool
-  std::uint64_t lowMost = 0;     // the most that any of those needed
-};
-
-} // namespace vitrail
-
-struct VitrailTarget_T {
-  VitrailContext context = nullptr;
-  // As given, with defaults filled in; of its pointers only those of views are of use: they point to the arrays below.
-  VitrailTargetDesc desc{};
+struct VitrailVkTarget_T {
+  VitrailVkContext context = nullptr; // which the target owns a share of
+  vitrail::TargetInfo info;           // with its defaults
+  VkFormat colorFormat = VK_FORMAT_UNDEFINED;
+  VitrailVkScope scope{};
+  bool hostBarriers = false;
+  VkBuffer hostBuffer = VK_NULL_HANDLE; // where the host brought the memory
   std::string debugName;
-  bool keepSums = false;
-  vitrail::Specialization constants;
-  vitrail::ResolvePipelines pipelines;
-  vitrail::Storage storage;
-  std::vector<vitrail::Retired> retired;
-  // The host's views, for when the memory changes and the images do not.
-  std::array<VkImageView, VITRAIL_MAX_COLOR_VIEWS> colorViews{};
-  std::array<VkImageView, VITRAIL_MAX_COLOR_VIEWS> opaqueViews{};
-  std::array<VkImageView, VITRAIL_MAX_COLOR_VIEWS> depthViews{};
-  vitrail::Buffer stats; // StatsSlot[framesInFlight]
-  // The number of the clear that the sums need, from 1. Frames record it until one of them is seen to have run: one
-  // that was recorded may never be submitted. Frames that ran leave the sums clear.
-  std::uint32_t sumsCleared = 0;
-  vitrail::Demand demand;
-  std::uint64_t frame = 0; // the one being recorded
-  VkRect2D area{};         // of that frame
+  // The host's views, for when the memory changes and the images do not; `views` points to the arrays.
+  VitrailVkViews views{};
+  std::array<VkImageView, VITRAIL_MAX_VIEWS> colorViews{};
+  std::array<VkImageView, VITRAIL_MAX_VIEWS> opaqueViews{};
+  std::array<VkImageView, VITRAIL_MAX_VIEWS> depthViews{};
 
-  [[nodiscard]] bool isCompute() const { return desc.resolve == VITRAIL_RESOLVE_COMPUTE; }
-  [[nodiscard]] std::uint32_t slot(std::uint64_t ofFrame) const {
-    return static_cast<std::uint32_t>(ofFrame % desc.framesInFlight);
+  vitrail::Specialization constants;
+  vitrail::FramePlan plan;
+  std::vector<VkPipeline> pipelines;         // of each of the plan's passes; null where a pass has none
+  std::vector<VkPipeline> graphicsPipelines; // of those the target's own; the others are the context's
+
+  vitrail::Storage storage;
+  std::vector<vitrail::Storage> retired; // that frames in flight use
+  vitrail::Buffer stats;                 // StatsSlot[statisticsSlots()]
+  vitrail::Growth growth;
+  vitrail::SumsClear sums;
+
+  // The frame that is being recorded.
+  vitrail::FrameNumbers frames;
+  vitrail::CallOrder order;
+  VitrailRect area{};
+
+  [[nodiscard]] std::span<vitrail::StatsSlot> slots() const {
+    return {static_cast<vitrail::StatsSlot*>(stats.mapped), vitrail::statisticsSlots(info.framesInFlight)};
   }
-  [[nodiscard]] VkDeviceSize slotOffset(std::uint64_t ofFrame) const {
-    return slot(ofFrame) * sizeof(vitrail::StatsSlot);
-  }
+  [[nodiscard]] std::size_t slotOf(std::uint64_t frame) const { return frame % slots().size(); }
+  [[nodiscard]] VkDeviceSize slotOffset() const { return slotOf(frames.newest()) * sizeof(vitrail::StatsSlot); }
 };
 
 namespace vitrail {
 
-// Memory for the target as it is, with another pool.
-StorageInfo storageInfo(const VitrailTarget_T& target, std::uint32_t nodeCapacity);
+// Makes everything that a target needs but its memory: plan, pipelines, statistics. Logs its errors.
+VkResult buildTarget(VitrailVkTarget_T& target);
 
-// Gives the target other memory from `frame` on; frames before it keep theirs. On error nothing changes.
-VkResult replaceStorage(VitrailTarget_T& target, const StorageInfo& info, std::uint64_t frame);
+// Memory for the target with these needs and views. On error nothing changes.
+VkResult replaceStorage(VitrailVkTarget_T& target, const StorageNeeds& needs, const VitrailVkViews& views);
 
-// Frees what only frames used that have finished when `frame` is recorded.
-void freeRetired(VitrailTarget_T& target, std::uint64_t frame);
+// Keeps copies of what the host gave.
+void keepViews(VitrailVkTarget_T& target, const VitrailVkViews& views);
+
+// Frees memory that only frames used that have finished when `frame` is recorded.
+void freeRetired(VitrailVkTarget_T& target, std::uint64_t frame);
 
 } // namespace vitrail

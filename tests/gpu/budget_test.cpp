@@ -94,7 +94,7 @@ TEST_F(BudgetTest, ALargePictureOfEightLayersIsDrawnInTiles) {
 // A pool beyond what one binding reaches on Mesa's CPU driver, 128 MiB, and beyond the threads that link its nodes.
 TEST_F(BudgetTest, APictureMayHaveMoreNodesThanABindingHolds) {
   MethodOptions method;
-  method.linking = VITRAIL_LINKING_COMPUTE;
+  method.listBuild = VITRAIL_LIST_BUILD_COMPUTE;
   const Scene scene = panes(4);
   const RenderResult small = renderOnce(gpu(), scene, paneOptions(4), {}, DrawOrder::Forward, method);
   const RenderResult large = renderOnce(gpu(), scene, paneOptions(2048), {}, DrawOrder::Forward, method);

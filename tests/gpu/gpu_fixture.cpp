@@ -6,8 +6,6 @@
 #include <cstdlib>
 #include <memory>
 
-#include "point_host.h"
-
 namespace vitrail::tool::test {
 
 namespace {
@@ -19,10 +17,7 @@ std::unique_ptr<Gpu>& sharedGpu() {
 
 class GpuEnvironment : public ::testing::Environment {
  public:
-  void TearDown() override {
-    tests::dropContexts();
-    sharedGpu().reset();
-  }
+  void TearDown() override { sharedGpu().reset(); }
 };
 
 const ::testing::Environment* const environment = ::testing::AddGlobalTestEnvironment(new GpuEnvironment);
@@ -59,7 +54,7 @@ std::vector<MethodOptions> methodVariety(const Gpu& gpu) {
   MethodOptions hdr = drawn;
   hdr.nodes = VITRAIL_NODE_HDR;
   MethodOptions linkedByCompute;
-  linkedByCompute.linking = VITRAIL_LINKING_COMPUTE;
+  linkedByCompute.listBuild = VITRAIL_LIST_BUILD_COMPUTE;
   std::vector<MethodOptions> methods = {compact, hdr, linkedByCompute};
   for (const std::uint32_t samples : {2U, 4U, 8U}) {
     if ((gpu.features().sampleCounts & samples) == 0) continue;

@@ -70,7 +70,7 @@ MethodOptions named(const std::string& name) {
 // Lists that store colours as a method does: as finely as layers are kept, or in the standard nodes of an a-buffer.
 MethodOptions exactLists(const std::string& method = {}) {
   MethodOptions lists;
-  lists.linking = VITRAIL_LINKING_FRAGMENT; // colours are rounded once
+  lists.listBuild = VITRAIL_LIST_BUILD_FRAGMENT; // colours are rounded once
   if (method != "a-buffer") lists.nodes = VITRAIL_NODE_HDR;
   return lists;
 }

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "core/reference_resolve.h"
+#include "library/reference/resolve.h"
 #include "rays.h"
 #include "shading.h"
 #include "surfaces.h"

@@ -1,6 +1,6 @@
 // The renderer in double precision: one ray a sample, every surface on it, shaded, sorted and blended. It is written
 // from docs/shading.md and the glTF specification and shares nothing with the GPU renderer but the scene and the view;
-// what the node formats round it has from src/core/node.h, which is written without the shaders too.
+// what the node formats round it has from tests/library/reference/node.h, which is written without the shaders too.
 #pragma once
 
 #include <array>

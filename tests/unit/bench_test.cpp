@@ -89,7 +89,7 @@ TEST(BenchMatrix, EveryChoiceWithEveryOther) {
 TEST(BenchMatrix, LinkingsAreOfTheMethodsThatHaveThem) {
   BenchMatrix matrix;
   matrix.methods = {"linked-list", "insertion"};
-  matrix.linkings = {VITRAIL_LINKING_FRAGMENT, VITRAIL_LINKING_COMPUTE};
+  matrix.linkings = {VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE};
   EXPECT_EQ(describeAll(matrix), (std::vector<std::string>{"unsorted", "linked-list, standard, linking fragment",
                                                            "linked-list, standard, linking compute", "insertion"}));
 }
@@ -162,7 +162,7 @@ std::vector<Measurement> twoMeasurements() {
   lists.exact = true;
   lists.nodes = "standard";
   lists.resolve = "compute";
-  lists.linking = "fragment";
+  lists.listBuild = "fragment";
   lists.fragmentsRequested = lists.fragmentsStored = 700;
   lists.layersMax = 9;
   lists.layersMean = 7.0;
@@ -380,7 +380,7 @@ TEST(BenchTable, SaysWhatItIs) {
   const std::string other = toTable(report);
   EXPECT_NE(other.find("only the ratios"), std::string::npos);
   EXPECT_NE(other.find("not exact: linked-list, standard left out 12 of 700"), std::string::npos) << other;
-  report.scenes[0].measurements[1].options.linking = VITRAIL_LINKING_FRAGMENT;
+  report.scenes[0].measurements[1].options.listBuild = VITRAIL_LIST_BUILD_FRAGMENT;
   EXPECT_NE(toTable(report).find("linked-list, standard, compute, linking fragment  "), std::string::npos);
   frame.tiles = 3;
   EXPECT_NE(toTable(report).find("drew 3 tiles"), std::string::npos) << toTable(report);

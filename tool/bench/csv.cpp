@@ -61,7 +61,7 @@ std::string rowOf(const BenchReport& report, const SceneMeasurement& scene, cons
                          fmt::format("{}", frame.totalBytes),
                          orEmpty(measured.options.maxLayers > 0, measured.options.maxLayers),
                          orEmpty(measured.options.passes > 0, measured.options.passes),
-                         frame.linking};
+                         frame.listBuild};
   return fmt::format("{}\n", fmt::join(cells, ","));
 }
 

@@ -16,7 +16,7 @@ bool hasChoices(std::string_view method) {
 
 bool same(const MethodOptions& a, const MethodOptions& b) {
   return a.name == b.name && a.samples == b.samples && a.nodes == b.nodes && a.resolve == b.resolve &&
-         a.linking == b.linking;
+         a.listBuild == b.listBuild;
 }
 
 bool holds(const BenchSettings& settings, const MethodOptions& options) {
@@ -44,10 +44,10 @@ void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t s
   if (!hasChoices(method)) return addSetting(settings, options);
   for (const VitrailNodeFormat nodes : matrix.nodes) {
     for (const VitrailResolve resolve : matrix.resolves) {
-      for (const VitrailLinking linking : matrix.linkings) {
+      for (const VitrailListBuild linking : matrix.linkings) {
         options.nodes = nodes;
         options.resolve = resolve;
-        options.linking = linking;
+        options.listBuild = linking;
         addSetting(settings, options);
       }
     }
@@ -101,8 +101,8 @@ std::string describe(const MethodOptions& options) {
   if (hasChoices(options.name) && options.resolve != VITRAIL_RESOLVE_DEFAULT) {
     text.append(", ").append(nameOf(options.resolve));
   }
-  if (hasChoices(options.name) && options.linking != VITRAIL_LINKING_DEFAULT) {
-    text.append(", linking ").append(nameOf(options.linking));
+  if (hasChoices(options.name) && options.listBuild != VITRAIL_LIST_BUILD_DEFAULT) {
+    text.append(", linking ").append(nameOf(options.listBuild));
   }
   if (options.maxLayers > 0)
     text += fmt::format(", {} {}", options.maxLayers, options.maxLayers > 1 ? "layers" : "layer");

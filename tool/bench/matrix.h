@@ -34,7 +34,7 @@ struct BenchMatrix {
   std::vector<VitrailNodeFormat> nodes = {VITRAIL_NODE_STANDARD};
   std::vector<std::uint32_t> samples = {1};
   std::vector<VitrailResolve> resolves = {VITRAIL_RESOLVE_DEFAULT};
-  std::vector<VitrailLinking> linkings = {VITRAIL_LINKING_DEFAULT};
+  std::vector<VitrailListBuild> linkings = {VITRAIL_LIST_BUILD_DEFAULT};
   MethodLimits limits; // one for all
 };
 

@@ -42,7 +42,7 @@ std::string settingOf(const Measurement& measured) {
   for (const std::string& part : {measured.report.nodes, measured.report.resolve}) {
     if (!part.empty()) text.append(", ").append(part);
   }
-  if (measured.options.linking != VITRAIL_LINKING_DEFAULT) text.append(", linking ").append(measured.report.linking);
+  if (measured.options.listBuild != VITRAIL_LIST_BUILD_DEFAULT) text.append(", linking ").append(measured.report.listBuild);
   return text;
 }
 

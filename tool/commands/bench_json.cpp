@@ -29,7 +29,7 @@ Json toJson(const Measurement& measured) {
                {"nodes", orNull(frame.nodes)},
                {"samples", frame.samples},
                {"resolve", orNull(frame.resolve)},
-               {"linking", orNull(frame.linking)},
+               {"linking", orNull(frame.listBuild)},
                {"max_layers", limitOrNull(measured.options.maxLayers)},
                {"passes", limitOrNull(measured.options.passes)},
                {"exact", frame.exact},
@@ -61,13 +61,13 @@ Json toJson(const SkippedSetting& skipped) {
   const MethodOptions& options = skipped.options;
   const bool hasNodes = traitsOf(options.name).nodes;
   const bool chosen = options.resolve != VITRAIL_RESOLVE_DEFAULT;
-  const bool chosenLinking = options.linking != VITRAIL_LINKING_DEFAULT;
+  const bool chosenLinking = options.listBuild != VITRAIL_LIST_BUILD_DEFAULT;
   return {{"method", options.name},
           {"setting", describeWithoutSamples(options)},
           {"nodes", hasNodes ? Json(nameOf(options.nodes)) : Json(nullptr)},
           {"samples", options.samples},
           {"resolve", chosen ? Json(nameOf(options.resolve)) : Json(nullptr)},
-          {"linking", chosenLinking ? Json(nameOf(options.linking)) : Json(nullptr)},
+          {"linking", chosenLinking ? Json(nameOf(options.listBuild)) : Json(nullptr)},
           {"max_layers", limitOrNull(options.maxLayers)},
           {"passes", limitOrNull(options.passes)},
           {"reason", skipped.reason}};

@@ -127,7 +127,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
                              nodeFormatNamed);
   addList<std::uint32_t>(command, "--samples", matrix.samples, "1, 2, 4 or 8", sampleCount);
   addList<VitrailResolve>(command, "--resolve", matrix.resolves, "a resolve: compute or fragment", resolveNamed);
-  addList<VitrailLinking>(command, "--linking", matrix.linkings, "a linking: fragment or compute", linkingNamed);
+  addList<VitrailListBuild>(command, "--linking", matrix.linkings, "a linking: fragment or compute", linkingNamed);
   addLimits(command, matrix.limits);
 }
 

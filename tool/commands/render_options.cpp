@@ -81,7 +81,7 @@ void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   addPositive(command, "--memory-budget", arguments.memoryBudget);
   addChoice(command, "--nodes", "standard, compact and hdr", method.nodes, nodeFormatNamed);
   addChoice(command, "--resolve", "compute and fragment", method.resolve, resolveNamed);
-  addChoice(command, "--linking", "fragment and compute", method.linking, linkingNamed);
+  addChoice(command, "--linking", "fragment and compute", method.listBuild, linkingNamed);
   addChoice(command, "--msaa-resolve", "per-pixel and per-sample", method.msaaResolve, msaaResolveNamed);
 }
 

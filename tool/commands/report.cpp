@@ -37,7 +37,7 @@ std::string toJson(const FrameReport& report) {
       {"samples", report.samples},
       {"nodes", textOrNull(report.nodes)},
       {"resolve", textOrNull(report.resolve)},
-      {"linking", textOrNull(report.linking)},
+      {"linking", textOrNull(report.listBuild)},
       {"msaa_resolve", textOrNull(report.msaaResolve)},
       {"exact", report.exact},
       {"fragments", fragments},

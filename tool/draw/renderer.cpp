@@ -190,7 +190,7 @@ FrameReport Renderer::Impl::report(const RenderOptions& picture, const MethodSta
   report.samples = options.samples;
   report.nodes = method->nodes();
   report.resolve = method->resolve();
-  report.linking = method->linking();
+  report.listBuild = method->listBuild();
   if (!report.resolve.empty() && options.samples > 1) report.msaaResolve = nameOf(options.msaaResolve);
   report.exact = stats.exact;
   report.counted = stats.counted;

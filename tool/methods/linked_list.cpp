@@ -32,9 +32,9 @@ void remember(VitrailLogSeverity severity, const char* message, void* reason) {
 
 std::uint32_t libraryFeatures(const GpuFeatures& features) {
   std::uint32_t bits = 0;
-  if (features.poolByAddress) bits |= VITRAIL_FEATURE_BUFFER_DEVICE_ADDRESS;
-  if (features.dualSourceBlending) bits |= VITRAIL_FEATURE_DUAL_SRC_BLEND;
-  if (features.sampleRateShading) bits |= VITRAIL_FEATURE_SAMPLE_RATE_SHADING;
+  if (features.poolByAddress) bits |= VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS;
+  if (features.dualSourceBlending) bits |= VITRAIL_VK_FEATURE_DUAL_SRC_BLEND;
+  if (features.sampleRateShading) bits |= VITRAIL_VK_FEATURE_SAMPLE_RATE_SHADING;
   return bits;
 }
 
@@ -71,7 +71,7 @@ LinkedList::LinkedList(const MethodHost& host, const MethodOptions& options)
 LinkedList::~LinkedList() { gpu_.memoryFreed(counted_); }
 
 void LinkedList::makeContext() {
-  VitrailContextDesc desc{};
+  VitrailVkContextDesc desc{};
   desc.instance = gpu_.instance();
   desc.physicalDevice = gpu_.physicalDevice();
   desc.device = gpu_.device();
@@ -79,7 +79,7 @@ void LinkedList::makeContext() {
   desc.features = libraryFeatures(gpu_.features());
   desc.log = remember;
   desc.logUser = &reason_;
-  check(Context::create(desc, context_), "vitrailCreateContext");
+  check(Context::create(desc, context_), "vitrailVkCreateContext");
 }
 
 void LinkedList::chooseResolve() {
@@ -90,7 +90,7 @@ void LinkedList::chooseResolve() {
                                gpu_.properties().deviceName));
   }
   if (options_.resolve == VITRAIL_RESOLVE_DEFAULT) {
-    VitrailTargetDesc target = targetDesc();
+    VitrailVkTargetDesc target = targetDesc();
     const VkImageView anyView = VK_NULL_HANDLE;
     target.views = {1, &anyView, nullptr, nullptr}; // the colour image can be written by compute
     options_.resolve = context_.defaultResolve(target);
@@ -104,18 +104,18 @@ void LinkedList::chooseResolve() {
 void LinkedList::makeSurfaces() {
   const bool coverage = options_.samples > 1 && gpu_.features().postDepthCoverage;
   const bool address = gpu_.features().poolByAddress;
-  VitrailTargetDesc desc = targetDesc();
-  desc.linking = options_.linking != VITRAIL_LINKING_DEFAULT ? options_.linking : context_.defaultLinking(desc);
+  VitrailVkTargetDesc desc = targetDesc();
+  desc.listBuild = options_.listBuild != VITRAIL_LIST_BUILD_DEFAULT ? options_.listBuild : context_.defaultListBuild(desc);
   PipelineKind kind;
-  kind.linking = desc.linking;
+  kind.listBuild = desc.listBuild;
   // To spare the fragment shaders of GPUs; Mesa's CPU driver takes longer. Where samples are tested in the resolve,
   // depths are compared with those of the depth image.
   const bool isCpu = gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  const bool spares = !isCpu || kind.linking == VITRAIL_LINKING_COMPUTE;
+  const bool spares = !isCpu || kind.listBuild == VITRAIL_LIST_BUILD_COMPUTE;
   kind.depthFromW = spares && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
   if (surfaces_ && kind == pipelines_) return;
   pipelines_ = kind;
-  const VitrailSpecialization specialization = context_.collectSpecialization(desc);
+  const VitrailVkSpecialization specialization = context_.collectSpecialization(desc);
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     if (coverage && address) info.fragmentShader = shaders::collect_coverage_address_frag;
     if (coverage && !address) info.fragmentShader = shaders::collect_coverage_frag;
@@ -127,15 +127,15 @@ void LinkedList::makeSurfaces() {
     info.constants.emplace_back(kDepthFromW, kind.depthFromW ? VK_TRUE : VK_FALSE);
     info.samples = flagOf(options_.samples);
     info.depthFormat = PictureImages::depthFormat(needs_.stencil);
-    if (needs_.stencil) vitrailStencilMark(&info.stencil.emplace());
+    if (needs_.stencil) vitrailVkStencilMark(&info.stencil.emplace());
   };
   const SurfaceProgram program{.set = context_.descriptorSetLayout(), .name = "collect"};
   surfaces_.emplace(source_, source_.scene().transparentDraws(), program, describe);
 }
 
 // All but the memory and the images.
-VitrailTargetDesc LinkedList::targetDesc() const {
-  VitrailTargetDesc desc{};
+VitrailVkTargetDesc LinkedList::targetDesc() const {
+  VitrailVkTargetDesc desc{};
   desc.extent = wanted_.extent;
   desc.samples = flagOf(options_.samples);
   desc.nodeFormat = options_.nodes;
@@ -144,7 +144,7 @@ VitrailTargetDesc LinkedList::targetDesc() const {
   desc.msaaResolve = options_.msaaResolve;
   desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
   desc.maxLayers = options_.maxLayers;
-  desc.linking = pipelines_.linking;
+  desc.listBuild = pipelines_.listBuild;
   desc.overflow = VITRAIL_OVERFLOW_SKIP; // the picture is drawn again, with a larger pool or in tiles
   desc.colorFormat = PictureImages::kColorFormat;
   if (needs_.stencil) {
@@ -163,7 +163,7 @@ void LinkedList::setTarget(const MethodTarget& target) {
   expected_ = 0;
   budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
   const bool linksAll =
-      pipelines_.linking == VITRAIL_LINKING_FRAGMENT || pixelsOf(target.extent) <= VITRAIL_MAX_PIXELS_LINKED_BY_COMPUTE;
+      pipelines_.listBuild == VITRAIL_LIST_BUILD_FRAGMENT || pixelsOf(target.extent) <= VITRAIL_LIST_BUILD_COMPUTE_MAX_PIXELS;
   inTiles_ = target.memoryBudget.has_value() || !linksAll;
   if (inTiles_) return; // drawTiles() knows how large the tiles are
   const std::uint64_t largest = context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
@@ -172,26 +172,26 @@ void LinkedList::setTarget(const MethodTarget& target) {
 }
 
 bool LinkedList::createWholeTarget(std::uint32_t nodeCapacity) {
-  VitrailTargetDesc desc = targetDesc();
+  VitrailVkTargetDesc desc = targetDesc();
   desc.nodeCapacity = nodeCapacity;
   return createTarget(desc);
 }
 
 // False where the device has no memory for it.
-bool LinkedList::createTarget(const VitrailTargetDesc& desc) {
+bool LinkedList::createTarget(const VitrailVkTargetDesc& desc) {
   if (target_ && made_.nodeCapacity == desc.nodeCapacity && made_.areaPixels == desc.areaPixels) {
     return true; // the images are the same until releaseTarget()
   }
   target_ = Target(); // first: the old pool and the new one need not fit together
   gpu_.memoryFreed(std::exchange(counted_, 0));
-  VitrailTargetDesc full = desc;
+  VitrailVkTargetDesc full = desc;
   full.views.count = 1;
   full.views.color = &wanted_.color;
   if (options_.samples > 1 && !needs_.perSample) full.views.opaque = &wanted_.opaque;
   if (needs_.depthUsage != 0) full.views.depth = &wanted_.depth;
   const VkResult result = Target::create(context_, full, target_);
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) return false; // the reason stays, in case that it ends the program
-  check(result, "vitrailCreateTarget");
+  check(result, "vitrailVkCreateTarget");
   reason_.clear();
   made_ = desc;
   counted_ = target_.memory().totalBytes;
@@ -239,9 +239,9 @@ void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
   cmdBeginScope(commands, images.transparentScope(area));
   frame.drawSurfaces(*surfaces_, target_.descriptorSet());
   vkCmdEndRendering(commands);
-  if (pipelines_.linking == VITRAIL_LINKING_COMPUTE) frame.endPass("collect");
+  if (pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE) frame.endPass("collect");
   target_.collected(commands);
-  frame.endPass(pipelines_.linking == VITRAIL_LINKING_COMPUTE ? "link" : "collect");
+  frame.endPass(pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE ? "link" : "collect");
   if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT) {
     cmdBeginScope(commands, images.resolveScope(commands, area));
     target_.resolve(commands);
@@ -270,7 +270,7 @@ void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
   for (;;) {
     desc.memoryBudget = budget_;
     check(TilePlan::create(context_, desc, plan_), "vitrailCreateTilePlan");
-    VitrailTargetDesc target = targetDesc();
+    VitrailVkTargetDesc target = targetDesc();
     plan_.prepare(target);
     if (createTarget(target)) return;
     budget_ = vitrailNodePoolSize(options_.nodes, target.nodeCapacity) / 2;
@@ -279,7 +279,7 @@ void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
 
 VitrailStats LinkedList::readStats() const {
   VitrailStats stats{};
-  check(target_.readStats(frame_, stats), "vitrailReadStats");
+  check(target_.readStats(frame_, stats), "vitrailVkReadStats");
   return stats;
 }
 

@@ -24,7 +24,7 @@ class LinkedList final : public Method {
   std::string_view name() const override { return "linked-list"; }
   std::string_view nodes() const override { return nameOf(options_.nodes); }
   std::string_view resolve() const override { return nameOf(options_.resolve); }
-  std::string_view linking() const override { return nameOf(pipelines_.linking); }
+  std::string_view linking() const override { return nameOf(pipelines_.listBuild); }
   MethodNeeds needs() const override { return needs_; }
   void setTarget(const MethodTarget& target) override;
   void releaseTarget() override;
@@ -36,8 +36,8 @@ class LinkedList final : public Method {
   void makeContext();
   void chooseResolve();
   void makeSurfaces();
-  VitrailTargetDesc targetDesc() const;
-  bool createTarget(const VitrailTargetDesc& desc);
+  VitrailVkTargetDesc targetDesc() const;
+  bool createTarget(const VitrailVkTargetDesc& desc);
   bool createWholeTarget(std::uint32_t nodeCapacity);
   void planTiles(std::span<const VitrailBounds> bounds);
   void drawTiles(Frame& frame);
@@ -49,7 +49,7 @@ class LinkedList final : public Method {
 
   // What pipelines differ in beside the options.
   struct PipelineKind {
-    VitrailLinking linking = VITRAIL_LINKING_DEFAULT;
+    VitrailListBuild linking = VITRAIL_LIST_BUILD_DEFAULT;
     bool depthFromW = false; // shaders/collect.frag
     bool operator==(const PipelineKind&) const = default;
   };
@@ -65,7 +65,7 @@ class LinkedList final : public Method {
   Target target_;
   std::uint64_t frame_ = 0;  // of the target: rises with every area
   TilePlan plan_;            // where inTiles_
-  VitrailTargetDesc made_{}; // what target_ was made for; its pointers are not kept
+  VitrailVkTargetDesc made_{}; // what target_ was made for; its pointers are not kept
   MethodTarget wanted_;
   std::uint64_t budget_ = 0;   // bytes for a tile
   bool inTiles_ = false;       // the next picture is

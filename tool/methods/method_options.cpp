@@ -89,8 +89,8 @@ constexpr Names<VitrailNodeFormat, 3> kNodeFormats{
     {{VITRAIL_NODE_COMPACT, "compact"}, {VITRAIL_NODE_STANDARD, "standard"}, {VITRAIL_NODE_HDR, "hdr"}}};
 constexpr Names<VitrailResolve, 2> kResolves{
     {{VITRAIL_RESOLVE_COMPUTE, "compute"}, {VITRAIL_RESOLVE_FRAGMENT, "fragment"}}};
-constexpr Names<VitrailLinking, 2> kLinkings{
-    {{VITRAIL_LINKING_FRAGMENT, "fragment"}, {VITRAIL_LINKING_COMPUTE, "compute"}}};
+constexpr Names<VitrailListBuild, 2> kLinkings{
+    {{VITRAIL_LIST_BUILD_FRAGMENT, "fragment"}, {VITRAIL_LIST_BUILD_COMPUTE, "compute"}}};
 constexpr Names<VitrailMsaaResolve, 2> kMsaaResolves{
     {{VITRAIL_MSAA_RESOLVE_PER_PIXEL, "per-pixel"}, {VITRAIL_MSAA_RESOLVE_PER_SAMPLE, "per-sample"}}};
 
@@ -128,7 +128,7 @@ void checkTraits(const MethodOptions& options) {
   };
   check("--nodes", &MethodTraits::nodes, options.nodes != defaults.nodes);
   check("--resolve", &MethodTraits::resolves, options.resolve != defaults.resolve);
-  check("--linking", &MethodTraits::linkings, options.linking != defaults.linking);
+  check("--linking", &MethodTraits::linkings, options.listBuild != defaults.listBuild);
   check("--msaa-resolve", &MethodTraits::msaaResolves, options.msaaResolve != defaults.msaaResolve);
   check("--layers", &MethodTraits::layers, options.maxLayers != defaults.maxLayers);
   check("--passes", &MethodTraits::passes, options.passes != defaults.passes);
@@ -177,12 +177,12 @@ void checkPictureOptions(std::string_view method, bool memoryBudget) {
 
 std::string_view nameOf(VitrailNodeFormat nodes) { return nameIn(kNodeFormats, nodes); }
 std::string_view nameOf(VitrailResolve resolve) { return nameIn(kResolves, resolve); }
-std::string_view nameOf(VitrailLinking linking) { return nameIn(kLinkings, linking); }
+std::string_view nameOf(VitrailListBuild linking) { return nameIn(kLinkings, linking); }
 std::string_view nameOf(VitrailMsaaResolve msaaResolve) { return nameIn(kMsaaResolves, msaaResolve); }
 
 std::optional<VitrailNodeFormat> nodeFormatNamed(std::string_view name) { return choiceIn(kNodeFormats, name); }
 std::optional<VitrailResolve> resolveNamed(std::string_view name) { return choiceIn(kResolves, name); }
-std::optional<VitrailLinking> linkingNamed(std::string_view name) { return choiceIn(kLinkings, name); }
+std::optional<VitrailListBuild> linkingNamed(std::string_view name) { return choiceIn(kLinkings, name); }
 std::optional<VitrailMsaaResolve> msaaResolveNamed(std::string_view name) { return choiceIn(kMsaaResolves, name); }
 
 } // namespace vitrail::tool

@@ -9,7 +9,7 @@
 
 #include <volk.h>
 
-#include <vitrail/vitrail.h>
+#include <vitrail/vulkan.h>
 
 namespace vitrail::tool {
 
@@ -19,7 +19,7 @@ struct MethodOptions {
   // Of methods that have a choice of them (MethodTraits):
   VitrailNodeFormat nodes = VITRAIL_NODE_STANDARD;
   VitrailResolve resolve = VITRAIL_RESOLVE_DEFAULT;
-  VitrailLinking linking = VITRAIL_LINKING_DEFAULT;
+  VitrailListBuild linking = VITRAIL_LIST_BUILD_DEFAULT;
   VitrailMsaaResolve msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
   std::uint32_t maxLayers = 0; // the nearest of a pixel that are drawn as they are; 0: no bound, or the method's own
   std::uint32_t passes = 0;    // over the surfaces; 0: the method's own number
@@ -60,13 +60,13 @@ void checkPictureOptions(std::string_view method, bool memoryBudget);
 // "per-sample".
 std::string_view nameOf(VitrailNodeFormat nodes);
 std::string_view nameOf(VitrailResolve resolve);
-std::string_view nameOf(VitrailLinking linking);
+std::string_view nameOf(VitrailListBuild linking);
 std::string_view nameOf(VitrailMsaaResolve msaaResolve);
 
 // The choice of that name; nothing for another text.
 std::optional<VitrailNodeFormat> nodeFormatNamed(std::string_view name);
 std::optional<VitrailResolve> resolveNamed(std::string_view name);
-std::optional<VitrailLinking> linkingNamed(std::string_view name);
+std::optional<VitrailListBuild> linkingNamed(std::string_view name);
 std::optional<VitrailMsaaResolve> msaaResolveNamed(std::string_view name);
 
 } // namespace vitrail::tool

@@ -146,15 +146,15 @@ static void printReason(VitrailLogSeverity severity, const char* message, void* 
   fprintf(stderr, "%s: the library says: %s\n", ((const Host*)host)->name, message);
 }
 
-VitrailContext hostCreateContext(Host* host) {
-  const VitrailContextDesc desc = {.instance = host->instance,
+VitrailVkContext hostCreateContext(Host* host) {
+  const VitrailVkContextDesc desc = {.instance = host->instance,
                                    .physicalDevice = host->physicalDevice,
                                    .device = host->device,
                                    .getInstanceProcAddr = host->getInstanceProcAddr,
                                    .log = printReason,
                                    .logUser = host};
-  VitrailContext context;
-  hostCheck(host, vitrailCreateContext(&desc, &context), "vitrailCreateContext");
+  VitrailVkContext context;
+  hostCheck(host, vitrailVkCreateContext(&desc, &context), "vitrailVkCreateContext");
   return context;
 }
 

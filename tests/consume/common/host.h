@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include <vitrail/vitrail.h>
+#include <vitrail/vulkan.h>
 #include <vulkan/vulkan.h>
 
 #ifdef VK_NO_PROTOTYPES
@@ -47,7 +47,7 @@ void hostFail(const Host* host, const char* format, ...);
 void hostCheck(const Host* host, VkResult result, const char* what);
 
 /* The library's context on the host's device; it prints the reason of a failure. */
-VitrailContext hostCreateContext(Host* host);
+VitrailVkContext hostCreateContext(Host* host);
 
 typedef struct Buffer {
   VkBuffer buffer;

@@ -148,7 +148,7 @@ Painter sceneCreatePainter(const Host* host, const PainterDesc* desc) {
   const Pass opaquePass = {.stages = {vertex, opaque}, .depthWrite = VK_TRUE, .colorWrite = all};
   painter.opaque = createPipeline(host, desc, painter.layout, &opaquePass);
   Pass transparentPass = {.stages = {vertex, collect}, .stencilTest = desc->stencilMark};
-  vitrailStencilMark(&transparentPass.stencil);
+  vitrailVkStencilMark(&transparentPass.stencil);
   painter.transparent = createPipeline(host, desc, painter.layout, &transparentPass);
 
   vkDestroyShaderModule(host->device, vertex.module, NULL);

@@ -23,8 +23,8 @@ typedef struct PainterDesc {
   VkFormat colorFormat;                       /* of the scope that both passes are drawn in */
   VkFormat depthFormat;                       /* with or without stencil */
   VkRenderPass renderPass;                    /* null: dynamic rendering */
-  VkDescriptorSetLayout lists;                /* vitrailDescriptorSetLayout() */
-  bool stencilMark;                           /* vitrailStencilMark() */
+  VkDescriptorSetLayout lists;                /* vitrailVkDescriptorSetLayout() */
+  bool stencilMark;                           /* vitrailVkStencilMark() */
   const VkSpecializationInfo* specialization; /* of the collecting shader; may be null */
 } PainterDesc;
 
@@ -36,7 +36,7 @@ extern const float sceneBackground[4];
 
 void sceneDrawOpaque(VkCommandBuffer commands, const Painter* painter);
 
-/* `lists`: vitrailTargetDescriptorSet(). */
+/* `lists`: vitrailVkTargetDescriptorSet(). */
 void sceneDrawTransparent(VkCommandBuffer commands, const Painter* painter, VkDescriptorSet lists);
 
 /* Draws everything with dynamic rendering, as one scope that begins with a clear. Both images are in their attachment

@@ -11,12 +11,12 @@ extern "C" {
 typedef struct View {
   Image color; /* what the opaque scene is drawn into and the resolve writes */
   Image depth;
-  VitrailTarget target;
+  VitrailVkTarget target;
   Painter painter;
 } View;
 
-/* `desc` as for vitrailCreateTarget(), with the extent, the colour format and the memory; the rest is filled in. */
-View viewCreate(const Host* host, VitrailContext context, const VitrailTargetDesc* desc);
+/* `desc` as for vitrailVkCreateTarget(), with the extent, the colour format and the memory; the rest is filled in. */
+View viewCreate(const Host* host, VitrailVkContext context, const VitrailVkTargetDesc* desc);
 void viewDestroy(const Host* host, View* view);
 
 /* Records frame 0. */

@@ -21,7 +21,7 @@ constexpr VkDeviceSize kTileBudget = 64 * 1024;
 
 class Renderer {
  public:
-  Renderer(Host& host, vitrail::Context& context) : host_(host), context_(context) {
+  Renderer(Host& host, vitrail::vulkan::Context& context) : host_(host), context_(context) {
     color_ = hostCreateImage(&host, kExtent, kColorFormat,
                              VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
     depth_ = hostCreateImage(&host, kExtent, VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
@@ -41,9 +41,9 @@ class Renderer {
   }
 
   std::vector<double> drawWhole() {
-    VitrailTargetDesc desc = targetDesc();
+    VitrailVkTargetDesc desc = targetDesc();
     desc.nodeCapacity = 3 * kExtent.width * kExtent.height;
-    const vitrail::Target target = createTarget(desc);
+    const vitrail::vulkan::Target target = createTarget(desc);
     drawOpaque();
     VitrailStats stats = drawTransparent(target, 0, {});
     sceneCheckStats(&host_, kExtent, &stats);
@@ -53,26 +53,36 @@ class Renderer {
   // `tiles`: how many there were.
   std::vector<double> drawTiled(unsigned& tiles) {
     VitrailTilePlanDesc planDesc{};
-    planDesc.extent = kExtent;
+    planDesc.width = kExtent.width;
+    planDesc.height = kExtent.height;
     planDesc.memoryBudget = kTileBudget;
+    hostCheck(&host_, context_.tileLimits(VITRAIL_NODE_STANDARD, VK_SAMPLE_COUNT_1_BIT, planDesc.limits),
+              "vitrailVkTileLimits");
     vitrail::TilePlan plan;
-    hostCheck(&host_, vitrail::TilePlan::create(context_, planDesc, plan), "vitrailCreateTilePlan");
-    VitrailTargetDesc desc = targetDesc();
-    plan.prepare(desc);
-    const vitrail::Target target = createTarget(desc);
+    checkPlan(vitrail::TilePlan::create(planDesc, plan), "vitrailCreateTilePlan");
+    VitrailVkTargetDesc desc = targetDesc();
+    vitrailVkTilePlanTarget(plan.handle(), &desc);
+    const vitrail::vulkan::Target target = createTarget(desc);
 
     drawOpaque();
-    VkRect2D tile{};
+    VitrailRect tile{};
     for (tiles = 0; plan.next(tile); ++tiles) {
-      const VitrailStats stats = drawTransparent(target, tiles, tile);
-      hostCheck(&host_, plan.finish(stats), "vitrailFinishTile");
+      const VkOffset2D corner{static_cast<int32_t>(tile.x), static_cast<int32_t>(tile.y)};
+      const VitrailStats stats = drawTransparent(target, tiles, {corner, {tile.width, tile.height}});
+      checkPlan(plan.finish(stats), "vitrailFinishTile");
     }
     return read();
   }
 
  private:
-  static VitrailTargetDesc targetDesc() {
-    VitrailTargetDesc desc{};
+  static void checkPlan(VitrailResult result, const char* call) {
+    if (result == VITRAIL_SUCCESS) return;
+    std::fprintf(stderr, "cpp: %s: %d\n", call, static_cast<int>(result));
+    std::exit(1);
+  }
+
+  static VitrailVkTargetDesc targetDesc() {
+    VitrailVkTargetDesc desc{};
     desc.extent = kExtent;
     desc.resolve = VITRAIL_RESOLVE_FRAGMENT;
     desc.colorFormat = kColorFormat;
@@ -80,9 +90,9 @@ class Renderer {
     return desc;
   }
 
-  vitrail::Target createTarget(const VitrailTargetDesc& desc) {
-    vitrail::Target target;
-    hostCheck(&host_, vitrail::Target::create(context_, desc, target), "vitrailCreateTarget");
+  vitrail::vulkan::Target createTarget(const VitrailVkTargetDesc& desc) {
+    vitrail::vulkan::Target target;
+    hostCheck(&host_, vitrail::vulkan::Target::create(context_, desc, target), "vitrailVkCreateTarget");
     return target;
   }
 
@@ -119,9 +129,9 @@ class Renderer {
   }
 
   // Collects and resolves one area over what the colour image holds, and waits for it.
-  VitrailStats drawTransparent(const vitrail::Target& target, uint64_t frame, const VkRect2D& area) {
+  VitrailStats drawTransparent(const vitrail::vulkan::Target& target, uint64_t frame, const VkRect2D& area) {
     VkCommandBuffer commands = hostBegin(&host_);
-    VitrailBeginInfo info{};
+    VitrailVkBeginInfo info{};
     info.frame = frame;
     info.area = area;
     target.begin(commands, info);
@@ -140,7 +150,7 @@ class Renderer {
     target.end(commands);
     hostSubmit(&host_, commands);
     VitrailStats stats{};
-    hostCheck(&host_, target.readStats(frame, stats), "vitrailReadStats");
+    hostCheck(&host_, target.readStats(frame, stats), "vitrailVkReadStats");
     return stats;
   }
 
@@ -159,25 +169,25 @@ class Renderer {
       VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
 
   Host& host_;
-  vitrail::Context& context_;
+  vitrail::vulkan::Context& context_;
   Image color_{};
   Image depth_{};
   Painter painter_{};
 };
 
-vitrail::Context createContext(Host& host) {
-  VitrailContextDesc desc{};
+vitrail::vulkan::Context createContext(Host& host) {
+  VitrailVkContextDesc desc{};
   desc.instance = host.instance;
   desc.physicalDevice = host.physicalDevice;
   desc.device = host.device;
   desc.getInstanceProcAddr = host.getInstanceProcAddr;
-  vitrail::Context context;
-  hostCheck(&host, vitrail::Context::create(desc, context), "vitrailCreateContext");
+  vitrail::vulkan::Context context;
+  hostCheck(&host, vitrail::vulkan::Context::create(desc, context), "vitrailVkCreateContext");
   return context;
 }
 
 void drawAndCheck(Host& host) {
-  vitrail::Context context = createContext(host);
+  vitrail::vulkan::Context context = createContext(host);
   Renderer renderer(host, context);
   const std::vector<double> whole = renderer.drawWhole();
   sceneCheckPicture(&host, kExtent, whole.data(), kTolerance);

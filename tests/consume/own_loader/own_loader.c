@@ -8,8 +8,8 @@ int main(void) {
   PFN_vkGetInstanceProcAddr getInstanceProcAddr = openLoader();
   if (getInstanceProcAddr == NULL) hostFail(&host, "libvulkan.so.1 is missing, or something has linked it");
   hostOpen(&host, host.name, getInstanceProcAddr, VK_API_VERSION_1_3);
-  VitrailContext context = hostCreateContext(&host);
-  const VitrailTargetDesc desc = {
+  VitrailVkContext context = hostCreateContext(&host);
+  const VitrailVkTargetDesc desc = {
       .extent = {64, 48}, .colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT, .nodeCapacity = 3 * 64 * 48};
   View view = viewCreate(&host, context, &desc);
 
@@ -20,6 +20,6 @@ int main(void) {
   printf("own_loader: every pixel is right\n");
 
   viewDestroy(&host, &view);
-  vitrailDestroyContext(context);
+  vitrailVkDestroyContext(context);
   return hostClose(&host);
 }

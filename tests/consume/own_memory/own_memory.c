@@ -12,7 +12,7 @@ typedef struct Part {
   VkDeviceSize total;
 } Part;
 
-static Part placePart(const VitrailRequirements* needs) {
+static Part placePart(const VitrailVkRequirements* needs) {
   const VkDeviceSize guard = needs->alignment > 256 ? needs->alignment : 256;
   Part part = {.offset = guard, .size = (needs->size + 3) / 4 * 4};
   part.total = part.offset + part.size + guard;
@@ -33,11 +33,11 @@ static void checkGuards(const Host* host, const Buffer* copy, const Part* part) 
 int main(void) {
   Host host;
   hostOpen(&host, "own_memory", vkGetInstanceProcAddr, VK_API_VERSION_1_3);
-  VitrailContext context = hostCreateContext(&host);
-  VitrailTargetDesc desc = {
+  VitrailVkContext context = hostCreateContext(&host);
+  VitrailVkTargetDesc desc = {
       .extent = {64, 48}, .colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT, .nodeCapacity = 3 * 64 * 48};
-  VitrailRequirements needs;
-  hostCheck(&host, vitrailTargetRequirements(context, &desc, &needs), "vitrailTargetRequirements");
+  VitrailVkRequirements needs = {0};
+  hostCheck(&host, vitrailVkTargetRequirements(context, &desc, &needs), "vitrailVkTargetRequirements");
   const Part part = placePart(&needs);
   const VkBufferUsageFlags transfers = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   Buffer buffer = hostCreateBuffer(&host, part.total, needs.usage | transfers, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
@@ -45,6 +45,7 @@ int main(void) {
                                  VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
   desc.buffer = buffer.buffer;
   desc.bufferOffset = part.offset;
+  desc.bufferSize = needs.size;
   View view = viewCreate(&host, context, &desc);
 
   VkCommandBuffer commands = hostBegin(&host);
@@ -70,6 +71,6 @@ int main(void) {
   viewDestroy(&host, &view);
   hostDestroyBuffer(&host, &buffer);
   hostDestroyBuffer(&host, &copy);
-  vitrailDestroyContext(context);
+  vitrailVkDestroyContext(context);
   return hostClose(&host);
 }

@@ -6,8 +6,8 @@
 int main(void) {
   Host host;
   hostOpen(&host, "plain_c", vkGetInstanceProcAddr, VK_API_VERSION_1_3);
-  VitrailContext context = hostCreateContext(&host);
-  const VitrailTargetDesc desc = {
+  VitrailVkContext context = hostCreateContext(&host);
+  const VitrailVkTargetDesc desc = {
       .extent = {64, 48}, .colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT, .nodeCapacity = 3 * 64 * 48};
   View view = viewCreate(&host, context, &desc);
 
@@ -18,6 +18,6 @@ int main(void) {
   printf("plain_c: every pixel is right\n");
 
   viewDestroy(&host, &view);
-  vitrailDestroyContext(context);
+  vitrailVkDestroyContext(context);
   return hostClose(&host);
 }

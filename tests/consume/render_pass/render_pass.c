@@ -105,9 +105,9 @@ static void destroyFrame(const Host* host, Frame* frame) {
   hostDestroyImage(host, &frame->depth);
 }
 
-static VitrailTarget createTarget(const Host* host, VitrailContext context, const Frame* frame) {
+static VitrailVkTarget createTarget(const Host* host, VitrailVkContext context, const Frame* frame) {
   const VkExtent2D extent = frame->color.extent;
-  const VitrailTargetDesc desc = {.extent = extent,
+  const VitrailVkTargetDesc desc = {.extent = extent,
                                   .nodeCapacity = 3 * extent.width * extent.height,
                                   .resolve = VITRAIL_RESOLVE_FRAGMENT,
                                   .colorFormat = frame->color.format,
@@ -116,8 +116,8 @@ static VitrailTarget createTarget(const Host* host, VitrailContext context, cons
                                             .renderPass = frame->resolvePass,
                                             .stencilMark = VK_TRUE},
                                   .debugName = "render_pass"};
-  VitrailTarget target;
-  hostCheck(host, vitrailCreateTarget(context, &desc, &target), "vitrailCreateTarget");
+  VitrailVkTarget target;
+  hostCheck(host, vitrailVkCreateTarget(context, &desc, &target), "vitrailVkCreateTarget");
   return target;
 }
 
@@ -133,39 +133,39 @@ static void beginPass(VkCommandBuffer commands, const Frame* frame, VkRenderPass
   vkCmdBeginRenderPass(commands, &info, VK_SUBPASS_CONTENTS_INLINE);
 }
 
-static void record(VkCommandBuffer commands, const Frame* frame, const Painter* painter, VitrailTarget target) {
-  vitrailCmdBegin(commands, target, NULL);
+static void record(VkCommandBuffer commands, const Frame* frame, const Painter* painter, VitrailVkTarget target) {
+  vitrailVkCmdBegin(commands, target, NULL);
   beginPass(commands, frame, frame->scenePass, frame->sceneBuffer);
   sceneDrawOpaque(commands, painter);
-  sceneDrawTransparent(commands, painter, vitrailTargetDescriptorSet(target));
+  sceneDrawTransparent(commands, painter, vitrailVkTargetDescriptorSet(target));
   vkCmdEndRenderPass(commands);
-  vitrailCmdCollected(commands, target);
+  vitrailVkCmdCollected(commands, target);
   beginPass(commands, frame, frame->resolvePass, frame->resolveBuffer);
-  vitrailCmdResolve(commands, target, NULL);
+  vitrailVkCmdResolve(commands, target, NULL);
   vkCmdEndRenderPass(commands);
-  vitrailCmdEnd(commands, target);
+  vitrailVkCmdEnd(commands, target);
 }
 
 int main(void) {
   Host host;
   hostOpen(&host, "render_pass", vkGetInstanceProcAddr, VK_API_VERSION_1_2);
-  VitrailContext context = hostCreateContext(&host);
+  VitrailVkContext context = hostCreateContext(&host);
   const VkExtent2D extent = {64, 48};
   Frame frame = createFrame(&host, extent);
-  VitrailTarget target = createTarget(&host, context, &frame);
+  VitrailVkTarget target = createTarget(&host, context, &frame);
   Painter painter = sceneCreatePainter(&host, &(PainterDesc){.extent = extent,
                                                              .colorFormat = frame.color.format,
                                                              .depthFormat = frame.depth.format,
                                                              .renderPass = frame.scenePass,
-                                                             .lists = vitrailDescriptorSetLayout(context),
+                                                             .lists = vitrailVkDescriptorSetLayout(context),
                                                              .stencilMark = true});
 
   VkCommandBuffer commands = hostBegin(&host);
   record(commands, &frame, &painter, target);
   hostSubmit(&host, commands);
 
-  VitrailStats stats;
-  hostCheck(&host, vitrailReadStats(target, 0, &stats), "vitrailReadStats");
+  VitrailStats stats = {0};
+  hostCheck(&host, vitrailVkReadStats(target, 0, &stats), "vitrailVkReadStats");
   sceneCheckStats(&host, extent, &stats);
   double* pixels = hostReadPixels(&host, &frame.color, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
   const double tolerance = 1.0 / 1024; /* 16-bit floats */
@@ -174,8 +174,8 @@ int main(void) {
   free(pixels);
 
   sceneDestroyPainter(&host, &painter);
-  vitrailDestroyTarget(target);
-  vitrailDestroyContext(context);
+  vitrailVkDestroyTarget(target);
+  vitrailVkDestroyContext(context);
   destroyFrame(&host, &frame);
   return hostClose(&host);
 }

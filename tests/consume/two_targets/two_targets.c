@@ -6,8 +6,8 @@
 int main(void) {
   Host host;
   hostOpen(&host, "two_targets", vkGetInstanceProcAddr, VK_API_VERSION_1_3);
-  VitrailContext context = hostCreateContext(&host);
-  const VitrailTargetDesc descs[2] = {
+  VitrailVkContext context = hostCreateContext(&host);
+  const VitrailVkTargetDesc descs[2] = {
       {.extent = {64, 48}, .colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT, .nodeCapacity = 3 * 64 * 48},
       {.extent = {40, 56},
        .colorFormat = VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -23,6 +23,6 @@ int main(void) {
   printf("two_targets: every pixel of both is right\n");
 
   for (int i = 0; i < 2; ++i) viewDestroy(&host, &views[i]);
-  vitrailDestroyContext(context);
+  vitrailVkDestroyContext(context);
   return hostClose(&host);
 }

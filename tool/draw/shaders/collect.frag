@@ -2,6 +2,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define VITRAIL_SET 2
+#ifndef VITRAIL_BUFFER_REFERENCE // only a CPU driver is not given it (draw/features.cpp)
+#define VITRAIL_CPU_DRIVER
+#endif
 #include "vitrail/collect.glsl"
 
 #include "surface.glsl"

@@ -1,0 +1,55 @@
+#include "parameters.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace vitrail {
+
+layout::VitrailParameters parametersOf(const TargetInfo& info, std::uint32_t nodeCapacity, const PoolAccess& pool,
+                                       const VitrailRect& area) {
+  layout::VitrailParameters parameters{};
+  parameters.x = area.x;
+  parameters.y = area.y;
+  parameters.width = area.width;
+  parameters.height = area.height;
+  parameters.capacity = nodeCapacity;
+  parameters.format = info.nodeFormat;
+  parameters.samples = info.samples;
+  parameters.nearestIsOne = info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE ? 1 : 0;
+  parameters.keepSums = info.keepsSums() ? 1 : 0;
+  parameters.loose = info.listBuild == VITRAIL_LIST_BUILD_COMPUTE ? 1 : 0;
+  parameters.nodesLow = static_cast<std::uint32_t>(pool.address);
+  parameters.nodesHigh = static_cast<std::uint32_t>(pool.address >> 32U);
+  parameters.widthByBinding = pool.wholeByBinding ? area.width : 0;
+  parameters.widthByAddress = pool.address != 0 ? area.width : 0;
+  parameters.userWords = info.userWords ? 1 : 0;
+  std::array<std::uint32_t, VITRAIL_LAYOUTS> capacities{};
+  static_assert(sizeof(capacities) == sizeof(parameters.capacities));
+  capacities.at(VITRAIL_LAYOUT(parameters.format, parameters.samples, parameters.keepSums, parameters.loose,
+                               parameters.userWords)) = parameters.capacity;
+  std::memcpy(parameters.capacities, capacities.data(), sizeof(capacities));
+  return parameters;
+}
+
+VitrailRect areaOfFrame(const TargetInfo& info, const Log& log, std::int64_t x, std::int64_t y, std::uint32_t width,
+                        std::uint32_t height, bool& whole) {
+  VitrailRect area{0, 0, info.width, info.height};
+  if (width != 0 && height != 0) {
+    area.x = static_cast<std::uint32_t>(std::clamp<std::int64_t>(x, 0, info.width));
+    area.y = static_cast<std::uint32_t>(std::clamp<std::int64_t>(y, 0, info.height));
+    area.width = std::min(width, info.width - area.x);
+    area.height = std::min(height, info.height - area.y);
+    if (area.width == 0 || area.height == 0) return {area.x, area.y, 0, 0};
+  }
+  if (std::uint64_t{area.width} * area.height > info.areaPixels) {
+    log.warn("an area of %ux%u pixels is begun, the target has areaPixels %u: the rest is left out", area.width,
+             area.height, info.areaPixels);
+    whole = false;
+    area.width = std::min(area.width, info.areaPixels);
+    area.height = info.areaPixels / area.width;
+  }
+  return area;
+}
+
+} // namespace vitrail

@@ -1,0 +1,9 @@
+// What types.h declares and no other file is about.
+#include "core/pool.h"
+#include "vitrail/types.h"
+
+extern "C" uint32_t vitrailVersion(void) { return VITRAIL_VERSION; }
+
+extern "C" uint64_t vitrailNodePoolSize(VitrailNodeFormat format, uint32_t nodeCapacity) {
+  return vitrail::nodePoolBytes(format, nodeCapacity);
+}

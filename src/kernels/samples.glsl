@@ -1,0 +1,57 @@
+// The opaque scene behind the lists, sample by sample, and which samples a fragment adds to. VITRAIL_MULTISAMPLED is
+// defined where one invocation handles all samples of a pixel, VITRAIL_PER_SAMPLE where it handles one of them, and
+// then VITRAIL_TEST_DEPTH where their depth may have to be tested.
+#ifndef VITRAIL_SAMPLES_GLSL
+#define VITRAIL_SAMPLES_GLSL
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "target.glsl"
+
+#if defined(VITRAIL_MULTISAMPLED) || defined(VITRAIL_TEST_DEPTH)
+layout(set = 1, binding = VITRAIL_VIEW_BINDING_DEPTH) uniform texture2DMS depthImage;
+
+// Whether a fragment lies behind the opaque scene at a sample, both rounded alike.
+bool isHidden(uvec4 key, ivec2 pixel, int number) {
+  float behind = texelFetch(depthImage, pixel, number).r;
+  return vitrailKeyDepth(key, vitrailNodes()) > vitrailDepthOrder(behind, vitrailNodes());
+}
+#endif
+
+#ifdef VITRAIL_MULTISAMPLED
+#define VITRAIL_ACCUMULATORS 8
+layout(set = 1, binding = VITRAIL_VIEW_BINDING_OPAQUE) uniform texture2DMS opaqueImage;
+
+ivec2 shownPixel; // the pixel that this invocation resolves
+
+uint vitrailVisible(uvec4 key) {
+  uint coverage = vitrailKeyCoverage(key, vitrailNodes());
+  if (!kTestDepth) return coverage;
+  for (int s = 0; s < 8; ++s) {
+    if (s < int(kSamples) && isHidden(key, shownPixel, s)) coverage &= ~(1u << s);
+  }
+  return coverage;
+}
+
+#else
+#define VITRAIL_ACCUMULATORS 1
+#ifdef VITRAIL_PER_SAMPLE
+uint vitrailVisible(uvec4 key) {
+  bool covered = (vitrailKeyCoverage(key, vitrailNodes()) & (1u << gl_SampleID)) != 0u;
+#ifdef VITRAIL_TEST_DEPTH
+  covered = covered && !isHidden(key, ivec2(gl_FragCoord.xy), gl_SampleID);
+#endif
+  return covered ? 1u : 0u;
+}
+#else
+uint vitrailVisible(uvec4 key) { return 1u; }
+#endif
+#endif
+
+// What is seen of the opaque colour d, premultiplied, through a list: C + T * d.
+vec4 over(VitrailPair pair, vec4 d) {
+  // d.a + (1 - d.a) * (1 - T), without the rounding that would move an opaque 1
+  return vec4(pair.color + pair.transmittance.rgb * d.rgb, 1.0 - pair.transmittance.a * (1.0 - d.a));
+}
+
+#endif

@@ -1,0 +1,148 @@
+#include "check.h"
+
+#include <algorithm>
+
+namespace vitrail {
+
+namespace {
+
+bool computeWrites(VkFormat format) {
+  return format == VK_FORMAT_R16G16B16A16_SFLOAT || format == VK_FORMAT_R32G32B32A32_SFLOAT;
+}
+
+VkFormatFeatureFlags featuresOf(const VitrailVkContext_T& context, VkFormat format) {
+  VkFormatProperties properties{};
+  context.vk.GetPhysicalDeviceFormatProperties(context.physicalDevice, format, &properties);
+  return properties.optimalTilingFeatures;
+}
+
+bool hasDepth(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_D16_UNORM:
+    case VK_FORMAT_X8_D24_UNORM_PACK32:
+    case VK_FORMAT_D32_SFLOAT:
+    case VK_FORMAT_D16_UNORM_S8_UINT:
+    case VK_FORMAT_D24_UNORM_S8_UINT:
+    case VK_FORMAT_D32_SFLOAT_S8_UINT:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool hasStencil(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_S8_UINT:
+    case VK_FORMAT_D16_UNORM_S8_UINT:
+    case VK_FORMAT_D24_UNORM_S8_UINT:
+    case VK_FORMAT_D32_SFLOAT_S8_UINT:
+      return true;
+    default:
+      return false;
+  }
+}
+
+VkResult checkColorFormat(const VitrailVkContext_T& context, VkFormat format, bool compute) {
+  if (compute && !computeWrites(format)) {
+    return context.log.fail(VK_ERROR_FORMAT_NOT_SUPPORTED,
+                            "colorFormat %d: a compute resolve writes VK_FORMAT_R16G16B16A16_SFLOAT or "
+                            "VK_FORMAT_R32G32B32A32_SFLOAT",
+                            format);
+  }
+  const VkFormatFeatureFlags needed =
+      compute ? VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT : VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
+  if ((featuresOf(context, format) & needed) == 0) {
+    return context.log.fail(VK_ERROR_FORMAT_NOT_SUPPORTED, "colorFormat %d: this device cannot use it as %s", format,
+                            compute ? "storage image" : "blended attachment");
+  }
+  return VK_SUCCESS;
+}
+
+VkResult checkScope(const VitrailVkContext_T& context, const VitrailVkScope& scope) {
+  if (scope.depthFormat != VK_FORMAT_UNDEFINED && !hasDepth(scope.depthFormat)) {
+    return context.log.fail(VK_ERROR_INITIALIZATION_FAILED, "scope.depthFormat %d is no depth format",
+                            scope.depthFormat);
+  }
+  if (scope.stencilFormat != VK_FORMAT_UNDEFINED && !hasStencil(scope.stencilFormat)) {
+    return context.log.fail(VK_ERROR_INITIALIZATION_FAILED, "scope.stencilFormat %d is no stencil format",
+                            scope.stencilFormat);
+  }
+  return VK_SUCCESS;
+}
+
+// The first null handle of an array.
+void findNull(const VkImageView* views, std::uint32_t count, const char* name, ViewsInfo& info) {
+  if (views == nullptr || info.nullName != nullptr) return;
+  const VkImageView* found = std::find(views, views + count, VkImageView{});
+  if (found == views + count) return;
+  info.nullName = name;
+  info.nullIndex = static_cast<std::uint32_t>(found - views);
+}
+
+} // namespace
+
+VkResult checkNext(const Log& log, const void* next, const char* structure) {
+  if (next == nullptr) return VK_SUCCESS;
+  return log.fail(VK_ERROR_INITIALIZATION_FAILED, "%s::next: version %d.%d knows no further structures", structure,
+                  VITRAIL_VERSION_MAJOR, VITRAIL_VERSION_MINOR);
+}
+
+VkResult nullArgument(const VitrailVkContext_T* context, const char* call) {
+  if (context != nullptr) context->log.error("%s: an argument is null", call);
+  return VK_ERROR_INITIALIZATION_FAILED;
+}
+
+VkFormat colorFormatOf(const VitrailVkTargetDesc& desc) {
+  return desc.colorFormat != VK_FORMAT_UNDEFINED ? desc.colorFormat : VK_FORMAT_R16G16B16A16_SFLOAT;
+}
+
+TargetInfo targetInfo(const VitrailVkContext_T& context, const VitrailVkTargetDesc& desc) {
+  TargetInfo info;
+  info.width = desc.extent.width;
+  info.height = desc.extent.height;
+  info.samples = desc.samples;
+  info.nodeFormat = desc.nodeFormat;
+  info.depthOrder = desc.depthOrder;
+  info.resolve = desc.resolve;
+  info.msaaResolve = desc.msaaResolve;
+  info.postDepthCoverage = desc.postDepthCoverage != VK_FALSE;
+  info.maxLayers = desc.maxLayers;
+  info.overflow = desc.overflow;
+  info.listBuild = desc.listBuild;
+  info.userWords = desc.userWords != VK_FALSE;
+  info.nodeCapacity = desc.nodeCapacity;
+  info.memoryBudget = desc.memoryBudget;
+  info.areaPixels = desc.areaPixels;
+  info.copyLayers = desc.copyLayers;
+  info.ownBuffer = desc.buffer != VK_NULL_HANDLE;
+  info.bufferOffset = desc.bufferOffset;
+  info.bufferSize = desc.bufferSize;
+  info.framesInFlight = desc.framesInFlight;
+  const VkFormat color = colorFormatOf(desc);
+  info.canStoreColor = computeWrites(color) && desc.views.color != nullptr &&
+                       (featuresOf(context, color) & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) != 0;
+  info.stencilMark = desc.scope.stencilMark != VK_FALSE;
+  info.hasStencil = desc.scope.renderPass != VK_NULL_HANDLE || desc.scope.stencilFormat != VK_FORMAT_UNDEFINED;
+  return info;
+}
+
+ViewsInfo viewsInfo(const VitrailVkViews& views) {
+  ViewsInfo info;
+  info.count = views.count;
+  info.color = views.color != nullptr;
+  info.opaque = views.opaque != nullptr;
+  info.depth = views.depth != nullptr;
+  if (views.count > VITRAIL_MAX_VIEWS) return info; // the arrays are not trusted
+  findNull(views.color, views.count, "color", info);
+  findNull(views.opaque, views.count, "opaque", info);
+  findNull(views.depth, views.count, "depth", info);
+  return info;
+}
+
+VkResult checkFormats(const VitrailVkContext_T& context, const VitrailVkTargetDesc& desc, const TargetInfo& info) {
+  const bool compute = info.resolve == VITRAIL_RESOLVE_COMPUTE;
+  const VkResult result = checkColorFormat(context, colorFormatOf(desc), compute);
+  return result != VK_SUCCESS || compute ? result : checkScope(context, desc.scope);
+}
+
+} // namespace vitrail

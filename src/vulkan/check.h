@@ -1,0 +1,36 @@
+// What of the descriptors only Vulkan knows: their translation for the core's rules, formats, null handles.
+#pragma once
+
+#include "context.h"
+#include "core/target_rules.h"
+#include "vitrail/vulkan.h"
+
+namespace vitrail {
+
+// What a log line says of a descriptor whose `next` is not null; VK_SUCCESS where it is.
+VkResult checkNext(const Log& log, const void* next, const char* structure);
+
+// Zeroes a structure that the library fills in; its `next` is the host's.
+template <class Structure>
+void clearKeepingNext(Structure& structure) {
+  void* next = structure.next;
+  structure = {};
+  structure.next = next;
+}
+
+// For a call whose argument is null.
+VkResult nullArgument(const VitrailVkContext_T* context, const char* call);
+
+// The colour format with its default.
+VkFormat colorFormatOf(const VitrailVkTargetDesc& desc);
+
+// The descriptor for the core's rules, without its defaults.
+TargetInfo targetInfo(const VitrailVkContext_T& context, const VitrailVkTargetDesc& desc);
+
+// The views for the core's rules.
+ViewsInfo viewsInfo(const VitrailVkViews& views);
+
+// Formats of the colour and of the scope. Logs the reason where it fails.
+VkResult checkFormats(const VitrailVkContext_T& context, const VitrailVkTargetDesc& desc, const TargetInfo& info);
+
+} // namespace vitrail

@@ -1,0 +1,156 @@
+// The recording calls.
+#include "check.h"
+#include "convert.h"
+#include "record.h"
+
+namespace vitrail {
+
+namespace {
+
+constexpr const char* kPrefix = "vitrailVkCmd";
+
+bool allows(VitrailVkTarget target, Call call) { return target->order.allows(call, target->context->log, kPrefix); }
+
+// Barriers between the calls are the host's where it says so.
+void boundary(VkCommandBuffer commandBuffer, const VitrailVkTarget_T& target, Call call) {
+  if (!target.hostBarriers) recordBoundary(commandBuffer, target, call);
+}
+
+bool nextIsNull(VitrailVkTarget target, const void* next, const char* structure) {
+  if (checkNext(target->context->log, next, structure) == VK_SUCCESS) return true;
+  target->order.setMisused();
+  return false;
+}
+
+// Starts the frame on the host's side: its number, its memory, its area.
+void beginFrame(VitrailVkTarget_T& target, const VitrailVkBeginInfo& info) {
+  if (target.frames.begin(info.frame)) { // a second time: the first one was never submitted
+    for (Storage& storage : target.retired) storage.use.drop(target.frames.newest());
+  }
+  target.storage.use.add(target.frames.newest());
+  freeRetired(target, target.frames.newest());
+  const VkRect2D& wanted = info.area;
+  bool whole = true;
+  target.area = areaOfFrame(target.info, target.context->log, wanted.offset.x, wanted.offset.y, wanted.extent.width,
+                            wanted.extent.height, whole);
+  if (!whole) target.order.setMisused();
+}
+
+// The view to resolve to.
+std::uint32_t viewOf(VitrailVkTarget_T& target, const VitrailVkResolveInfo* info) {
+  const std::uint32_t view = info != nullptr ? info->view : 0;
+  if (view == 0 || view < target.storage.viewCount) return view;
+  target.context->log.warn("view %u is resolved, the target has %u: view 0 is taken", view, target.storage.viewCount);
+  target.order.setMisused();
+  return 0;
+}
+
+// Whether that can be copied; logs why not.
+bool canCopy(const VitrailVkTarget_T& target, const VitrailVkCopyInfo& info) {
+  const Log& log = target.context->log;
+  const VkRect2D& copied = info.area;
+  const std::uint64_t pixels = std::uint64_t{copied.extent.width} * copied.extent.height;
+  const VitrailRect& area = target.area;
+  const bool inside = pixels != 0 && copied.offset.x >= static_cast<std::int64_t>(area.x) &&
+                      copied.offset.y >= static_cast<std::int64_t>(area.y) &&
+                      copied.offset.x + std::int64_t{copied.extent.width} <= std::int64_t{area.x} + area.width &&
+                      copied.offset.y + std::int64_t{copied.extent.height} <= std::int64_t{area.y} + area.height;
+  if (target.info.copyLayers == 0) {
+    log.error("vitrailVkCmdCopyLists: the target was made without copyLayers");
+  } else if (!inside) {
+    log.error("vitrailVkCmdCopyLists: %ux%u pixels at %d,%d are not inside the frame's area, %ux%u at %u,%u",
+              copied.extent.width, copied.extent.height, copied.offset.x, copied.offset.y, area.width, area.height,
+              area.x, area.y);
+  } else if (pixels > target.info.copyLayers) {
+    log.error("vitrailVkCmdCopyLists: %llu pixels; copyLayers %u is the most",
+              static_cast<unsigned long long>(pixels), target.info.copyLayers);
+  } else if (info.buffer == VK_NULL_HANDLE || info.offset % 4 != 0) {
+    log.error("vitrailVkCmdCopyLists needs a buffer, and an offset that is a multiple of 4");
+  } else {
+    return true;
+  }
+  return false;
+}
+
+} // namespace
+
+} // namespace vitrail
+
+extern "C" void vitrailVkCmdBegin(VkCommandBuffer commandBuffer, VitrailVkTarget target,
+                                  const VitrailVkBeginInfo* info) {
+  using namespace vitrail;
+  if (commandBuffer == VK_NULL_HANDLE || target == nullptr) return;
+  allows(target, Call::Begin);
+  const VitrailVkBeginInfo given = info != nullptr ? *info : VitrailVkBeginInfo{};
+  nextIsNull(target, given.next, "VitrailVkBeginInfo");
+  beginFrame(*target, given);
+  boundary(commandBuffer, *target, Call::Begin);
+  recordCall(commandBuffer, *target, Call::Begin);
+  boundary(commandBuffer, *target, Call::Draws);
+}
+
+extern "C" void vitrailVkCmdCollected(VkCommandBuffer commandBuffer, VitrailVkTarget target) {
+  using namespace vitrail;
+  if (commandBuffer == VK_NULL_HANDLE || target == nullptr || !allows(target, Call::Collected)) return;
+  boundary(commandBuffer, *target, Call::Collected);
+  recordCall(commandBuffer, *target, Call::Collected);
+  // Here and not in the resolve, which may be in a rendering scope; shaders of the host that walk lists need it, too.
+  boundary(commandBuffer, *target, Call::Resolve);
+}
+
+extern "C" void vitrailVkCmdCopyLists(VkCommandBuffer commandBuffer, VitrailVkTarget target,
+                                      const VitrailVkCopyInfo* info) {
+  using namespace vitrail;
+  if (commandBuffer == VK_NULL_HANDLE || target == nullptr || info == nullptr) return;
+  if (!allows(target, Call::CopyLists) || !nextIsNull(target, info->next, "VitrailVkCopyInfo")) return;
+  if (!canCopy(*target, *info)) return;
+  CallInfo call;
+  call.copied = {static_cast<std::uint32_t>(info->area.offset.x), static_cast<std::uint32_t>(info->area.offset.y),
+                 info->area.extent.width, info->area.extent.height};
+  call.copyBuffer = info->buffer;
+  call.copyOffset = info->offset;
+  recordBoundary(commandBuffer, *target, Call::CopyLists); // no point of a frame's that a render graph knows
+  recordCall(commandBuffer, *target, Call::CopyLists, call);
+  recordBoundary(commandBuffer, *target, Call::Resolve); // the copy relinks long lists
+}
+
+extern "C" void vitrailVkCmdResolve(VkCommandBuffer commandBuffer, VitrailVkTarget target,
+                                    const VitrailVkResolveInfo* info) {
+  using namespace vitrail;
+  if (commandBuffer == VK_NULL_HANDLE || target == nullptr || !allows(target, Call::Resolve)) return;
+  if (info != nullptr) nextIsNull(target, info->next, "VitrailVkResolveInfo");
+  CallInfo call;
+  call.view = viewOf(*target, info);
+  if (target->area.width == 0) return; // nothing of the picture is in the area
+  recordCall(commandBuffer, *target, Call::Resolve, call);
+  if (target->info.resolve == VITRAIL_RESOLVE_COMPUTE) target->sums.cleaned();
+}
+
+extern "C" void vitrailVkCmdEnd(VkCommandBuffer commandBuffer, VitrailVkTarget target) {
+  using namespace vitrail;
+  if (commandBuffer == VK_NULL_HANDLE || target == nullptr || !allows(target, Call::End)) return;
+  boundary(commandBuffer, *target, Call::End);
+  if (target->info.resolve == VITRAIL_RESOLVE_FRAGMENT) target->sums.cleaned();
+  recordCall(commandBuffer, *target, Call::End);
+}
+
+extern "C" void vitrailVkBarriers(VitrailVkTarget target, VitrailVkBarrierPoint point, VitrailVkBarriers* barriers) {
+  using namespace vitrail;
+  if (barriers != nullptr) clearKeepingNext(*barriers);
+  if (target == nullptr || barriers == nullptr) return;
+  switch (point) {
+    case VITRAIL_VK_BARRIER_BEGIN:
+      return boundaryOf(*target, Call::Begin, *barriers);
+    case VITRAIL_VK_BARRIER_COLLECT:
+      return boundaryOf(*target, Call::Draws, *barriers);
+    case VITRAIL_VK_BARRIER_COLLECTED:
+      return boundaryOf(*target, Call::Collected, *barriers);
+    case VITRAIL_VK_BARRIER_RESOLVE:
+      return boundaryOf(*target, Call::Resolve, *barriers);
+    case VITRAIL_VK_BARRIER_END:
+      return boundaryOf(*target, Call::End, *barriers);
+    case VITRAIL_VK_BARRIER_POINT_MAX_ENUM:
+      break;
+  }
+  target->context->log.error("vitrailVkBarriers: point %d is none of VitrailVkBarrierPoint", static_cast<int>(point));
+}

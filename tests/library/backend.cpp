@@ -1,0 +1,31 @@
+// Backends keep their devices until the program's tests are over, and give them back before static objects go.
+#include "backend.h"
+
+namespace vitrail::tests {
+
+namespace {
+
+class BackendsEnvironment : public ::testing::Environment {
+ public:
+  void TearDown() override {
+    for (Backend* backend : backends()) {
+      backend->close();
+      for (const std::string& error : backend->takeErrors()) ADD_FAILURE() << backend->name() << ": " << error;
+    }
+  }
+};
+
+const ::testing::Environment* const environment = ::testing::AddGlobalTestEnvironment(new BackendsEnvironment);
+
+} // namespace
+
+std::vector<Backend*>& backends() {
+  static std::vector<Backend*> all;
+  return all;
+}
+
+void BackendTest::TearDown() {
+  for (const std::string& error : backend().takeErrors()) ADD_FAILURE() << error;
+}
+
+} // namespace vitrail::tests

@@ -1,0 +1,98 @@
+#include "backend.h"
+
+#include <utility>
+
+#include "point_host.h"
+
+namespace vitrail::tests::vulkan {
+
+namespace {
+
+const Registered<VulkanBackend> registered;
+
+} // namespace
+
+std::unique_ptr<PointHost> VulkanBackend::makeHost(const HostDesc& desc) {
+  return std::make_unique<VulkanHost>(*this, desc);
+}
+
+VitrailResult VulkanBackend::planTiles(VitrailTilePlanDesc desc, TilePlan& plan) {
+  const auto samples = static_cast<VkSampleCountFlagBits>(desc.samples != 0 ? desc.samples : 1);
+  check(context(0).tileLimits(desc.nodeFormat, samples, desc.limits), "vitrailVkTileLimits");
+  const VitrailVkContextDesc log = contextDesc();
+  desc.log = log.log;
+  desc.logUser = log.logUser;
+  return TilePlan::create(desc, plan);
+}
+
+std::vector<std::string> VulkanBackend::takeErrors() {
+  std::vector<std::string> errors = device_ ? device_->takeErrors() : std::exchange(lastErrors_, {});
+  for (const LogLine& line : takeLog()) errors.push_back("the library's log: " + line.text);
+  return errors;
+}
+
+void VulkanBackend::close() {
+  pipelines_.clear();
+  contexts_.clear();
+  if (!device_) return;
+  device_->close();
+  lastErrors_ = device_->takeErrors();
+  device_.reset();
+}
+
+Device& VulkanBackend::device() {
+  if (!device_) device_ = std::make_unique<Device>();
+  return *device_;
+}
+
+VitrailVkContextDesc VulkanBackend::contextDesc() {
+  VitrailVkContextDesc desc{};
+  desc.instance = device().instance();
+  desc.physicalDevice = device().physicalDevice();
+  desc.device = device().get();
+  desc.getInstanceProcAddr = vkGetInstanceProcAddr;
+  desc.log = [](VitrailLogSeverity severity, const char* message, void* self) {
+    static_cast<VulkanBackend*>(self)->log_.push_back({severity, message});
+  };
+  desc.logUser = this;
+  return desc;
+}
+
+std::vector<LogLine> VulkanBackend::takeLog() { return std::exchange(log_, {}); }
+
+vitrail::vulkan::Context& VulkanBackend::context(std::uint32_t features) {
+  vitrail::vulkan::Context& context = contexts_[features];
+  if (context) return context;
+  VitrailVkContextDesc desc = contextDesc();
+  desc.features = features;
+  check(vitrail::vulkan::Context::create(desc, context), "vitrailVkCreateContext");
+  return context;
+}
+
+std::uint32_t VulkanBackend::allFeatures() {
+  std::uint32_t bits = 0;
+  if (features().dualSourceBlending) bits |= VITRAIL_VK_FEATURE_DUAL_SRC_BLEND;
+  if (features().sampleRateShading) bits |= VITRAIL_VK_FEATURE_SAMPLE_RATE_SHADING;
+  return bits;
+}
+
+PointPipelines& VulkanBackend::pipelines(const PointPipelinesInfo& info) {
+  return pipelines_.try_emplace(info, device(), info).first->second;
+}
+
+VulkanBackend& backend() { return Registered<VulkanBackend>::get(); }
+
+void expectOneLine(const std::string& word) {
+  const std::vector<LogLine> lines = backend().takeLog();
+  EXPECT_EQ(lines.size(), 1U) << "lines about " << word;
+  for (const LogLine& line : lines) {
+    EXPECT_NE(line.text.find(word), std::string::npos) << "the log says: " << line.text;
+    EXPECT_EQ(line.text.find('\n'), std::string::npos) << "the log says: " << line.text;
+  }
+}
+
+void VulkanTest::TearDown() {
+  for (const std::string& error : backend().takeErrors()) ADD_FAILURE() << error;
+}
+
+} // namespace vitrail::tests::vulkan

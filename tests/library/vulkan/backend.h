@@ -1,0 +1,68 @@
+// The Vulkan backend of the tests: one device under validation, and what hosts on it share, so that pipelines are
+// compiled once a process.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <vitrail/vitrail.hpp>
+
+#include "../backend.h"
+#include "device.h"
+#include "point_pipelines.h"
+
+namespace vitrail::tests::vulkan {
+
+// A line of the library's log.
+struct LogLine {
+  VitrailLogSeverity severity = VITRAIL_LOG_ERROR;
+  std::string text;
+};
+
+class VulkanBackend : public Backend {
+ public:
+  [[nodiscard]] std::string name() const override { return "vulkan"; }
+  const Features& features() override { return device().features(); }
+  std::unique_ptr<PointHost> makeHost(const HostDesc& desc) override;
+  VitrailResult planTiles(VitrailTilePlanDesc desc, TilePlan& plan) override;
+  // Lines of the library's log that no test took are errors, too.
+  std::vector<std::string> takeErrors() override;
+  void close() override;
+
+  Device& device();
+
+  // The library's context on the device, told of these VitrailVkFeatureBits.
+  vitrail::vulkan::Context& context(std::uint32_t features);
+  // All that the device has been made with, but for the pool's addresses.
+  std::uint32_t allFeatures();
+
+  PointPipelines& pipelines(const PointPipelinesInfo& info);
+
+  // What a context is made with: this device, and its log here.
+  VitrailVkContextDesc contextDesc();
+  // The log's lines since the last call.
+  std::vector<LogLine> takeLog();
+
+ private:
+  std::unique_ptr<Device> device_;
+  std::map<std::uint32_t, vitrail::vulkan::Context> contexts_;
+  std::map<PointPipelinesInfo, PointPipelines> pipelines_; // with the contexts' layouts: they go before
+  std::vector<LogLine> log_;
+  std::vector<std::string> lastErrors_; // of a device that was closed
+};
+
+VulkanBackend& backend();
+
+// The library has logged one line since the last look, and the word is in it.
+void expectOneLine(const std::string& word);
+
+// A test of what only Vulkan has.
+class VulkanTest : public ::testing::Test {
+ protected:
+  // Fails the test for every validation message and every line of the log that it did not take.
+  void TearDown() override;
+};
+
+} // namespace vitrail::tests::vulkan

@@ -1,0 +1,369 @@
+#include "point_host.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+namespace vitrail::tests::vulkan {
+
+namespace {
+
+// What the library's shaders do to its memory.
+constexpr Access kShaders{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                          VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
+
+// The clip-space vertex whose point covers the pixel's centre.
+PointVertex toVertex(const Point& point, const HostDesc& desc) {
+  const auto clip = [](std::uint32_t pixel, std::uint32_t size) {
+    return (static_cast<float>(pixel) + 0.5F) * 2.0F / static_cast<float>(size) - 1.0F;
+  };
+  return {{clip(point.x, desc.width), clip(point.y, desc.height), point.depth}, point.color, point.blend};
+}
+
+std::uint32_t featureBits(VulkanBackend& backend, const HostDesc& desc) {
+  std::uint32_t features = backend.allFeatures();
+  if (desc.addresses) features |= VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS;
+  if (!desc.dualSourceBlending) features &= ~std::uint32_t{VITRAIL_VK_FEATURE_DUAL_SRC_BLEND};
+  return features;
+}
+
+bool severalSamples(const HostDesc& desc) { return desc.samples > 1; }
+
+bool perPixel(const HostDesc& desc) {
+  return severalSamples(desc) && desc.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_PIXEL;
+}
+
+} // namespace
+
+VulkanHost::VulkanHost(VulkanBackend& backend, const HostDesc& desc)
+    : backend_(backend),
+      device_(backend.device()),
+      desc_(desc),
+      postDepthCoverage_(severalSamples(desc) && desc.postDepthCoverage && device_.features().postDepthCoverage),
+      context_(&backend.context(featureBits(backend, desc))),
+      commands_(device_) {
+  makeImages();
+  VitrailVkTargetDesc target = targetDesc();
+  if (desc.guarded) guard(target);
+  const VkResult result = vitrail::vulkan::Target::create(*context_, target, target_);
+  if (result != VK_SUCCESS) {
+    std::string reason = "vitrailVkCreateTarget: VkResult " + std::to_string(result);
+    for (const LogLine& line : backend.takeLog()) reason += ": " + line.text;
+    throw HostError(reason);
+  }
+  pipelines_ = &pipelinesFor(target, desc.specialized);
+  if (!desc.strangersFor) return;
+  target.overflow = *desc.strangersFor;
+  strangers_ = &pipelinesFor(target, true);
+}
+
+void VulkanHost::makeImages() {
+  for (std::size_t i = 0; i < images_.size(); ++i) {
+    images_[i] = PointImages(device_, desc_);
+    colorViews_[i] = images_[i].color();
+    opaqueViews_[i] = images_[i].multisampled();
+    depthViews_[i] = images_[i].depth();
+  }
+}
+
+VitrailVkViews VulkanHost::views() {
+  VitrailVkViews views{};
+  if (desc_.resolve != VITRAIL_RESOLVE_FRAGMENT) views.color = colorViews_.data();
+  if (perPixel(desc_)) views.opaque = opaqueViews_.data();
+  if (severalSamples(desc_) && !postDepthCoverage_) views.depth = depthViews_.data();
+  const bool any = views.color != nullptr || views.opaque != nullptr || views.depth != nullptr;
+  views.count = any ? kFramesTogether : 0;
+  return views;
+}
+
+VitrailVkTargetDesc VulkanHost::targetDesc() {
+  VitrailVkTargetDesc desc{};
+  desc.extent = {desc_.width, desc_.height};
+  desc.samples = static_cast<VkSampleCountFlagBits>(desc_.samples);
+  desc.nodeFormat = desc_.nodes;
+  desc.depthOrder = desc_.depthOrder;
+  desc.resolve = desc_.resolve;
+  desc.msaaResolve = desc_.msaaResolve;
+  desc.postDepthCoverage = postDepthCoverage_ ? VK_TRUE : VK_FALSE;
+  desc.maxLayers = desc_.maxLayers;
+  desc.overflow = desc_.overflow;
+  desc.listBuild = desc_.listBuild;
+  desc.nodeCapacity = desc_.capacity;
+  desc.memoryBudget = desc_.memoryBudget;
+  desc.areaPixels = desc_.areaPixels;
+  desc.colorFormat = PointImages::colorFormat(desc_);
+  desc.views = views();
+  desc.debugName = "points";
+  if (desc_.stencilMark && !perPixel(desc_)) {
+    desc.scope.stencilFormat = PointImages::depthFormat(desc_);
+    desc.scope.stencilMark = VK_TRUE;
+  }
+  return desc;
+}
+
+// Makes the target's memory, between guard words and full of them.
+void VulkanHost::guard(VitrailVkTargetDesc& desc) {
+  VitrailVkRequirements needs{};
+  check(context_->targetRequirements(desc, needs), "vitrailVkTargetRequirements");
+  guardBytes_ = (kGuardWords * sizeof(std::uint32_t) + needs.alignment - 1) / needs.alignment * needs.alignment;
+  // Not in memory that the host can read: shaders do atomics in it, and some machines do not carry those there.
+  memory_ = Buffer(device_, needs.size + 2 * guardBytes_, needs.usage, Memory::Device);
+  commands_.run([&](VkCommandBuffer commands) {
+    vkCmdFillBuffer(commands, memory_.get(), 0, VK_WHOLE_SIZE, kGuard);
+    // Writer: the fill. Readers and writers: the library, first its clears.
+    cmdBarrier(commands, kTransferWrite, kTransferWrite);
+  });
+  StorageNeeds parts;
+  parts.areaPixels = desc.extent.width * desc.extent.height;
+  parts.nodeCapacity = desc.nodeCapacity;
+  parts.format = desc.nodeFormat;
+  parts.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
+  parts.alignment = needs.alignment;
+  storage_ = layoutStorage(parts);
+  desc.buffer = memory_.get();
+  desc.bufferOffset = guardBytes_;
+  desc.bufferSize = needs.size;
+}
+
+// The pipelines of points for a target, or for what HostDesc says in its place.
+PointPipelines& VulkanHost::pipelinesFor(VitrailVkTargetDesc target, bool specialized) {
+  PointPipelinesInfo info;
+  info.set = context_->descriptorSetLayout();
+  info.samples = static_cast<VkSampleCountFlagBits>(desc_.samples);
+  info.colorFormat = PointImages::colorFormat(desc_);
+  info.depthFormat = PointImages::depthFormat(desc_);
+  info.nearestIsOne = desc_.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
+  info.postDepthCoverage = postDepthCoverage_;
+  info.addresses = desc_.addresses;
+  if (specialized) {
+    target.nodeFormat = desc_.specializedFor.value_or(target.nodeFormat);
+    target.overflow = desc_.specializedForOverflow.value_or(target.overflow);
+    target.listBuild = desc_.specializedForListBuild.value_or(target.listBuild);
+    const VitrailVkSpecialization constants = context_->collectSpecialization(target);
+    info.specialized = true;
+    info.firstConstant = constants.entries[0].constantID;
+    std::copy(std::begin(constants.data), std::end(constants.data), info.constants.begin());
+  }
+  return backend_.pipelines(info);
+}
+
+VulkanHost::Vertices VulkanHost::upload(std::span<const Point> points) const {
+  Vertices vertices{
+      points, Buffer(device_, points.size() * sizeof(PointVertex), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, Memory::Host)};
+  auto* written = static_cast<PointVertex*>(vertices.buffer.mapped());
+  for (const Point& point : points) *written++ = toVertex(point, desc_);
+  return vertices;
+}
+
+// Points that follow each other and cover the same samples, strangers or not, are one draw.
+void VulkanHost::recordPoints(VkCommandBuffer commands, PointImages& images, const Vertices& vertices) {
+  images.cmdBeginPoints(commands);
+  const VkDescriptorSet set = target_.descriptorSet();
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines_->pointsLayout(), 0, 1, &set, 0,
+                          nullptr);
+  const VkBuffer buffer = vertices.buffer.get();
+  const VkDeviceSize offset = 0;
+  vkCmdBindVertexBuffers(commands, 0, 1, &buffer, &offset);
+  const std::uint32_t all = (1U << desc_.samples) - 1U;
+  const std::span<const Point> points = vertices.points;
+  for (std::size_t first = 0; first < points.size();) {
+    std::size_t end = first + 1;
+    const Point& point = points[first];
+    const auto isAlike = [&](const Point& other) {
+      return ((other.coverage ^ point.coverage) & all) == 0 && other.stranger == point.stranger;
+    };
+    while (end < points.size() && isAlike(points[end])) ++end;
+    PointPipelines& pipelines = point.stranger ? *strangers_ : *pipelines_;
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.points(point.coverage & all));
+    vkCmdDraw(commands, static_cast<std::uint32_t>(end - first), 1, static_cast<std::uint32_t>(first), 0);
+    first = end;
+  }
+  vkCmdEndRendering(commands);
+}
+
+void VulkanHost::recordRequests(VkCommandBuffer commands) {
+  // Writer: the library's clear. Writer after: the fill; then the points.
+  cmdBarrier(commands, kTransferWrite, kTransferWrite);
+  vkCmdFillBuffer(commands, memory_.get(),
+                  guardBytes_ + storage_.control.offset + offsetof(layout::VitrailControl, requested),
+                  sizeof(std::uint32_t), desc_.requestedBefore);
+  cmdBarrier(commands, kTransferWrite, kShaders);
+}
+
+void VulkanHost::recordResolve(VkCommandBuffer commands, PointImages& images, std::uint64_t view) {
+  VitrailVkResolveInfo info{};
+  if (views().count > 0) info.view = static_cast<std::uint32_t>(view);
+  images.cmdToResolve(commands);
+  target_.resolve(commands, info);
+  if (desc_.resolve == VITRAIL_RESOLVE_FRAGMENT) vkCmdEndRendering(commands);
+}
+
+void VulkanHost::recordFrame(VkCommandBuffer commands, std::uint64_t frame, PointImages& images, const VkRect2D& area,
+                             const Vertices& vertices) {
+  VitrailVkBeginInfo begin{};
+  begin.frame = frame;
+  begin.area = area;
+  target_.begin(commands, begin);
+  if (desc_.requestedBefore > 0) recordRequests(commands);
+  if (!vertices.points.empty()) recordPoints(commands, images, vertices);
+  target_.collected(commands);
+  recordResolve(commands, images, static_cast<std::uint64_t>(&images - images_.data()));
+  target_.end(commands);
+}
+
+PointResult VulkanHost::read(const PointImages& images, std::uint64_t frame) const {
+  const std::optional<VitrailStats> counted = stats(frame);
+  if (!counted) throw HostError("the statistics of frame " + std::to_string(frame) + " are not there");
+  return {images.pixels(), *counted};
+}
+
+std::optional<VitrailStats> VulkanHost::stats(std::uint64_t frame) const {
+  VitrailStats stats{};
+  const VkResult result = target_.readStats(frame, stats);
+  check(result, "vitrailVkReadStats");
+  if (result == VK_NOT_READY) return {};
+  return stats;
+}
+
+// Pictures are read after the last frame, so that no barrier of this host stands between two frames.
+std::vector<PointResult> VulkanHost::drawTogether(const std::vector<std::vector<Point>>& frames) {
+  std::vector<Vertices> vertices;
+  vertices.reserve(frames.size());
+  for (const std::vector<Point>& points : frames) vertices.push_back(upload(points));
+  const std::uint64_t first = frame_;
+  frame_ += frames.size();
+  check(target_.update(first), "vitrailVkUpdateTarget");
+  commands_.run([&](VkCommandBuffer commands) {
+    for (std::uint64_t frame = first; frame < frame_; ++frame) {
+      imagesOf(frame).cmdOpaque(commands, *pipelines_);
+      recordFrame(commands, frame, imagesOf(frame), wholeArea(), vertices[frame - first]);
+    }
+    for (std::uint64_t frame = first; frame < frame_; ++frame) imagesOf(frame).cmdPicture(commands);
+  });
+  std::vector<PointResult> results;
+  for (std::uint64_t frame = first; frame < frame_; ++frame) results.push_back(read(imagesOf(frame), frame));
+  return results;
+}
+
+std::array<PointResult, 2> VulkanHost::drawAcrossResize(std::span<const Point> first, Extent extent,
+                                                        std::span<const Point> second) {
+  const std::uint64_t frame = frame_;
+  frame_ += 2;
+  std::array<PointImages, kFramesTogether> old;
+  const Vertices before = upload(first);
+  Vertices after;
+  check(target_.update(frame), "vitrailVkUpdateTarget");
+  commands_.run([&](VkCommandBuffer commands) {
+    imagesOf(frame).cmdOpaque(commands, *pipelines_);
+    recordFrame(commands, frame, imagesOf(frame), wholeArea(), before);
+    imagesOf(frame).cmdPicture(commands);
+    std::swap(old, images_);
+    desc_.width = extent.width;
+    desc_.height = extent.height;
+    makeImages();
+    VitrailVkResizeInfo resize{};
+    resize.extent = {extent.width, extent.height};
+    resize.views = views();
+    check(target_.resize(resize), "vitrailVkResizeTarget");
+    after = upload(second);
+    imagesOf(frame + 1).cmdOpaque(commands, *pipelines_);
+    recordFrame(commands, frame + 1, imagesOf(frame + 1), wholeArea(), after);
+    imagesOf(frame + 1).cmdPicture(commands);
+  });
+  return {read(old[frame % kFramesTogether], frame), read(imagesOf(frame + 1), frame + 1)};
+}
+
+PointResult VulkanHost::drawAreas(std::span<const Point> points, const NextArea& next) {
+  const Vertices vertices = upload(points);
+  PointImages& images = images_[0];
+  commands_.run([&](VkCommandBuffer commands) { images.cmdOpaque(commands, *pipelines_); });
+  VitrailStats stats{};
+  Area area;
+  for (bool more = next(nullptr, area); more; more = next(&stats, area)) {
+    const std::uint64_t frame = frame_++;
+    const VkRect2D part = {{static_cast<std::int32_t>(area.x), static_cast<std::int32_t>(area.y)},
+                           {area.width, area.height}};
+    commands_.run([&](VkCommandBuffer commands) { recordFrame(commands, frame, images, part, vertices); });
+    stats = read(images, frame).stats;
+  }
+  commands_.run([&](VkCommandBuffer commands) { images.cmdPicture(commands); });
+  return {images.pixels(), stats};
+}
+
+void VulkanHost::scatter() {
+  const Buffer copy(device_, storage_.total, VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                    Memory::Host);
+  commands_.run([&](VkCommandBuffer commands) {
+    const VkBufferCopy out{guardBytes_, 0, storage_.total};
+    vkCmdCopyBuffer(commands, memory_.get(), copy.get(), 1, &out);
+    // Writer: the copy. Reader and writer: the host.
+    cmdBarrier(commands, kCopyWrite, kHostAccess);
+  });
+  scatterNodes(desc_, storage_, {static_cast<std::byte*>(copy.mapped()), storage_.total});
+  commands_.run([&](VkCommandBuffer commands) {
+    const VkBufferCopy back{0, guardBytes_, storage_.total};
+    vkCmdCopyBuffer(commands, copy.get(), memory_.get(), 1, &back);
+    // Writer: the copy. Reader and writer: the resolve.
+    cmdBarrier(commands, kCopyWrite,
+               {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+  });
+}
+
+PointResult VulkanHost::drawScattered(std::span<const Point> points) {
+  const Vertices vertices = upload(points);
+  const std::uint64_t frame = frame_++;
+  PointImages& images = imagesOf(frame);
+  commands_.run([&](VkCommandBuffer commands) {
+    VitrailVkBeginInfo begin{};
+    begin.frame = frame;
+    images.cmdOpaque(commands, *pipelines_);
+    target_.begin(commands, begin);
+    recordPoints(commands, images, vertices);
+    // Writers: the points. Reader: the copy.
+    cmdBarrier(commands, kShaders, kCopyRead);
+  });
+  scatter();
+  commands_.run([&](VkCommandBuffer commands) {
+    target_.collected(commands);
+    recordResolve(commands, images, frame % kFramesTogether);
+    target_.end(commands);
+    images.cmdPicture(commands);
+  });
+  return read(images, frame);
+}
+
+void VulkanHost::drop(std::span<const Point> points) {
+  const Vertices vertices = upload(points);
+  const std::uint64_t frame = frame_++;
+  check(target_.update(frame), "vitrailVkUpdateTarget");
+  VkCommandBuffer commands = commands_.begin();
+  imagesOf(frame).cmdOpaque(commands, *pipelines_);
+  recordFrame(commands, frame, imagesOf(frame), wholeArea(), vertices);
+}
+
+std::vector<std::uint32_t> VulkanHost::wordsAt(VkDeviceSize offset, VkDeviceSize size) {
+  const Buffer copy(device_, size, VK_BUFFER_USAGE_TRANSFER_DST_BIT, Memory::Host);
+  commands_.run([&](VkCommandBuffer commands) {
+    // Writers: the library's shaders. Reader: the copy.
+    cmdBarrier(commands, kShaders, kCopyRead);
+    const VkBufferCopy region{offset, 0, size};
+    vkCmdCopyBuffer(commands, memory_.get(), copy.get(), 1, &region);
+    // Writer: the copy. Reader: the host.
+    cmdBarrier(commands, kCopyWrite, kHostAccess);
+  });
+  const auto* first = static_cast<const std::uint32_t*>(copy.mapped());
+  return {first, first + size / sizeof(std::uint32_t)};
+}
+
+std::vector<std::uint32_t> VulkanHost::words(StoragePart StorageLayout::*part) {
+  return wordsAt(guardBytes_ + (storage_.*part).offset, (storage_.*part).size);
+}
+
+bool VulkanHost::guardsUntouched() {
+  std::vector<std::uint32_t> guards = wordsAt(0, guardBytes_);
+  const std::vector<std::uint32_t> behind = wordsAt(memory_.size() - guardBytes_, guardBytes_);
+  guards.insert(guards.end(), behind.begin(), behind.end());
+  return std::all_of(guards.begin(), guards.end(), [](std::uint32_t word) { return word == kGuard; });
+}
+
+} // namespace vitrail::tests::vulkan
