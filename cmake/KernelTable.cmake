@@ -58,7 +58,7 @@ function(embed_variant target table row color samples sorting access)
   embed_shader(
     TARGETS ${target}
     NAME ${symbol}
-    SOURCE ${folder}/entry/${entry}
+    SOURCE ${folder}/${entry}
     NAMESPACE vitrail
     INCLUDES ${PROJECT_SOURCE_DIR}/shaders ${folder}
     DEFINES ${defines}

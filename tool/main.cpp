@@ -42,7 +42,7 @@ int report(int code, const char* reason) {
 int runProgram(int argc, char** argv) {
   CLI::App app;
   vitrail::tool::setHelpPage(app, kHelp);
-  app.set_version_flag("--version", "vitrail " VITRAIL_VERSION);
+  app.set_version_flag("--version", "vitrail " VITRAIL_TOOL_VERSION);
   app.require_subcommand(0, 1);
   std::function<void()> run;
   vitrail::tool::addRenderCommand(app, run);

@@ -14,13 +14,16 @@
 // object, a material; shaders that do not store 0.
 //
 // Define before the include
-//   VITRAIL_SET                   required: the descriptor set number of vitrailVkTargetDescriptorSet() in your layout
-//   VITRAIL_POST_DEPTH_COVERAGE   with several samples and VK_EXT_post_depth_coverage: VitrailVkTargetDesc says the same
+//   VITRAIL_SET                   required: the number of the target's descriptor set, vitrailVkTargetDescriptorSet(),
+//                                 in your pipeline layout
+//   VITRAIL_POST_DEPTH_COVERAGE   with several samples and VK_EXT_post_depth_coverage: say the same in
+//                                 VitrailVkTargetDesc
 //   VITRAIL_BUFFER_REFERENCE      to reach the pool by its address, where the context has
-//                                 VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS. Pools larger than maxStorageBufferRange need
-//                                 it. A shader that cannot reach the pool stores nothing, its fragments count as missing.
-//   VITRAIL_CPU_DRIVER            for drivers that run shaders on the CPU, as Mesa's lavapipe: the same result, by a flow
-//                                 that suits them
+//                                 VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS. Pools larger than maxStorageBufferRange
+//                                 need it. Where a shader cannot reach the pool it stores nothing, and its fragments
+//                                 count as missing.
+//   VITRAIL_CPU_DRIVER            for drivers that run shaders on the CPU, as Mesa's lavapipe: the same result, in a
+//                                 way that suits them
 //   VITRAIL_CONSTANT_ID           the first of five specialization constants, default 1700; see
 //                                 vitrailVkCollectSpecialization()
 #ifndef VITRAIL_COLLECT_GLSL
@@ -29,17 +32,8 @@
 #ifdef VITRAIL_POST_DEPTH_COVERAGE
 #extension GL_ARB_post_depth_coverage : require
 #endif
-#ifdef VITRAIL_BUFFER_REFERENCE
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_buffer_reference_uvec2 : require
-#endif
+#include "target.glsl"
 
-#include "bindings.h"
-#include "layout.h"
-
-#ifndef VITRAIL_SET
-#error define VITRAIL_SET, the descriptor set number of vitrailVkTargetDescriptorSet() in your pipeline layout
-#endif
 #ifndef VITRAIL_CONSTANT_ID
 #define VITRAIL_CONSTANT_ID 1700
 #endif
@@ -56,13 +50,6 @@ layout(constant_id = VITRAIL_CONSTANT_ID + 2) const uint VITRAIL_KEEP_SUMS = 0xf
 layout(constant_id = VITRAIL_CONSTANT_ID + 3) const uint VITRAIL_LOOSE = 0xffffffffu; // 0 or 1
 layout(constant_id = VITRAIL_CONSTANT_ID + 4) const uint VITRAIL_USER_WORDS = 0xffffffffu; // 0 or 1
 
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_PARAMETERS, std140) uniform VitrailParametersBlock {
-  VitrailParameters vitrailParameters;
-};
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_CONTROL, std430) buffer VitrailControlBlock {
-  VitrailControl vitrailControl;
-};
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_HEADS, std430) buffer VitrailHeadsBlock { uint vitrailHeads[]; };
 layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_SUMS, std430) buffer VitrailSumsBlock { uint vitrailPixelSums[]; };
 #ifdef VITRAIL_CPU_DRIVER
 // The same memory again. Mesa's lavapipe waits before every draw until the draws before it are done where it sees that
@@ -79,12 +66,6 @@ layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_SUMS, std430) buffer Vitrail
 };
 #endif
 
-uint vitrailPoolCapacity() { return vitrailParameters.capacity; }
-#ifdef VITRAIL_BUFFER_REFERENCE
-uvec2 vitrailPoolAddress() { return uvec2(vitrailParameters.nodesLow, vitrailParameters.nodesHigh); }
-#endif
-#define VITRAIL_POOL_SET VITRAIL_SET
-#include "pool.glsl"
 #include "loose.glsl"
 #include "sums.glsl"
 
@@ -106,15 +87,6 @@ bool vitrailKeepsLoose() {
 // Whether nodes carry a word of the host's.
 bool vitrailKeepsWords() {
   return VITRAIL_USER_WORDS == 0xffffffffu ? vitrailParameters.userWords != 0u : VITRAIL_USER_WORDS != 0u;
-}
-
-// The width of the area for shaders that reach the pool as this one does: 0 where it cannot.
-uint vitrailReachedWidth() {
-#ifdef VITRAIL_BUFFER_REFERENCE
-  return vitrailParameters.widthByAddress;
-#else
-  return vitrailParameters.widthByBinding;
-#endif
 }
 
 // The nodes that this shader may write: none where it was specialized for another target.

@@ -14,6 +14,9 @@ struct uvec2 {
 struct uvec4 {
   uint x, y, z, w;
 };
+struct vec4 {
+  float x, y, z, w;
+};
 #endif
 
 // One stored fragment in each node format. They are vectors because a GPU stores one at once: collecting was seen to
@@ -99,15 +102,13 @@ struct VitrailControl {
   uint plainFirstInstance;
 };
 
-struct VitrailCopyHeader { uint layers, capacity, x, y, width, height; uint reserved[2]; };
-struct VitrailLayer { uint w[8]; };
 // How nodes are collected, as a number: a shader that was specialized for another target must not write to this one.
 // Samples are 1, 2, 4 or 8, the others behind them 0 or 1.
 #define VITRAIL_LAYOUT(format, samples, keepSums, loose, userWords) \
   (((((format)*4u + (samples) / 2u - (samples) / 8u) * 2u + (keepSums)) * 2u + (loose)) * 2u + (userWords))
 #define VITRAIL_LAYOUTS 96
 
-// What one vitrailCmdBegin sets (std140).
+// What one vitrailVkCmdBegin sets (std140).
 struct VitrailParameters {
   uint x; // the first pixel of the area
   uint y;
@@ -132,7 +133,42 @@ struct VitrailParameters {
   uvec4 capacities[VITRAIL_LAYOUTS / 4];
 };
 
+// One fragment of a sorted list, as it was stored: what shaders that walk lists are given (list.glsl), and what copied
+// lists hold.
+struct VitrailLayer {
+  vec4 color; // linear colour and alpha, as vitrailCollect() took them
+  float depth;
+  uint blend;    // VITRAIL_OVER, VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY
+  uint coverage; // one bit a sample; 1 with one sample
+  uint word;     // the host's; 0 where nodes carry none
+};
+
+// Copied lists: a buffer that holds, one behind the other,
+//
+//   VitrailCopyHeader   written by the host before the copy, with 0 layers
+//   VitrailCopiedList   one a pixel of the rectangle, row by row
+//   VitrailLayer        `capacity` of them. Those of a list lie together in order, nearest first; fragments that are
+//                       alike in all else are in the order of their words. Lists follow each other in any order.
+struct VitrailCopyHeader {
+  uint layers;   // of all lists of the rectangle: more than `capacity` where some found no room
+  uint capacity; // layers that the buffer has room for
+  uint x;        // the rectangle, in pixels of the target; what of it lies outside of the frame's area has empty lists
+  uint y;
+  uint width;
+  uint height;
+  uint reserved[2];
+};
+struct VitrailCopiedList {
+  // Its first layer. VITRAIL_END: it was left out, for want of room, because the frame overflowed, or because the
+  // driver did not let it be sorted.
+  uint first;
+  uint count; // its layers
+};
+
 #ifdef __cplusplus
+static_assert(sizeof(VitrailLayer) == 32);
+static_assert(sizeof(VitrailCopyHeader) == 32);
+static_assert(sizeof(VitrailCopiedList) == 8);
 static_assert(sizeof(VitrailNodeStandard) == 8);
 static_assert(sizeof(VitrailNodeCompact) == 8);
 static_assert(sizeof(VitrailNodeHdr) == 16);

@@ -184,10 +184,25 @@ vec4 vitrailKeyCurve(uvec4 key, VitrailLayout nodes) {
   return vec4(uvec4(key.y, key.y >> 5, key.y >> 10, key.y >> 19) & 31u) / 31.0;
 }
 
+// The depth of a fragment, from its key.
+float vitrailKeyDepthValue(uvec4 key, VitrailLayout nodes) {
+  uint order = vitrailKeyDepth(key, nodes);
+  if (nodes.format != VITRAIL_FORMAT_COMPACT) return uintBitsToFloat(vitrailDepthKey(order, nodes.nearestIsOne));
+  uint code = vitrailCodeLargest(nodes.samples) - order;
+  float nearness = code == 0u ? 0.0 : uintBitsToFloat(VITRAIL_CODE_BASE + (code << vitrailCodeShift(nodes.samples)));
+  return nodes.nearestIsOne ? nearness : 1.0 - nearness;
+}
+
 // Linear colour and alpha.
 vec4 vitrailKeyColor(uvec4 key, VitrailLayout nodes) {
   vec4 c = vitrailKeyCurve(key, nodes);
   return nodes.format == VITRAIL_FORMAT_HDR ? c : vec4(vitrailSrgbToLinear(c.rgb), c.a);
+}
+
+// A whole fragment, with the host's word.
+VitrailLayer vitrailLayerOf(uvec4 key, uint word, VitrailLayout nodes) {
+  return VitrailLayer(vitrailKeyColor(key, nodes), vitrailKeyDepthValue(key, nodes), vitrailKeyBlend(key, nodes),
+                      vitrailKeyCoverage(key, nodes), word);
 }
 
 // What a fragment does to the light d behind it: color + transmittance * d. The fourth component is for the picture's

@@ -1,7 +1,7 @@
 // Reaches a target's node pool, in any format, through a binding or, where the including shader defines
 // VITRAIL_BUFFER_REFERENCE, through its address, which has no limit of size. Before the include, define
 //
-//   VITRAIL_POOL_SET             the set of the target, where the pool is bound
+//   VITRAIL_SET                  the set of the target, where the pool is bound
 //   uint vitrailPoolCapacity()   its nodes
 //   uvec2 vitrailPoolAddress()   its address (VITRAIL_BUFFER_REFERENCE only)
 //
@@ -46,14 +46,14 @@ uvec2 vitrailWordsAddress(uint perNode) {
 #define VITRAIL_COMPACT(index) VitrailCompactNodes(vitrailPoolAddress()).nodes[index].words
 #define VITRAIL_HDR(index) VitrailHdrNodes(vitrailPoolAddress()).nodes[index].words
 #else
-layout(set = VITRAIL_POOL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailStandardBlock {
+layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailStandardBlock {
   VitrailNodeStandard vitrailStandardNodes[];
 };
-layout(set = VITRAIL_POOL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailLinkBlock { uint vitrailLinks[]; };
-layout(set = VITRAIL_POOL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailCompactBlock {
+layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailLinkBlock { uint vitrailLinks[]; };
+layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailCompactBlock {
   VitrailNodeCompact vitrailCompactNodes[];
 };
-layout(set = VITRAIL_POOL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailHdrBlock {
+layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailHdrBlock {
   VitrailNodeHdr vitrailHdrNodes[];
 };
 #define VITRAIL_STANDARD(index) vitrailStandardNodes[index].words

@@ -29,7 +29,7 @@ std::uint64_t partsFor(std::uint64_t fragments, std::uint32_t capacity) {
 
 } // namespace
 
-TilePlan::TilePlan(const TilePlanInfo& info) : info_(info) {
+TilePlanner::TilePlanner(const TilePlanInfo& info) : info_(info) {
   const std::uint64_t pixels = pixelsOf(info.area);
   const std::uint64_t most = info.areaPixelsLimit != 0 ? info.areaPixelsLimit : 0xffffffffU;
   areaPixels_ = static_cast<std::uint32_t>(
@@ -52,7 +52,7 @@ TilePlan::TilePlan(const TilePlanInfo& info) : info_(info) {
 }
 
 // Cuts the first piece of at most tilePixels_ off what is left.
-bool TilePlan::next(Rectangle& tile) {
+bool TilePlanner::next(Rectangle& tile) {
   if (rest_.empty()) return false;
   last_ = rest_.back();
   rest_.pop_back();
@@ -72,14 +72,14 @@ bool TilePlan::next(Rectangle& tile) {
 }
 
 // Sizes the next tile for as many fragments a pixel as the last one had.
-void TilePlan::aimAt(std::uint64_t fragments, std::uint32_t capacity) {
+void TilePlanner::aimAt(std::uint64_t fragments, std::uint32_t capacity) {
   const double fits = capacity / (kHeadroom * static_cast<double>(std::max<std::uint64_t>(fragments, 1)));
   const double pixels =
       std::min(static_cast<double>(pixelsOf(last_)) * fits, static_cast<double>(kGrowth * tilePixels_));
   tilePixels_ = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(pixels), 1, areaPixels_);
 }
 
-bool TilePlan::finish(std::uint64_t requested, std::uint64_t missing, std::uint32_t capacity) {
+bool TilePlanner::finish(std::uint64_t requested, std::uint64_t missing, std::uint32_t capacity) {
   if (missing == 0) {
     aimAt(requested, capacity);
     return true;

@@ -24,9 +24,9 @@ struct TilePlanInfo {
 // next tile is follows from the fragments of the last one: a tile that overflowed is cut again, into as many parts as
 // its fragments ask for, and where tiles have room to spare the next ones grow. The order is the same whenever the
 // fragments are.
-class TilePlan {
+class TilePlanner {
  public:
-  explicit TilePlan(const TilePlanInfo& info);
+  explicit TilePlanner(const TilePlanInfo& info);
 
   // What a target for the tiles needs: head pointers for so many pixels, and so many nodes. Head pointers and lists
   // take at most a quarter of the budget. At least 1 pixel; 0 nodes where the budget has no room for one.

@@ -13,7 +13,7 @@
 
 struct VitrailTilePlan_T {
   vitrail::Log log;
-  vitrail::TilePlan plan;
+  vitrail::TilePlanner plan;
 };
 
 namespace vitrail {
@@ -94,7 +94,7 @@ extern "C" VitrailResult vitrailCreateTilePlan(const VitrailTilePlanDesc* desc, 
   const VitrailResult result = vitrail::checkPlan(log, *desc);
   if (result != VITRAIL_SUCCESS) return result;
   std::unique_ptr<VitrailTilePlan_T> made(new (std::nothrow)
-                                              VitrailTilePlan_T{log, vitrail::TilePlan(vitrail::planInfo(*desc))});
+                                              VitrailTilePlan_T{log, vitrail::TilePlanner(vitrail::planInfo(*desc))});
   if (!made) return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory for a tile plan");
   *plan = made.release();
   return VITRAIL_SUCCESS;

@@ -6,25 +6,25 @@
 
 // By one invocation, once all fragments have been collected.
 void writeArguments() {
-  bool any = (control.requested | control.wraps | control.misfits) != 0u;
-  uvec2 groups = (uvec2(parameters.width, parameters.height) + 7u) / 8u; // of 8 by 8 pixels
+  bool any = (vitrailControl.requested | vitrailControl.wraps | vitrailControl.misfits) != 0u;
+  uvec2 groups = (uvec2(vitrailParameters.width, vitrailParameters.height) + 7u) / 8u; // of 8 by 8 pixels
   if (any) {
-    control.pixelGroupsX = groups.x;
-    control.pixelGroupsY = groups.y;
-    control.pixelGroupsZ = 1u;
-    control.drawVertices = 3u;
-    control.drawInstances = 1u;
+    vitrailControl.pixelGroupsX = groups.x;
+    vitrailControl.pixelGroupsY = groups.y;
+    vitrailControl.pixelGroupsZ = 1u;
+    vitrailControl.drawVertices = 3u;
+    vitrailControl.drawInstances = 1u;
   } else if (kSamples > 1u) {
-    control.plainGroupsX = groups.x;
-    control.plainGroupsY = groups.y;
-    control.plainGroupsZ = 1u;
-    control.plainVertices = 3u;
-    control.plainInstances = 1u;
+    vitrailControl.plainGroupsX = groups.x;
+    vitrailControl.plainGroupsY = groups.y;
+    vitrailControl.plainGroupsZ = 1u;
+    vitrailControl.plainVertices = 3u;
+    vitrailControl.plainInstances = 1u;
   }
-  if (overflowed() && parameters.keepSums != 0u) {
-    control.overflowGroupsX = groups.x;
-    control.overflowGroupsY = groups.y;
-    control.overflowGroupsZ = 1u;
+  if (overflowed() && vitrailParameters.keepSums != 0u) {
+    vitrailControl.overflowGroupsX = groups.x;
+    vitrailControl.overflowGroupsY = groups.y;
+    vitrailControl.overflowGroupsZ = 1u;
   }
 }
 

@@ -31,16 +31,16 @@ void endCounts() {
   barrier();
   if (gl_LocalInvocationIndex != 0u || groupCovered == 0u) return;
   countLayers(groupLayersMax);
-  atomicAdd(control.coveredPixels[(gl_WorkGroupID.x + gl_WorkGroupID.y) % VITRAIL_COUNTERS], groupCovered);
-  if (groupApproximate > 0u) atomicAdd(control.approximatePixels, groupApproximate);
+  atomicAdd(vitrailControl.coveredPixels[(gl_WorkGroupID.x + gl_WorkGroupID.y) % VITRAIL_COUNTERS], groupCovered);
+  if (groupApproximate > 0u) atomicAdd(vitrailControl.approximatePixels, groupApproximate);
 }
 #else
 void beginCounts() {}
 
 void countPixel(uint layers) {
   countLayers(layers);
-  atomicAdd(control.coveredPixels[(gl_WorkGroupID.x + gl_WorkGroupID.y) % VITRAIL_COUNTERS], 1u);
-  if (kMaxLayers != 0u && layers > kMaxLayers) atomicAdd(control.approximatePixels, 1u);
+  atomicAdd(vitrailControl.coveredPixels[(gl_WorkGroupID.x + gl_WorkGroupID.y) % VITRAIL_COUNTERS], 1u);
+  if (kMaxLayers != 0u && layers > kMaxLayers) atomicAdd(vitrailControl.approximatePixels, 1u);
 }
 
 void endCounts() {}

@@ -195,6 +195,11 @@ extern "C" void vitrailVkTargetMemory(VitrailVkTarget target, VitrailMemory* mem
   memory->totalBytes = own + memory->retiredBytes;
 }
 
+extern "C" VkDeviceSize vitrailVkCopySize(VitrailVkTarget target, uint32_t width, uint32_t height) {
+  if (target == nullptr) return 0;
+  return vitrail::copyBytes(std::uint64_t{width} * height, target->info.copyLayers);
+}
+
 extern "C" void vitrailVkCollectSpecialization(VitrailVkContext context, const VitrailVkTargetDesc* desc,
                                                VitrailVkSpecialization* specialization) {
   if (specialization != nullptr) *specialization = {};

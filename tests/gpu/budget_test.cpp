@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "../../tool/scene/builtin.h"
+#include "../../tool/scene/builtin/builtin.h"
 #include "../reference/test_scenes.h"
 #include "gpu_fixture.h"
 
@@ -21,7 +21,7 @@ class BudgetTest : public GpuTest {
   // Draws a scene without a budget and with ever larger ones, from 1 MiB on, until one tile holds it.
   void expectSameBits(const Scene& scene, const RenderOptions& options, const MethodOptions& method = {}) {
     SCOPED_TRACE(describe(method));
-    Renderer renderer(gpu(), scene, {}, DrawOrder::Forward, method);
+    StillRenderer renderer(gpu(), scene, {}, DrawOrder::Forward, method);
     const RenderResult whole = renderer.render(options);
     EXPECT_EQ(whole.report.tiles, 1U);
     std::uint32_t tiles = 2;

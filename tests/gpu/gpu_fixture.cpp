@@ -41,7 +41,7 @@ void GpuTest::TearDown() {
 
 RenderResult renderOnce(Gpu& gpu, const Scene& scene, const RenderOptions& options, std::optional<float> opacity,
                         DrawOrder order, const MethodOptions& method) {
-  Renderer renderer(gpu, scene, opacity, order, method);
+  StillRenderer renderer(gpu, scene, opacity, order, method);
   return renderer.render(options);
 }
 

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "../../tool/draw/device.h"
-#include "../../tool/draw/renderer.h"
+#include "../../tool/gpu/device.h"
+#include "../../tool/render/still.h"
 
 namespace vitrail::tool::test {
 

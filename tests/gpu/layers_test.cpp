@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "../../tool/methods/layer_memory.h"
-#include "../../tool/scene/builtin.h"
+#include "../../tool/methods/shared/layer_memory.h"
+#include "../../tool/scene/builtin/builtin.h"
 #include "../reference/test_scenes.h"
 #include "gpu_fixture.h"
 

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../tool/scene/builtin.h"
+#include "../../tool/scene/builtin/builtin.h"
 #include "../reference/compare.h"
 #include "../reference/test_scenes.h"
 #include "gpu_fixture.h"
@@ -451,7 +451,7 @@ TEST_P(OrderRoundsMethods, SubmissionOrderRounds) {
 
 TEST_P(MethodsTest, RunsAreOne) {
   const TestScene scene = builtin("interlocked");
-  Renderer renderer(gpu(), scene.scene, {}, DrawOrder::Forward, options());
+  StillRenderer renderer(gpu(), scene.scene, {}, DrawOrder::Forward, options());
   const RenderResult first = renderer.render(scene.picture);
   EXPECT_TRUE(renderer.render(scene.picture).picture.rgba == first.picture.rgba);
   RenderOptions other = scene.picture; // another size in between

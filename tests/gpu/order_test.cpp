@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "../../tool/scene/builtin.h"
+#include "../../tool/scene/builtin/builtin.h"
 #include "gpu_fixture.h"
 
 namespace vitrail::tool::test {
@@ -42,7 +42,7 @@ TEST_P(OrderTest, SubmissionOrderDoesNotMatter) {
 TEST_P(OrderTest, RunsAreOne) {
   const Scene scene = sceneOf(GetParam());
   const RenderOptions options = usualOptions(scene, kOrderWidth, kOrderHeight);
-  Renderer renderer(gpu(), scene);
+  StillRenderer renderer(gpu(), scene);
   const RenderResult first = renderer.render(options);
   for (int run = 1; run < 5; ++run) {
     EXPECT_TRUE(renderer.render(options).picture.rgba == first.picture.rgba) << "run " << run;
@@ -80,7 +80,7 @@ TEST_F(GpuTest, ManyFramesOfTheHairballAreOne) {
   ASSERT_GT(frames, 1) << "VITRAIL_TEST_FRAMES is a number of frames, at least 2";
   const Scene scene = makeBuiltinScene("hairball", {});
   const RenderOptions options = usualOptions(scene, kOrderWidth, kOrderHeight);
-  Renderer renderer(gpu(), scene);
+  StillRenderer renderer(gpu(), scene);
   const RenderResult first = renderer.render(options);
   EXPECT_TRUE(first.report.exact);
   for (int frame = 1; frame < frames; ++frame) {

@@ -8,8 +8,8 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "../../tool/scene/builtin.h"
-#include "../../tool/scene/shapes.h"
+#include "../../tool/scene/builtin/builtin.h"
+#include "../../tool/scene/builtin/shapes.h"
 #include "../reference/compare.h"
 #include "../reference/test_scenes.h"
 #include "gpu_fixture.h"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../tool/scene/builtin.h"
+#include "../../tool/scene/builtin/builtin.h"
 #include "../reference/test_scenes.h"
 #include "gpu_fixture.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "../../tool/scene/builtin.h"
+#include "../../tool/scene/builtin/builtin.h"
 #include "../../tool/scene/srgb.h"
 #include "../reference/test_scenes.h"
 #include "gpu_fixture.h"

@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-#include <vitrail/vitrail.hpp>
+#include <vitrail/tiles.h>
 
 #include "host.h"
 
@@ -30,6 +30,7 @@ struct Features {
   bool postDepthCoverage = false;
   bool stencil = false;                    // beside a 32-bit float depth
   bool addresses = false;                  // pools can be reached by their address
+  std::uint64_t bindingBytes = 0; // what one binding reaches of a buffer
   std::vector<std::uint32_t> multisampled; // which of 2, 4 and 8 samples it has
 };
 
@@ -45,9 +46,8 @@ class Backend {
   virtual const Features& features() = 0;
   // Throws HostError where the library refuses the description.
   virtual std::unique_ptr<PointHost> makeHost(const HostDesc& desc) = 0;
-  // What draws a picture in tiles here.
-  // The description without limits, which are the device's, and log.
-  virtual VitrailResult planTiles(VitrailTilePlanDesc desc, TilePlan& plan) = 0;
+  // What the device can hold, for plans of tiles.
+  virtual VitrailTileLimits tileLimits(VitrailNodeFormat format, std::uint32_t samples) = 0;
   // What the API's validation has found wrong since the last call, one text each. Any is a failed test.
   virtual std::vector<std::string> takeErrors() = 0;
   // Gives the device back; what outlived it is among the errors. Hosts are gone by then.

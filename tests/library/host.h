@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include <vitrail/vulkan.h>
+#include <vitrail/types.h>
 
 #include "core/pool.h"
 
@@ -40,14 +40,6 @@ struct Extent {
   std::uint32_t height = 0;
 };
 
-// Whole pixels of the picture, from its top left corner.
-struct Area {
-  std::uint32_t x = 0;
-  std::uint32_t y = 0;
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-};
-
 enum class ColorFormat { Float32, Float16 }; // of the picture; results of Float16 are not read back
 
 struct HostDesc {
@@ -65,9 +57,10 @@ struct HostDesc {
   VitrailListBuild listBuild = VITRAIL_LIST_BUILD_FRAGMENT;
   std::uint64_t memoryBudget = 0; // the pool follows it: every draw updates the target first
   std::uint32_t areaPixels = 0;
-  bool postDepthCoverage = true;  // where there are several samples and the device has it
-  bool dualSourceBlending = true; // where the device has it
-  bool addresses = false;         // the pool is reached by its address
+  bool postDepthCoverage = true;       // where there are several samples and the device has it
+  bool dualSourceBlending = true;      // where the device has it
+  bool addresses = false;              // the pool is reached by its address
+  std::optional<bool> shaderByAddress; // whether the collecting shader does, too; default: it suits the pool
   bool stencilMark = false;
   bool specialized = false; // the collecting shader is, for this target or, if given, for one that differs in these
   std::optional<VitrailNodeFormat> specializedFor;
@@ -114,13 +107,14 @@ class PointHost {
   // kFramesTogether of them.
   virtual std::vector<PointResult> drawTogether(const std::vector<std::vector<Point>>& frames) = 0;
 
-  // Records a frame, gives the target another size, records a second frame, and submits both at once.
+  // Records a frame, gives the target another size, records a second frame, and submits both at once. With a capacity
+  // the pool has that from then on.
   virtual std::array<PointResult, 2> drawAcrossResize(std::span<const Point> first, Extent extent,
-                                                      std::span<const Point> second) = 0;
+                                                      std::span<const Point> second, std::uint32_t capacity = 0) = 0;
 
   // Draws the opaque scene once and the points over it, area by area, each a frame of its own, as `next` gives them; it
   // is told what became of the last one. Every area draws all points. The result's statistics are the last area's.
-  using NextArea = std::function<bool(const VitrailStats* last, Area& area)>;
+  using NextArea = std::function<bool(const VitrailStats* last, VitrailRect& area)>;
   virtual PointResult drawAreas(std::span<const Point> points, const NextArea& next) = 0;
 
   // As draw(), but between collecting and resolving every node moves to another place of the pool (scatterNodes()):

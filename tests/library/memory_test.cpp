@@ -121,6 +121,43 @@ TEST_P(MemoryTest, ATargetIsResizedWhileFramesAreInFlight) {
   }
 }
 
+TEST_P(MemoryTest, AFixedPoolGrowsWithAResize) {
+  HostDesc desc = squareHost();
+  const std::vector<Point> before = manyLists(desc, 6, 5);
+  desc.capacity = static_cast<std::uint32_t>(before.size());
+  HostDesc larger = desc;
+  larger.width = 128;
+  larger.height = 128;
+  const std::vector<Point> after = manyLists(larger, 6, 5);
+  const auto needed = static_cast<std::uint32_t>(after.size());
+  for (const std::uint32_t capacity : {0U, needed}) {
+    const auto host = makeHost(desc);
+    const auto [first, second] = host->drawAcrossResize(before, {128, 128}, after, capacity);
+    EXPECT_EQ(first.stats.exact, 1U);
+    EXPECT_EQ(host->memory().nodeCapacity, capacity == 0 ? desc.capacity : needed);
+    EXPECT_EQ(second.stats.exact, capacity == 0 ? 0U : 1U);
+    if (capacity == 0) continue;
+    EXPECT_LT(largestError(second.pixels, expectedFrame(larger, after).pixels), kTolerance);
+  }
+}
+
+// A window that is made larger has as many layers on each pixel as before: there is room for them at once.
+TEST_P(MemoryTest, UnderABudgetThePoolFollowsTheExtent) {
+  HostDesc desc = squareHost();
+  desc.memoryBudget = 32 * kMebibyte;
+  HostDesc larger = desc;
+  larger.width = 200;
+  larger.height = 150;
+  const std::vector<Point> before = manyLists(desc, 12, 5);
+  const std::vector<Point> after = manyLists(larger, 12, 6);
+  const auto host = makeHost(desc);
+  for (int frame = 0; frame < 3; ++frame) host->draw(before);
+  const auto [first, second] = host->drawAcrossResize(before, {larger.width, larger.height}, after);
+  EXPECT_EQ(first.stats.exact, 1U);
+  EXPECT_EQ(second.stats.exact, 1U);
+  EXPECT_LE(host->memory().totalBytes - host->memory().retiredBytes, desc.memoryBudget);
+}
+
 TEST_P(MemoryTest, PoolsAreReachedByAddressToo) {
   if (!features().addresses) GTEST_SKIP() << "this device has no buffer addresses";
   for (const std::uint32_t samples : sampleCounts(features())) {
@@ -144,6 +181,65 @@ TEST_P(MemoryTest, PoolsAreReachedByAddressToo) {
         EXPECT_EQ(result.stats.exact, 1U);
         desc.capacity -= 10; // beyond the pool's end is nobody's
         EXPECT_EQ(draw(desc, points).stats.fragmentsMissing, 10U);
+      }
+    }
+  }
+}
+
+// A shader that reaches pools in one way and a target that has the other: it works, or its fragments are missing.
+TEST_P(MemoryTest, ShadersThatDoNotReachThePoolAreCounted) {
+  if (!features().addresses) GTEST_SKIP() << "this device has no buffer addresses";
+  for (const bool byAddress : {false, true}) {
+    for (const VitrailListBuild listBuild : {VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE}) {
+      for (const VitrailOverflow overflow : {VITRAIL_OVERFLOW_APPROXIMATE, VITRAIL_OVERFLOW_SKIP}) {
+        SCOPED_TRACE(std::string(byAddress ? "by binding" : "by address") + ", list build " +
+                     std::to_string(listBuild) + ", overflow " + std::to_string(overflow));
+        HostDesc desc;
+        desc.listBuild = listBuild;
+        desc.overflow = overflow;
+        desc.addresses = byAddress;
+        desc.shaderByAddress = !byAddress;
+        desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
+        const std::vector<Point> points = randomLists(desc, {1, 2, 40}, 9);
+        desc.capacity = static_cast<std::uint32_t>(points.size());
+        const PointResult result = draw(desc, points);
+        EXPECT_EQ(result.stats.fragmentsRequested, points.size());
+        if (result.stats.exact == 1) {
+          EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kTolerance);
+        } else {
+          EXPECT_EQ(result.stats.fragmentsMissing, points.size());
+        }
+        EXPECT_EQ(result.stats.exact, byAddress ? 1U : 0U); // a small pool is all of it in its binding
+      }
+    }
+  }
+}
+
+// A pool that has more than a binding reaches: shaders that look there count as missing, others draw.
+TEST_P(MemoryTest, PoolsBeyondABindingAreReachedByAddressOnly) {
+  constexpr std::uint64_t kAffordable = 512 * kMebibyte;
+  if (!features().addresses) GTEST_SKIP() << "this device has no buffer addresses";
+  if (features().bindingBytes > kAffordable) GTEST_SKIP() << "this device's bindings reach further than tests allocate";
+  for (const VitrailListBuild listBuild : {VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE}) {
+    for (const bool specialized : {false, true}) {
+      for (const bool byAddress : {true, false}) {
+        SCOPED_TRACE("list build " + std::to_string(listBuild) + (specialized ? ", specialized" : "") +
+                     (byAddress ? ", by address" : ", by binding"));
+        HostDesc desc;
+        desc.listBuild = listBuild;
+        desc.specialized = specialized;
+        desc.addresses = true;
+        desc.shaderByAddress = byAddress;
+        desc.overflow = VITRAIL_OVERFLOW_SKIP;
+        desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
+        const std::vector<Point> points = randomLists(desc, {1, 2, 40}, 9);
+        desc.capacity = static_cast<std::uint32_t>(features().bindingBytes / vitrailNodePoolSize(desc.nodes, 1)) + 1000;
+        const PointResult result = draw(desc, points);
+        EXPECT_EQ(result.stats.fragmentsRequested, points.size());
+        EXPECT_EQ(result.stats.fragmentsMissing, byAddress ? 0U : points.size());
+        EXPECT_EQ(result.stats.exact, byAddress ? 1U : 0U);
+        const auto seen = byAddress ? points : std::vector<Point>{};
+        EXPECT_LT(largestError(result.pixels, expectedFrame(desc, seen).pixels), kTolerance);
       }
     }
   }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <vitrail/vitrail.hpp>
+
 #include "expected.h"
 
 namespace vitrail::tests {
@@ -22,22 +24,20 @@ std::vector<FloatColor> drawTiles(Backend& backend, HostDesc desc, VitrailTilePl
   planDesc.height = desc.height;
   planDesc.nodeFormat = desc.nodes;
   planDesc.samples = desc.samples;
+  planDesc.limits = backend.tileLimits(desc.nodes, desc.samples);
   TilePlan plan;
-  EXPECT_EQ(backend.planTiles(planDesc, plan), VITRAIL_SUCCESS);
+  EXPECT_EQ(TilePlan::create(planDesc, plan), VITRAIL_SUCCESS);
   desc.capacity = plan.nodeCapacity();
   desc.areaPixels = plan.areaPixels();
   desc.overflow = VITRAIL_OVERFLOW_SKIP;
   const auto host = backend.makeHost(desc);
   EXPECT_LE(host->memory().nodeBytes + host->memory().headBytes, planDesc.memoryBudget);
-  const PointResult result = host->drawAreas(points, [&](const VitrailStats* last, Area& area) {
+  const PointResult result = host->drawAreas(points, [&](const VitrailStats* last, VitrailRect& area) {
     if (last != nullptr) {
       ++attempts;
       EXPECT_EQ(plan.finish(*last), VITRAIL_SUCCESS);
     }
-    VitrailRect tile{};
-    const bool more = plan.next(tile);
-    area = {tile.x, tile.y, tile.width, tile.height};
-    return more;
+    return plan.next(area);
   });
   return result.pixels;
 }

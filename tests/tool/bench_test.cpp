@@ -38,7 +38,7 @@ void expectMeasurement(const Json& measured) {
   if (baseline) {
     EXPECT_DOUBLE_EQ(measured.at("cost_ratio"), 1.0);
     for (const char* name :
-         {"nodes", "resolve", "linking", "fragments", "layers", "floor_bytes", "floor_ms", "bandwidth_share"}) {
+         {"nodes", "resolve", "list_build", "fragments", "layers", "floor_bytes", "floor_ms", "bandwidth_share"}) {
       EXPECT_TRUE(measured.at(name).is_null()) << name;
     }
     return;
@@ -98,9 +98,9 @@ TEST(Bench, MeasuresAndReports) {
 TEST(Bench, EverySettingIsMeasuredOrSkippedWithAReason) {
   const TemporaryFolder folder;
   const ProcessResult result =
-      vitrail(folder, {"bench",    "--scene",   "planes",    "--count",     "2",       "--size",           "32x32",
-                       "--repeat", "1",         "--methods", "linked-list", "--nodes", "compact,standard", "--samples",
-                       "1,8",      "--resolve", "fragment",  "--linking",   "compute", "--json",           "a.json"});
+      vitrail(folder, {"bench",    "--scene",   "planes",    "--count",      "2",       "--size",           "32x32",
+                       "--repeat", "1",         "--methods", "linked-list",  "--nodes", "compact,standard", "--samples",
+                       "1,8",      "--resolve", "fragment",  "--list-build", "compute", "--json",           "a.json"});
   ASSERT_EQ(result.exitCode, 0) << result.error;
   const Json scene = readJson(folder.file("a.json")).at("scenes")[0];
   // unsorted, compact and standard at 1 sample and at 8.
@@ -108,14 +108,14 @@ TEST(Bench, EverySettingIsMeasuredOrSkippedWithAReason) {
   ASSERT_GE(scene.at("measurements").size(), 3U) << scene.dump(1);
   EXPECT_EQ(scene.at("measurements")[1].at("nodes"), "compact");
   EXPECT_EQ(scene.at("measurements")[1].at("resolve"), "fragment");
-  EXPECT_EQ(scene.at("measurements")[1].at("linking"), "compute");
+  EXPECT_EQ(scene.at("measurements")[1].at("list_build"), "compute");
   EXPECT_EQ(scene.at("measurements")[2].at("nodes"), "standard");
   for (const Json& skipped : scene.at("skipped")) {
     EXPECT_EQ(skipped.at("samples"), 8) << skipped.dump();
     const bool hasNodes = skipped.at("method") == "linked-list";
     EXPECT_EQ(skipped.at("nodes").is_null(), !hasNodes) << skipped.dump();
     const std::string nodes =
-        hasNodes ? ", " + skipped.at("nodes").get<std::string>() + ", fragment, linking compute" : "";
+        hasNodes ? ", " + skipped.at("nodes").get<std::string>() + ", fragment, list build compute" : "";
     EXPECT_EQ(skipped.at("setting"), skipped.at("method").get<std::string>() + nodes) << skipped.dump();
     EXPECT_NE(skipped.at("reason").get<std::string>().find("samples"), std::string::npos) << skipped.dump();
     EXPECT_NE(result.out.find(skipped.at("reason")), std::string::npos) << result.out;
@@ -279,9 +279,10 @@ TEST(Bench, QuietPrintsNothing) {
 
 TEST(Bench, TheHelpPageNamesEveryOption) {
   const std::string help = vitrail(TemporaryFolder(), {"bench", "--help"}).out;
-  for (const char* option : {"MODEL",     "--scene",   "--count",  "--size",   "--opacity", "--methods", "--nodes",
-                             "--samples", "--resolve", "--layers", "--passes", "--repeat",  "--warmup",  "--json",
-                             "--csv",     "--sweep",   "--output", "-o",       "--quiet",   "--device",  "--linking"}) {
+  for (const char* option :
+       {"MODEL",     "--scene",   "--count",  "--size",   "--opacity", "--methods", "--nodes",
+        "--samples", "--resolve", "--layers", "--passes", "--repeat",  "--warmup",  "--json",
+        "--csv",     "--sweep",   "--output", "-o",       "--quiet",   "--device",  "--list-build"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
 }
@@ -295,7 +296,7 @@ TEST(Bench, WrongUsageIsOneLineAndExitCode2) {
       {{"--samples", "1,3"}, "'3' is not 1, 2, 4 or 8"},
       {{"--samples", "x"}, "--samples"},
       {{"--resolve", "raster"}, "compute or fragment"},
-      {{"--linking", "late"}, "a linking: fragment or compute"},
+      {{"--list-build", "late"}, "a list build: fragment or compute"},
       {{"--scene", "spheres,,planes"}, "--scene"},
       {{"--scene", "spheres,sheres"}, "sheres"},
       {{"--scene", "spheres", "--count", "0"}, "1 to 20000"},
@@ -414,7 +415,7 @@ TEST(Insertion, DrawsThePictureOfTheLinkedList) {
     for (const char* method : {"linked-list", "insertion"}) {
       const std::string name = method;
       Words words = {"render", "--size", "160x90", "--method", name, "--validate", "-o", name + ".png"};
-      if (name == "linked-list") words.insert(words.end(), {"--linking", "fragment"}); // rounds as insertion does
+      if (name == "linked-list") words.insert(words.end(), {"--list-build", "fragment"}); // rounds as insertion does
       words.insert(words.end(), {"--json", name + ".json"});
       words.insert(words.end(), scene.begin(), scene.end());
       const ProcessResult result = vitrail(folder, words);

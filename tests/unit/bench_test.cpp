@@ -8,13 +8,15 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bench/cells.h"
-#include "bench/csv.h"
 #include "bench/matrix.h"
 #include "bench/measurement.h"
+#include "bench/short_count.h"
 #include "bench/statistics.h"
-#include "bench/table.h"
 #include "bench/traffic.h"
+#include "methods/methods.h"
+#include "report/bench_csv.h"
+#include "report/bench_table.h"
+#include "report/cells.h"
 
 namespace vitrail::tests {
 namespace {
@@ -86,12 +88,12 @@ TEST(BenchMatrix, EveryChoiceWithEveryOther) {
                                       "linked-list, hdr, compute", "linked-list, hdr, fragment"}));
 }
 
-TEST(BenchMatrix, LinkingsAreOfTheMethodsThatHaveThem) {
+TEST(BenchMatrix, ListBuildsAreOfTheMethodsThatHaveThem) {
   BenchMatrix matrix;
   matrix.methods = {"linked-list", "insertion"};
-  matrix.linkings = {VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE};
-  EXPECT_EQ(describeAll(matrix), (std::vector<std::string>{"unsorted", "linked-list, standard, linking fragment",
-                                                           "linked-list, standard, linking compute", "insertion"}));
+  matrix.listBuilds = {VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE};
+  EXPECT_EQ(describeAll(matrix), (std::vector<std::string>{"unsorted", "linked-list, standard, list build fragment",
+                                                           "linked-list, standard, list build compute", "insertion"}));
 }
 
 TEST(BenchMatrix, WhatAMethodDoesNotHaveIsSkippedWithAReason) {
@@ -345,7 +347,7 @@ TEST(BenchCsv, OneRowForEachMeasurement) {
   EXPECT_EQ(lines[0],
             "device,driver,cpu,sweep,step,scene,count,width,height,triangles,method,nodes,resolve,samples,exact,"
             "fragments,missing,layers_max,tiles,cost_ms,cost_lower_quartile_ms,cost_upper_quartile_ms,frame_ms,"
-            "cost_ratio,frame_ratio,memory_bytes,max_layers,passes,linking");
+            "cost_ratio,frame_ratio,memory_bytes,max_layers,passes,list_build");
   EXPECT_EQ(lines[1],
             "\"Abacus, \"\"large\"\"\",beads 1.0,false,,,spheres,400,100,10,1600000,unsorted,,,1,false,,,,1,2,"
             "2,2,4,1,1,0,,,");
@@ -381,7 +383,7 @@ TEST(BenchTable, SaysWhatItIs) {
   EXPECT_NE(other.find("only the ratios"), std::string::npos);
   EXPECT_NE(other.find("not exact: linked-list, standard left out 12 of 700"), std::string::npos) << other;
   report.scenes[0].measurements[1].options.listBuild = VITRAIL_LIST_BUILD_FRAGMENT;
-  EXPECT_NE(toTable(report).find("linked-list, standard, compute, linking fragment  "), std::string::npos);
+  EXPECT_NE(toTable(report).find("linked-list, standard, compute, list build fragment  "), std::string::npos);
   frame.tiles = 3;
   EXPECT_NE(toTable(report).find("drew 3 tiles"), std::string::npos) << toTable(report);
 }

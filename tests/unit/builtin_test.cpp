@@ -1,5 +1,5 @@
 // The built-in scenes: the same values every time, sound geometry, and what each promises about itself.
-#include "scene/builtin.h"
+#include "scene/builtin/builtin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh_checks.h"
-#include "scene/random.h"
+#include "scene/builtin/random.h"
 
 namespace vitrail::tool::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scene/shapes.h"
+#include "scene/builtin/shapes.h"
 
 namespace vitrail::tool::test {
 namespace {

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "compare/table.h"
+#include "methods/methods.h"
+#include "report/comparison_table.h"
 
 namespace vitrail::tests {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "load_good.h"
 #include "scene/load.h"
-#include "scene/polygon.h"
+#include "scene/plain/polygon.h"
 
 namespace vitrail::tool {
 namespace {

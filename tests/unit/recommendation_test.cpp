@@ -1,7 +1,7 @@
 // The advice of `vitrail bench`, against measurements that are made up.
 #include <gtest/gtest.h>
 
-#include "bench/recommendation.h"
+#include "report/recommendation.h"
 
 namespace vitrail::tests {
 namespace {

@@ -1,5 +1,5 @@
 // The simple bodies and the teapot: closed, wound and sized as they say.
-#include "scene/shapes.h"
+#include "scene/builtin/shapes.h"
 
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh_checks.h"
-#include "scene/teapot.h"
+#include "scene/builtin/teapot.h"
 
 namespace vitrail::tool::test {
 namespace {

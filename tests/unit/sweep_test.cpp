@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/sweep.h"
-#include "scene/builtin.h"
+#include "scene/builtin/builtin.h"
 #include "scene/split.h"
 
 namespace vitrail::tests {

@@ -4,12 +4,12 @@
 #include <array>
 #include <functional>
 
-#include "../draw/barrier.h"
-#include "../draw/descriptors.h"
-#include "../draw/pipeline.h"
-#include "../draw/resources.h"
-#include "../draw/submit.h"
-#include "../draw/timers.h"
+#include "../gpu/barrier.h"
+#include "../gpu/descriptors.h"
+#include "../gpu/pipeline.h"
+#include "../gpu/resources.h"
+#include "../gpu/submit.h"
+#include "../gpu/timers.h"
 #include "shaders/bandwidth.comp.h"
 
 namespace vitrail::tool {

@@ -1,7 +1,7 @@
 // Measures how fast a device moves memory, as the floor under the time of every frame.
 #pragma once
 
-#include "../draw/device.h"
+#include "../gpu/device.h"
 
 namespace vitrail::tool {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "../draw/device.h"
+#include "../gpu/device.h"
 
 namespace vitrail::tool {
 

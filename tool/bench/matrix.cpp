@@ -5,13 +5,16 @@
 
 #include <fmt/format.h>
 
+#include "../methods/methods.h"
+
 namespace vitrail::tool {
 
 namespace {
 
-// Whether the node format, the resolve and the linking of a method can be chosen.
+// Whether the node format, the resolve and the list build of a method can be chosen.
 bool hasChoices(std::string_view method) {
-  return traitsOf(method).nodes && traitsOf(method).resolves && traitsOf(method).linkings;
+  const MethodTraits& traits = traitsOf(method);
+  return traits.takes(kTakesNodes) && traits.takes(kTakesResolve) && traits.takes(kTakesListBuild);
 }
 
 bool same(const MethodOptions& a, const MethodOptions& b) {
@@ -44,10 +47,10 @@ void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t s
   if (!hasChoices(method)) return addSetting(settings, options);
   for (const VitrailNodeFormat nodes : matrix.nodes) {
     for (const VitrailResolve resolve : matrix.resolves) {
-      for (const VitrailListBuild linking : matrix.linkings) {
+      for (const VitrailListBuild listBuild : matrix.listBuilds) {
         options.nodes = nodes;
         options.resolve = resolve;
-        options.listBuild = linking;
+        options.listBuild = listBuild;
         addSetting(settings, options);
       }
     }
@@ -58,22 +61,22 @@ void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t s
 
 MethodOptions withLimits(MethodOptions options, const MethodLimits& limits) {
   const MethodTraits& traits = traitsOf(options.name);
-  if (traits.layers) options.maxLayers = limits.layers;
-  if (traits.passes) options.passes = limits.passes;
+  if (traits.takes(kTakesLayers)) options.maxLayers = limits.layers;
+  if (traits.takes(kTakesPasses)) options.passes = limits.passes;
   return options;
 }
 
 void checkLimits(const std::vector<std::string>& methods, const MethodLimits& limits) {
-  const auto check = [&](bool MethodTraits::*has, std::uint32_t MethodOptions::*option, std::uint32_t limit) {
-    const auto hasIt = [&](const std::string& name) { return traitsOf(name).*has; };
+  const auto check = [&](MethodOption bit, std::uint32_t MethodOptions::*option, std::uint32_t limit) {
+    const auto hasIt = [&](const std::string& name) { return traitsOf(name).takes(bit); };
     if (limit == 0 || methods.empty() || std::ranges::any_of(methods, hasIt)) return;
     MethodOptions options;
     options.name = methods.front();
     options.*option = limit;
     checkMethodOptions(options); // says whose option it is
   };
-  check(&MethodTraits::layers, &MethodOptions::maxLayers, limits.layers);
-  check(&MethodTraits::passes, &MethodOptions::passes, limits.passes);
+  check(kTakesLayers, &MethodOptions::maxLayers, limits.layers);
+  check(kTakesPasses, &MethodOptions::passes, limits.passes);
 }
 
 std::string describe(const MethodLimits& limits) {
@@ -102,7 +105,7 @@ std::string describe(const MethodOptions& options) {
     text.append(", ").append(nameOf(options.resolve));
   }
   if (hasChoices(options.name) && options.listBuild != VITRAIL_LIST_BUILD_DEFAULT) {
-    text.append(", linking ").append(nameOf(options.listBuild));
+    text.append(", list build ").append(nameOf(options.listBuild));
   }
   if (options.maxLayers > 0)
     text += fmt::format(", {} {}", options.maxLayers, options.maxLayers > 1 ? "layers" : "layer");

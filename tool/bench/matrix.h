@@ -34,7 +34,7 @@ struct BenchMatrix {
   std::vector<VitrailNodeFormat> nodes = {VITRAIL_NODE_STANDARD};
   std::vector<std::uint32_t> samples = {1};
   std::vector<VitrailResolve> resolves = {VITRAIL_RESOLVE_DEFAULT};
-  std::vector<VitrailListBuild> linkings = {VITRAIL_LIST_BUILD_DEFAULT};
+  std::vector<VitrailListBuild> listBuilds = {VITRAIL_LIST_BUILD_DEFAULT};
   MethodLimits limits; // one for all
 };
 
@@ -50,12 +50,12 @@ struct BenchSettings {
 };
 
 // The settings that the choices stand for, by sample count, the baseline of each count first, whether or not it was
-// chosen. A method that has no choice of nodes, resolves and linkings (MethodTraits) is listed once a sample count.
+// chosen. A method that has no choice of nodes, resolves and list builds (MethodTraits) is listed once a sample count.
 // What checkMethodOptions() refuses, such as several samples of a method that has one, is skipped. Nothing is listed
 // twice.
 BenchSettings configurationsOf(const BenchMatrix& matrix);
 
-// A setting in words, for people: "linked-list, compact, 4 samples, compute, linking compute", "loop, 16 layers".
+// A setting in words, for people: "linked-list, compact, 4 samples, compute, list build compute", "loop, 16 layers".
 std::string describe(const MethodOptions& options);
 
 // The same beside its sample count: "linked-list, compact, compute".

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../methods/methods.h"
 #include "traffic.h"
 
 namespace vitrail::tool {

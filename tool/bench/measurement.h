@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "../draw/renderer.h"
+#include "../render/frame_report.h"
 #include "machine.h"
 #include "matrix.h"
 #include "statistics.h"
@@ -53,9 +53,6 @@ struct BenchReport : Machine {
   double bytesPerSecond = 0.0; // bandwidth.h
   std::vector<SceneMeasurement> scenes;
 };
-
-// A frame's passes with their milliseconds, as FrameReport::passesMs.
-using PassTimes = std::vector<std::pair<std::string, double>>;
 
 // What a setting's frames say, all of which have the same passes. There is at least one. Ratios and rates are filled in
 // by compare().

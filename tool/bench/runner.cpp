@@ -14,7 +14,7 @@ namespace {
 // A setting that the device can do, with what it has drawn so far.
 struct Contender {
   MethodOptions options;
-  std::unique_ptr<Renderer> renderer;
+  std::unique_ptr<StillRenderer> renderer;
   FrameReport report; // of the first frame
   std::vector<PassTimes> frames;
 };
@@ -30,7 +30,7 @@ struct Stage {
 Contender prepare(Gpu& gpu, const Scene& scene, const BenchRun& run, const MethodOptions& options) {
   Contender contender;
   contender.options = options;
-  contender.renderer = std::make_unique<Renderer>(gpu, scene, run.opacity, DrawOrder::Forward, options);
+  contender.renderer = std::make_unique<StillRenderer>(gpu, scene, run.opacity, DrawOrder::Forward, options);
   for (std::uint32_t i = 0; i < run.warmups; ++i) contender.report = contender.renderer->measure(run.picture);
   return contender;
 }
@@ -40,7 +40,7 @@ std::uint64_t countFragments(Gpu& gpu, const Scene& scene, const BenchRun& run, 
   MethodOptions options;
   options.nodes = VITRAIL_NODE_HDR; // which rounds no surface away
   options.samples = samples;
-  return Renderer(gpu, scene, run.opacity, DrawOrder::Forward, options).measure(run.picture).fragmentsRequested;
+  return StillRenderer(gpu, scene, run.opacity, DrawOrder::Forward, options).measure(run.picture).fragmentsRequested;
 }
 
 // Looks at the picture of each sample count that has a baseline.

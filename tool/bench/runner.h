@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../draw/renderer.h"
+#include "../render/still.h"
 #include "measurement.h"
 
 namespace vitrail::tool {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "cells.h"
+#include "short_count.h"
 
 namespace vitrail::tool {
 

@@ -8,12 +8,12 @@
 #include <span>
 
 #include "../bench/bandwidth.h"
-#include "../bench/csv.h"
-#include "../bench/page.h"
 #include "../bench/runner.h"
-#include "../bench/table.h"
+#include "../report/bench_csv.h"
+#include "../report/bench_json.h"
+#include "../report/bench_page.h"
+#include "../report/bench_table.h"
 #include "../scene/split.h"
-#include "bench_json.h"
 #include "bench_options.h"
 #include "commands.h"
 #include "errors.h"

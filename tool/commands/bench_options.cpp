@@ -43,7 +43,7 @@ What to compare with method unsorted, which is always measured:
                         (default standard)
   --samples N,...       1, 2, 4, 8 (default 1)
   --resolve R,...       resolves of such methods: compute, fragment (default: the library's choice)
-  --linking L,...       linkings of such methods: fragment, compute (default: the library's choice)
+  --list-build L,...    list builds of such methods: fragment, compute (default: the library's choice)
   --layers N, --passes N
                         as of vitrail render, of the methods that have them; the others stay as they
                         are
@@ -127,7 +127,8 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
                              nodeFormatNamed);
   addList<std::uint32_t>(command, "--samples", matrix.samples, "1, 2, 4 or 8", sampleCount);
   addList<VitrailResolve>(command, "--resolve", matrix.resolves, "a resolve: compute or fragment", resolveNamed);
-  addList<VitrailListBuild>(command, "--linking", matrix.linkings, "a linking: fragment or compute", linkingNamed);
+  addList<VitrailListBuild>(command, "--list-build", matrix.listBuilds, "a list build: fragment or compute",
+                          listBuildNamed);
   addLimits(command, matrix.limits);
 }
 

@@ -8,20 +8,17 @@
 #include <fmt/format.h>
 
 #include "../image/color_map.h"
-#include "../image/metrics_text.h"
 #include "../image/png_decode.h"
 #include "../image/png_encode.h"
+#include "../report/difference.h"
 #include "../scene/load.h"
 #include "../scene/read_file.h"
 #include "errors.h"
-#include "metrics_report.h"
 #include "output_file.h"
 
 namespace vitrail::tool {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Picture readPicture(const std::string& file) {
   try {
@@ -38,28 +35,6 @@ Difference differenceOf(const FileComparison& files, const Picture& expected, co
                                          test.height));
   }
   return ComparedPicture(expected).differenceTo(test);
-}
-
-std::string toTable(const FileComparison& files, const Picture& picture, const Metrics& metrics, bool alpha) {
-  std::string table = fmt::format("{} against {}, {}x{}{}\n", files.test, files.expected, picture.width, picture.height,
-                                  alpha ? ", over black and over white, the worse of the two" : "");
-  const auto row = [&](const char* name, const std::string& value, const char* meaning) {
-    table += fmt::format("  {:<12}{:>10}   {}\n", name, value, meaning);
-  };
-  row("PSNR", psnrText(metrics.psnr), "dB; inf: the pictures are equal");
-  row("SSIM", ssimText(metrics.ssim), "1: the pictures are equal");
-  row("FLIP", flipText(metrics.flip), "mean; 0: no difference is seen, 1: the largest there is");
-  row("worst pixel", fmt::format("{}/255", metrics.worst),
-      metrics.worst > 0 ? fmt::format("at {},{}", metrics.worstX, metrics.worstY).c_str() : "");
-  row("off", shareText(metrics.offShare), "of the pixels, by more than 2/255");
-  return table;
-}
-
-std::string toReport(const FileComparison& files, const Picture& picture, const Metrics& metrics) {
-  Json json = {
-      {"expected", files.expected}, {"test", files.test}, {"width", picture.width}, {"height", picture.height}};
-  json.update(toJson(metrics));
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 // An output is neither one of the pictures nor the other output.
@@ -91,7 +66,10 @@ void compareFiles(const FileComparison& files) {
   const Picture test = readPicture(files.test);
   const Difference difference = differenceOf(files, expected, test);
 
-  const std::string json = toReport(files, expected, difference.metrics);
+  const PictureComparison compared{
+      files.expected,    files.test, expected.width, expected.height, expected.hasAlpha || test.hasAlpha,
+      difference.metrics};
+  const std::string json = toJson(compared);
   std::vector<std::byte> png;
   if (heatmapFile) {
     png = encodePng(heatmap(difference.flip, 1.0, kMagma));
@@ -102,7 +80,7 @@ void compareFiles(const FileComparison& files) {
   if (report) report->commit();
   const bool outputIsTaken = (heatmapFile && heatmapFile->isSpecial()) || (report && report->isSpecial());
   if (!files.quiet && !outputIsTaken) {
-    fmt::print("{}", toTable(files, expected, difference.metrics, expected.hasAlpha || test.hasAlpha));
+    fmt::print("{}", toTable(compared));
   }
 }
 

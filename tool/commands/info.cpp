@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "../draw/device.h"
+#include "../gpu/device.h"
 #include "commands.h"
 
 namespace vitrail::tool {

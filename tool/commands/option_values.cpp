@@ -4,7 +4,7 @@
 
 #include <fmt/ranges.h>
 
-#include "../methods/method_options.h"
+#include "../methods/methods.h"
 #include "errors.h"
 
 namespace vitrail::tool {
@@ -19,6 +19,20 @@ std::optional<std::string> methodNamed(const std::string& name) {
 }
 
 } // namespace
+
+std::string withText(std::string page, std::string_view mark, std::string_view text) {
+  return page.replace(page.find(mark), mark.size(), text);
+}
+
+std::string methodsHelp() {
+  std::string lines;
+  for (const std::string_view name : methodNames()) {
+    const MethodTraits& traits = traitsOf(name);
+    lines += fmt::format("{}    {:<23}{}{}", lines.empty() ? "" : "\n", name, traits.wrong.empty() ? "exact: " : "",
+                         traits.help);
+  }
+  return lines;
+}
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;

@@ -26,6 +26,12 @@ std::optional<Number> numberOf(std::string_view text) {
   return value;
 }
 
+// A help page with a text in place of a mark, which it has once.
+std::string withText(std::string page, std::string_view mark, std::string_view text);
+
+// All methods for a help page, a line each: the name, whether it is exact, and how it draws.
+std::string methodsHelp();
+
 std::vector<std::string> split(const std::string& text, char separator);
 
 // Each adds an option to a command. A text that cannot be understood ends the parse with a CLI::ValidationError.

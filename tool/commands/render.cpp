@@ -6,13 +6,13 @@
 #include <span>
 #include <stdexcept>
 
-#include "../draw/renderer.h"
 #include "../image/png_encode.h"
+#include "../render/still.h"
+#include "../report/frame.h"
 #include "commands.h"
 #include "errors.h"
 #include "output_file.h"
 #include "render_options.h"
-#include "report.h"
 
 namespace vitrail::tool {
 
@@ -25,7 +25,7 @@ RenderResult renderScene(const RenderArguments& arguments, const Scene& scene) {
   Gpu gpu({arguments.device, arguments.validate});
   RenderResult result;
   {
-    Renderer renderer(gpu, scene, arguments.opacity, DrawOrder::Forward, arguments.method);
+    StillRenderer renderer(gpu, scene, arguments.opacity, DrawOrder::Forward, arguments.method);
     result = renderer.render(options);
   }
   closeValidated(gpu);
@@ -55,7 +55,7 @@ void runRender(const RenderArguments& arguments) {
 
 void addRenderCommand(CLI::App& app, std::function<void()>& run) {
   CLI::App* command = app.add_subcommand("render");
-  setHelpPage(*command, withSceneHelp(kRenderHelp));
+  setHelpPage(*command, renderHelp());
   const auto arguments = std::make_shared<RenderArguments>();
   addRenderOptions(*command, *arguments);
   command->callback([arguments, &run] { run = [arguments] { runRender(*arguments); }; });

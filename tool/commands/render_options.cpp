@@ -6,12 +6,15 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "../methods/methods.h"
 #include "errors.h"
 #include "option_values.h"
 
 namespace vitrail::tool {
 
-const char* const kRenderHelp =
+namespace {
+
+constexpr const char* kRenderHelp =
     R"(Draws a model with exact transparency and writes a PNG.
 
 Usage:
@@ -21,20 +24,8 @@ Usage:
 @scene@
 
 How to blend it:
-  --method M            linked-list (default): exact. For comparisons: unsorted, plain blending in
-                        the order of the file, wrong wherever a nearer surface comes first;
-                        sorted, objects back to front, and sorted-triangles, the same for every
-                        triangle, both wrong where surfaces cross or overlap in a cycle;
-                        depth-peeling, front to back, and reverse-depth-peeling, back to front, a layer
-                        a pass; dual-depth-peeling, two; stencil-routed, as many as there are samples;
-                        a-buffer, linear arrays that are counted first;
-                        insertion, lists as most published samples sort them;
-                        weighted, a mean of all surfaces weighted by depth: one pass, wrong colours;
-                        moment, surfaces dimmed by an estimate of what is before them: two passes;
-                        stochastic, surfaces cover random samples: noise instead of wrong colours;
-                        loop (two passes), loop-64 and interlock (one, where the device can), the
-                        nearest N surfaces exact, the rest a mean; multi-layer, N layers into which
-                        surfaces are merged as they come, where the device can
+  --method M            one of these; the first is the default
+@methods@
   --samples N           1 (default), 2, 4 or 8 samples a pixel, as the device offers
   --msaa-resolve R      per-pixel (default): the samples are blended and averaged at once.
                         per-sample: each is blended into a multisampled picture. The same picture
@@ -42,7 +33,7 @@ How to blend it:
                         coarser colours and depths), hdr (16 bytes, brighter than white)
   --resolve R           where the lists are sorted: compute or fragment shaders (default: the faster
                         one of the device). The same picture
-  --linking L           where fragments are put on their lists: in the fragment shaders that shade
+  --list-build L        where fragments are put on their lists: in the fragment shaders that shade
                         them, or in a compute pass after them (default: the faster one of the
                         device, as far as that was measured). With standard nodes and one sample the
                         last bit of some colours differs
@@ -70,8 +61,6 @@ Examples:
   vitrail render --scene interlocked -o rings.png
 )";
 
-namespace {
-
 void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   MethodOptions& method = arguments.method;
   command.add_option("--method", method.name);
@@ -81,7 +70,7 @@ void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   addPositive(command, "--memory-budget", arguments.memoryBudget);
   addChoice(command, "--nodes", "standard, compact and hdr", method.nodes, nodeFormatNamed);
   addChoice(command, "--resolve", "compute and fragment", method.resolve, resolveNamed);
-  addChoice(command, "--linking", "fragment and compute", method.listBuild, linkingNamed);
+  addChoice(command, "--list-build", "fragment and compute", method.listBuild, listBuildNamed);
   addChoice(command, "--msaa-resolve", "per-pixel and per-sample", method.msaaResolve, msaaResolveNamed);
 }
 
@@ -95,6 +84,8 @@ void checkMethod(const RenderArguments& arguments) {
 }
 
 } // namespace
+
+std::string renderHelp() { return withText(withSceneHelp(kRenderHelp), "@methods@", methodsHelp()); }
 
 void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
   command.add_option("MODEL", arguments.model);

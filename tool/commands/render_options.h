@@ -28,7 +28,6 @@ void addRenderOptions(CLI::App& command, RenderArguments& arguments);
 // Checks what one option alone does not show. Throws UsageError.
 void checkRenderArguments(const RenderArguments& arguments);
 
-// Has the mark of withSceneHelp().
-extern const char* const kRenderHelp;
+std::string renderHelp();
 
 } // namespace vitrail::tool

@@ -17,7 +17,6 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr std::string_view kMark = "@scene@";
 constexpr std::string_view kSceneHelp =
     R"(What to draw:
   MODEL                 a .gltf, .glb, .obj, .ply or .stl file
@@ -101,7 +100,7 @@ void addSceneOptions(CLI::App& command, SceneArguments& arguments) {
       "--background", [&arguments](const std::string& text) { arguments.background = backgroundOf(text); });
 }
 
-std::string withSceneHelp(std::string page) { return page.replace(page.find(kMark), kMark.size(), kSceneHelp); }
+std::string withSceneHelp(const std::string& page) { return withText(page, "@scene@", kSceneHelp); }
 
 void checkSceneArguments(const SceneArguments& arguments, const std::string& command) {
   if (arguments.model.empty() == arguments.scene.empty()) {

@@ -7,8 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "../draw/renderer.h"
-#include "../scene/builtin.h"
+#include "../render/still.h"
+#include "../scene/builtin/builtin.h"
 #include "../scene/camera.h"
 #include "../scene/scene.h"
 
@@ -31,7 +31,7 @@ struct SceneArguments {
 void addSceneOptions(CLI::App& command, SceneArguments& arguments);
 
 // A help page with all of them and MODEL in place of the mark @scene@.
-std::string withSceneHelp(std::string page);
+std::string withSceneHelp(const std::string& page);
 
 // Checks what one option alone does not show. Throws UsageError.
 void checkSceneArguments(const SceneArguments& arguments, const std::string& command);

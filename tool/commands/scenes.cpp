@@ -1,7 +1,7 @@
 // `vitrail scenes`: lists the built-in scenes.
 #include <fmt/format.h>
 
-#include "../scene/builtin.h"
+#include "../scene/builtin/builtin.h"
 #include "commands.h"
 
 namespace vitrail::tool {

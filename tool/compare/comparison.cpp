@@ -6,7 +6,7 @@
 
 #include "../bench/matrix.h"
 #include "../bench/runner.h"
-#include "../methods/layer_count.h"
+#include "../methods/methods.h"
 
 namespace vitrail::tool {
 
@@ -20,7 +20,7 @@ RenderResult drawExact(Gpu& gpu, const Scene& scene, const ComparisonRun& run) {
   MethodOptions options;
   options.nodes = VITRAIL_NODE_HDR;
   options.samples = run.samples;
-  Renderer renderer(gpu, scene, run.opacity, DrawOrder::Forward, options);
+  StillRenderer renderer(gpu, scene, run.opacity, DrawOrder::Forward, options);
   return renderer.render(run.picture);
 }
 
@@ -28,7 +28,7 @@ RenderResult drawExact(Gpu& gpu, const Scene& scene, const ComparisonRun& run) {
 void countLayers(Gpu& gpu, const Scene& scene, const ComparisonRun& run, Comparison& result) {
   MethodOptions options;
   options.name = kLayerCount;
-  Renderer renderer(gpu, scene, run.opacity, DrawOrder::Forward, options);
+  StillRenderer renderer(gpu, scene, run.opacity, DrawOrder::Forward, options);
   const FrameReport frame = renderer.measure(run.picture);
   result.layers = Plane(run.picture.width, run.picture.height);
   std::ranges::copy(frame.pixelLayers, result.layers.values.begin());

@@ -10,8 +10,8 @@
 #include "../bench/machine.h"
 #include "../bench/matrix.h"
 #include "../bench/measurement.h"
-#include "../draw/renderer.h"
 #include "../image/metrics.h"
+#include "../render/still.h"
 
 namespace vitrail::tool {
 

@@ -18,10 +18,10 @@ void main() {
   uint nodes = nodesInUse();
   for (uint index = gl_GlobalInvocationID.x; index < nodes; index += threads) {
     uvec4 node = vitrailLoadNode(index, vitrailNodes());
-    if (control.misfitNodes != 0u && isTurnedAway(node)) continue;
+    if (vitrailControl.misfitNodes != 0u && isTurnedAway(node)) continue;
     uint pixelIndex = node.w & VITRAIL_PIXEL_MASK;
-    if (pixelIndex >= parameters.width * parameters.height) continue; // never, unless memory is corrupt
-    uint next = atomicExchange(heads[pixelIndex], index) & vitrailNextMask(vitrailNodes());
+    if (pixelIndex >= vitrailParameters.width * vitrailParameters.height) continue; // never, unless memory is corrupt
+    uint next = atomicExchange(vitrailHeads[pixelIndex], index) & vitrailNextMask(vitrailNodes());
     if (vitrailIsRaw(vitrailNodes())) {
       node = vitrailFinish(node, vitrailNodes());
       node.w = next;

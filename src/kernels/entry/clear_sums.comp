@@ -7,5 +7,5 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 void main() {
   uvec2 local = gl_GlobalInvocationID.xy;
-  if (local.x < parameters.width && local.y < parameters.height) clearMissing(local.y * parameters.width + local.x);
+  if (isInArea(local)) clearMissing(pixelIndexOf(local));
 }

@@ -6,45 +6,29 @@
 #define VITRAIL_GROUPS
 #endif
 #include "group_counts.glsl"
-#include "picture.glsl"
-#include "vitrail/parts.glsl"
+#include "sink/picture.glsl"
+#include "list/capped.glsl"
+#include "list/short.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// Leaves what `walk` has begun to follow to a later dispatch. Returns the fragments of the list, as far as it walks.
-uint leaveForLater(uint pixelIndex, VitrailWalk walk) {
-#ifdef VITRAIL_GROUPS
-  VitrailParts parts = vitrailFindParts(walk);
-  if (walk.count <= VITRAIL_MEDIUM_LIST) {
-    leaveMedium(pixelIndex);
-  } else if (walk.count <= VITRAIL_LONG_LIST) {
-    leaveLong(pixelIndex, parts.near);
-  } else {
-    leaveLongest(pixelIndex, parts.near, parts.far);
-  }
-#else
-  leaveLong(pixelIndex);
-#endif
-  return walk.count;
-}
-
 void resolvePixel(uvec2 local) {
-  uint pixelIndex = local.y * parameters.width + local.x;
-  uint head = heads[pixelIndex];
-  uvec2 pixel = uvec2(parameters.x, parameters.y) + local;
+  uint pixelIndex = pixelIndexOf(local);
+  uint head = vitrailHeads[pixelIndex];
+  uvec2 pixel = uvec2(vitrailParameters.x, vitrailParameters.y) + local;
   beginPixel(pixel);
   if (head == VITRAIL_END) {
 #ifdef VITRAIL_MULTISAMPLED
-    writePixel(pixel, vitrailNothing());
+    writePixel(pixel, vitrailBegin());
 #endif
     return;
   }
   VitrailWalk walk = VitrailWalk(head, 0u, nodesInUse());
-  VitrailResolved r;
+  VitrailSink r;
   if (kCapped) {
-    r = vitrailResolveCapped(head, nodesInUse());
+    r = vitrailCapped(head, nodesInUse());
   } else {
-    r = vitrailResolveShort(walk);
+    r = vitrailShort(walk);
   }
   if (r.complete) {
     writePixel(pixel, r);
@@ -67,9 +51,9 @@ void handlePixel(uvec2 local, bool sums) {
 
 void main() {
   bool sums = overflowed();
-  if (sums && (VITRAIL_NETWORKS == 0 || parameters.keepSums == 0u)) return;
+  if (sums && (VITRAIL_NETWORKS == 0 || vitrailParameters.keepSums == 0u)) return;
   beginCounts();
   uvec2 local = gl_GlobalInvocationID.xy;
-  if (local.x < parameters.width && local.y < parameters.height) handlePixel(local, sums);
+  if (isInArea(local)) handlePixel(local, sums);
   endCounts();
 }

@@ -5,9 +5,13 @@
 // and for the first two VITRAIL_DUAL_SOURCE: with a transmittance for each channel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "samples.glsl"
 #include "missing.glsl"
-#include "vitrail/resolve_long.glsl"
+#include "list/walk.glsl"
+#include "sink/samples.glsl"
+#include "sink/blend.glsl"
+#include "list/capped.glsl"
+#include "list/long.glsl"
+#include "list/sums.glsl"
 
 // Else the counters would be written for what the stencil mark rejects.
 layout(early_fragment_tests) in;
@@ -19,20 +23,20 @@ layout(location = 0, index = 1) out vec4 outTransmittance;
 layout(location = 0) out vec4 outColor;
 #endif
 
-VitrailResolved resolveList(uint head) {
-  if (kCapped) return vitrailResolveCapped(head, nodesInUse());
+VitrailSink resolveList(uint head) {
+  if (kCapped) return vitrailCapped(head, nodesInUse());
   VitrailWalk walk = VitrailWalk(head, 0u, nodesInUse());
-  VitrailResolved r = vitrailResolveShort(walk);
+  VitrailSink r = vitrailShort(walk);
   if (r.complete) return r;
-  r = vitrailBlendList(head, nodesInUse());
-  if (!r.complete) atomicAdd(control.cutPixels, 1u);
+  r = vitrailSortedList(head, nodesInUse());
+  if (!r.complete) atomicAdd(vitrailControl.cutPixels, 1u);
   return r;
 }
 
 // Whether one number is the transmittance of all channels.
 bool isGrey(VitrailPair pair) { return pair.transmittance.rgb == vec3(pair.transmittance.a); }
 
-void writeResult(VitrailResolved r) {
+void writeResult(VitrailSink r) {
 #if defined(VITRAIL_MULTISAMPLED)
   vec4 sum = vec4(0.0);
 #define VITRAIL_ADD_SAMPLE(s) if (s < kSamples) sum += over(r.pairs[s], texelFetch(opaqueImage, shownPixel, s));
@@ -46,17 +50,17 @@ void writeResult(VitrailResolved r) {
 #else
   if (isGrey(pair)) return;
   outColor.a = 1.0 - dot(pair.transmittance.rgb, vec3(1.0 / 3.0));
-  atomicAdd(control.approximatePixels, 1u);
+  atomicAdd(vitrailControl.approximatePixels, 1u);
 #endif
 #endif
 }
 
 void main() {
   uvec2 pixel = uvec2(gl_FragCoord.xy);
-  uvec2 local = pixel - uvec2(parameters.x, parameters.y);
-  uint pixelIndex = local.y * parameters.width + local.x;
-  uint head = heads[pixelIndex];
-  VitrailResolved r = vitrailNothing();
+  uvec2 local = pixel - uvec2(vitrailParameters.x, vitrailParameters.y);
+  uint pixelIndex = pixelIndexOf(local);
+  uint head = vitrailHeads[pixelIndex];
+  VitrailSink r = vitrailBegin();
 #ifdef VITRAIL_MULTISAMPLED
   shownPixel = ivec2(pixel);
 #else
@@ -64,10 +68,10 @@ void main() {
 #endif
   if (overflowed()) {
     // Mesa's CPU driver lets discarded invocations run on, and they read zeros: a list of those does not end.
-    if (parameters.keepSums == 0u) {
+    if (vitrailParameters.keepSums == 0u) {
       discard;
     } else {
-      r = vitrailResolveSums(head, nodesInUse(), readMissing(pixelIndex));
+      r = vitrailSummed(head, nodesInUse(), readMissing(pixelIndex));
     }
   } else if (head != VITRAIL_END) {
     r = resolveList(head);

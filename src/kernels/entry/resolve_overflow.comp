@@ -4,14 +4,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "group_counts.glsl"
-#include "picture.glsl"
+#include "sink/picture.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 void main() {
   beginCounts();
   uvec2 local = gl_GlobalInvocationID.xy;
-  if (local.x < parameters.width && local.y < parameters.height) {
+  if (isInArea(local)) {
     uint layers = writeSums(local);
     if (layers > 0u) countPixel(layers);
   }

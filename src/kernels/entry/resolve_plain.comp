@@ -2,13 +2,13 @@
 // indirectly, by no work groups where the frame has fragments.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "picture.glsl"
+#include "sink/picture.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 void main() {
   uvec2 local = gl_GlobalInvocationID.xy;
-  if (local.x < parameters.width && local.y < parameters.height) {
-    writePixel(uvec2(parameters.x, parameters.y) + local, vitrailNothing());
+  if (isInArea(local)) {
+    writePixel(uvec2(vitrailParameters.x, vitrailParameters.y) + local, vitrailBegin());
   }
 }

@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define VITRAIL_MULTISAMPLED
-#include "samples.glsl"
+#include "sink/samples.glsl"
 
 layout(location = 0) out vec4 outColor;
 

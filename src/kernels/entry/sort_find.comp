@@ -2,13 +2,13 @@
 // thread a pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "deep_lists.glsl"
 #include "group_counts.glsl"
+#include "list/deep.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 void findList(uint pixelIndex) {
-  uint index = heads[pixelIndex];
+  uint index = vitrailHeads[pixelIndex];
   if (index == VITRAIL_END) return;
   uint count = 0u;
   while (index < nodesInUse() && count < (kCapped ? nodesInUse() : VITRAIL_SHORT_LIST)) {
@@ -16,13 +16,13 @@ void findList(uint pixelIndex) {
     ++count;
   }
   countPixel(count);
-  if (index < nodesInUse() && !kCapped) leaveLong(pixelIndex);
+  if (index < nodesInUse() && !kCapped) leaveForLater(pixelIndex, VitrailWalk(index, count, nodesInUse()));
 }
 
 void main() {
   beginCounts();
   uvec2 local = gl_GlobalInvocationID.xy;
-  bool inside = local.x < parameters.width && local.y < parameters.height;
-  if (inside && !overflowed()) findList(local.y * parameters.width + local.x);
+  bool inside = isInArea(local);
+  if (inside && !overflowed()) findList(pixelIndexOf(local));
   endCounts();
 }

@@ -29,8 +29,6 @@ TEST(Pool, BoundsAreTheHeaders) {
 TEST(Pool, SizesDoNotOverflow) {
   EXPECT_EQ(nodePoolBytes(VITRAIL_FORMAT_STANDARD, 0), 12U);
   EXPECT_EQ(nodePoolBytes(VITRAIL_FORMAT_COMPACT, 1), 8U);
-  EXPECT_EQ(nodePoolBytes(VITRAIL_FORMAT_COMPACT, 10, true), 120U);
-  EXPECT_EQ(copyBytes(3, 5), 32U + 3U * 8U + 5U * 32U);
   EXPECT_EQ(nodePoolBytes(VITRAIL_FORMAT_HDR, 0xfffffffeU), 0xfffffffeULL * 16U);
   EXPECT_EQ(headBytes(0xffffffffU), 4ULL * 0xffffffffU);
   EXPECT_EQ(sumBytes(0xffffffffU), 20ULL * 0xffffffffU);
@@ -54,9 +52,15 @@ TEST(Pool, PartsAreAlignedAndDoNotOverlap) {
     for (const std::uint32_t pixels : {1U, 1000U, 1920U * 1080U, 0xffffffffU}) {
       for (const std::uint32_t capacity : {0U, 1U, 12345U, 0xfffffffeU}) {
         for (const bool keepSums : {false, true}) {
-          const StorageLayout storage = layoutStorage(
-              {.areaPixels = pixels, .nodeCapacity = capacity, .format = VITRAIL_FORMAT_HDR, .keepSums = keepSums,
-               .alignment = alignment});
+          StorageNeeds needs;
+          needs.areaPixels = pixels;
+          needs.nodeCapacity = capacity;
+          needs.format = VITRAIL_FORMAT_HDR;
+          needs.keepSums = keepSums;
+          needs.userWords = capacity % 2 == 1;
+          needs.copyLayers = pixels % 1000;
+          needs.alignment = alignment;
+          const StorageLayout storage = layoutStorage(needs);
           std::uint64_t end = 0;
           for (const StoragePart& part : {storage.parameters, storage.control, storage.heads, storage.mediumLists,
                                           storage.longLists, storage.sums, storage.copy, storage.nodes}) {
@@ -79,14 +83,14 @@ TEST(Pool, PartsAreAlignedAndDoNotOverlap) {
 TEST(Pool, TheCapacityForABudgetIsTheLargestThatFits) {
   std::mt19937_64 random(3);
   for (int i = 0; i < 2000; ++i) {
-    const auto format = static_cast<std::uint32_t>(random() % 3);
+    StorageNeeds needs;
+    needs.format = static_cast<std::uint32_t>(random() % 3);
     const std::uint32_t samples = 1U << (random() % 4);
-    const auto pixels = static_cast<std::uint32_t>(random() >> (32 + random() % 32));
+    needs.areaPixels = static_cast<std::uint32_t>(random() >> (32 + random() % 32));
     const std::uint64_t bytes = random() >> (random() % 50 + 14);
-    const bool keepSums = random() % 2 == 0;
-    const std::uint32_t most = maxNodeIndexCount(format, samples);
-    StorageNeeds needs{.areaPixels = pixels, .format = format, .keepSums = keepSums};
+    needs.keepSums = random() % 2 == 0;
     needs.userWords = random() % 2 == 0;
+    const std::uint32_t most = maxNodeIndexCount(needs.format, samples);
     const std::uint32_t fits = nodeCapacityFor(bytes, needs, samples);
     ASSERT_LE(fits, most);
     const auto total = [&](std::uint32_t n) {
@@ -96,9 +100,10 @@ TEST(Pool, TheCapacityForABudgetIsTheLargestThatFits) {
     ASSERT_TRUE(fits == 0 || total(fits) <= bytes);
     ASSERT_TRUE(fits == most || total(fits + 1) > bytes);
   }
-  const StorageNeeds one{.areaPixels = 1, .keepSums = true};
-  EXPECT_EQ(nodeCapacityFor(~0ULL, one, 1), 0xe0000000U);
-  EXPECT_EQ(nodeCapacityFor(0, one, 1), 0U);
+  StorageNeeds pixel;
+  pixel.areaPixels = 1;
+  EXPECT_EQ(nodeCapacityFor(~0ULL, pixel, 1), 0xe0000000U);
+  EXPECT_EQ(nodeCapacityFor(0, pixel, 1), 0U);
 }
 
 } // namespace

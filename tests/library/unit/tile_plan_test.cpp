@@ -31,14 +31,21 @@ std::uint64_t fragmentsIn(const Rectangle& tile, const Density& density) {
   return sum;
 }
 
+// The memory of a tile's target.
+StorageLayout storageOf(const TilePlanner& plan, const TilePlanInfo& info) {
+  StorageNeeds needs;
+  needs.areaPixels = plan.areaPixels();
+  needs.nodeCapacity = plan.nodeCapacity();
+  needs.format = info.format;
+  needs.userWords = info.userWords;
+  needs.alignment = info.alignment;
+  return layoutStorage(needs);
+}
+
 Outcome drawTiles(const TilePlanInfo& info, const Density& density) {
-  TilePlan plan(info);
+  TilePlanner plan(info);
   EXPECT_GT(plan.nodeCapacity(), 0U);
-  const StorageNeeds needs{.areaPixels = plan.areaPixels(),
-                           .nodeCapacity = plan.nodeCapacity(),
-                           .format = info.format,
-                           .alignment = info.alignment};
-  EXPECT_LE(layoutStorage(needs).total, info.memoryBudget);
+  EXPECT_LE(storageOf(plan, info).total, info.memoryBudget);
   Outcome outcome;
   Rectangle tile;
   while (plan.next(tile)) {
@@ -94,7 +101,7 @@ TEST(TilePlan, APictureThatFitsIsOneTile) {
 }
 
 TEST(TilePlan, AnEmptyAreaHasNoTiles) {
-  TilePlan plan(planInfo({}, 1 << 20));
+  TilePlanner plan(planInfo({}, 1 << 20));
   Rectangle tile;
   EXPECT_FALSE(plan.next(tile));
   EXPECT_EQ(plan.areaPixels(), 1U);
@@ -133,7 +140,7 @@ TEST(TilePlan, AnExpectedCountSizesTheFirstTileAndThePool) {
   EXPECT_TRUE(outcome.complete);
   EXPECT_EQ(outcome.attempts, outcome.tiles.size()); // nothing in vain
   info.memoryBudget = 1 << 30;
-  TilePlan plan(info);
+  TilePlanner plan(info);
   EXPECT_EQ(plan.nodeCapacity(), 5'500'000U);
   outcome = drawTiles(info, [](auto, auto) { return 5; });
   EXPECT_EQ(outcome.attempts, 1U);
@@ -144,9 +151,9 @@ TEST(TilePlan, AnExpectedCountSizesTheFirstTileAndThePool) {
 
 TEST(TilePlan, HeadsAndListsGetAQuarterAtMost) {
   for (const std::uint64_t budget : {64U << 10U, 1U << 20U, 100U << 20U}) {
-    const TilePlan plan(planInfo({0, 0, 20000, 20000}, budget));
-    const StorageLayout storage =
-        layoutStorage({.areaPixels = plan.areaPixels(), .nodeCapacity = plan.nodeCapacity()});
+    const TilePlanInfo info = planInfo({0, 0, 20000, 20000}, budget);
+    const TilePlanner plan(info);
+    const StorageLayout storage = storageOf(plan, info);
     EXPECT_LE(storage.nodes.offset, budget / 4);
     EXPECT_GE(4 * plan.areaPixels(), budget / 16); // and not much less than that
   }
@@ -155,7 +162,7 @@ TEST(TilePlan, HeadsAndListsGetAQuarterAtMost) {
 TEST(TilePlan, ADeviceLimitOfThePoolHolds) {
   TilePlanInfo info = planInfo({0, 0, 64, 64}, std::uint64_t{1} << 34U);
   info.nodeCapacityLimit = 1000;
-  EXPECT_EQ(TilePlan(info).nodeCapacity(), 1000U);
+  EXPECT_EQ(TilePlanner(info).nodeCapacity(), 1000U);
   const Outcome outcome = drawTiles(info, [](auto, auto) { return 900; });
   EXPECT_EQ(outcome.tiles.size(), 4096U);
 }
@@ -163,7 +170,7 @@ TEST(TilePlan, ADeviceLimitOfThePoolHolds) {
 TEST(TilePlan, ADeviceLimitOfTheHeadPointersHolds) {
   TilePlanInfo info = planInfo({0, 0, 640, 360}, 64 << 20);
   info.areaPixelsLimit = 50000;
-  EXPECT_EQ(TilePlan(info).areaPixels(), 50000U);
+  EXPECT_EQ(TilePlanner(info).areaPixels(), 50000U);
   const Outcome outcome = drawTiles(info, [](auto, auto) { return 1; });
   EXPECT_EQ(outcome.tiles.size(), 5U); // of 78 rows each
   expectCover(info.area, outcome.tiles);
@@ -189,7 +196,7 @@ TEST(TilePlan, APixelThatOverflowsSaysWhatItNeeds) {
 // Fragments that are missing although there were nodes (a shader of another target draws them) never fit: that ends
 // too.
 TEST(TilePlan, AFragmentThatNeverFitsEndsInAnError) {
-  TilePlan plan(planInfo({0, 0, 64, 64}, 1 << 20));
+  TilePlanner plan(planInfo({0, 0, 64, 64}, 1 << 20));
   Rectangle tile;
   std::size_t attempts = 0;
   bool split = true;
@@ -202,7 +209,7 @@ TEST(TilePlan, AFragmentThatNeverFitsEndsInAnError) {
 }
 
 TEST(TilePlan, ACountBeyondAllBoundsIsSplitToPixels) {
-  TilePlan plan(planInfo({0, 0, 8, 4}, 1 << 20));
+  TilePlanner plan(planInfo({0, 0, 8, 4}, 1 << 20));
   Rectangle tile;
   std::size_t attempts = 0;
   bool split = true;

@@ -16,13 +16,10 @@ std::unique_ptr<PointHost> VulkanBackend::makeHost(const HostDesc& desc) {
   return std::make_unique<VulkanHost>(*this, desc);
 }
 
-VitrailResult VulkanBackend::planTiles(VitrailTilePlanDesc desc, TilePlan& plan) {
-  const auto samples = static_cast<VkSampleCountFlagBits>(desc.samples != 0 ? desc.samples : 1);
-  check(context(0).tileLimits(desc.nodeFormat, samples, desc.limits), "vitrailVkTileLimits");
-  const VitrailVkContextDesc log = contextDesc();
-  desc.log = log.log;
-  desc.logUser = log.logUser;
-  return TilePlan::create(desc, plan);
+VitrailTileLimits VulkanBackend::tileLimits(VitrailNodeFormat format, std::uint32_t samples) {
+  VitrailTileLimits limits{};
+  check(context(0).tileLimits(format, static_cast<VkSampleCountFlagBits>(samples), limits), "vitrailVkTileLimits");
+  return limits;
 }
 
 std::vector<std::string> VulkanBackend::takeErrors() {
@@ -60,12 +57,12 @@ VitrailVkContextDesc VulkanBackend::contextDesc() {
 
 std::vector<LogLine> VulkanBackend::takeLog() { return std::exchange(log_, {}); }
 
-vitrail::vulkan::Context& VulkanBackend::context(std::uint32_t features) {
-  vitrail::vulkan::Context& context = contexts_[features];
+Context& VulkanBackend::context(std::uint32_t features) {
+  Context& context = contexts_[features];
   if (context) return context;
   VitrailVkContextDesc desc = contextDesc();
   desc.features = features;
-  check(vitrail::vulkan::Context::create(desc, context), "vitrailVkCreateContext");
+  check(Context::create(desc, context), "vitrailVkCreateContext");
   return context;
 }
 

@@ -15,6 +15,9 @@
 
 namespace vitrail::tests::vulkan {
 
+using vitrail::vulkan::Context;
+using vitrail::vulkan::Target;
+
 // A line of the library's log.
 struct LogLine {
   VitrailLogSeverity severity = VITRAIL_LOG_ERROR;
@@ -26,7 +29,7 @@ class VulkanBackend : public Backend {
   [[nodiscard]] std::string name() const override { return "vulkan"; }
   const Features& features() override { return device().features(); }
   std::unique_ptr<PointHost> makeHost(const HostDesc& desc) override;
-  VitrailResult planTiles(VitrailTilePlanDesc desc, TilePlan& plan) override;
+  VitrailTileLimits tileLimits(VitrailNodeFormat format, std::uint32_t samples) override;
   // Lines of the library's log that no test took are errors, too.
   std::vector<std::string> takeErrors() override;
   void close() override;
@@ -34,7 +37,7 @@ class VulkanBackend : public Backend {
   Device& device();
 
   // The library's context on the device, told of these VitrailVkFeatureBits.
-  vitrail::vulkan::Context& context(std::uint32_t features);
+  Context& context(std::uint32_t features);
   // All that the device has been made with, but for the pool's addresses.
   std::uint32_t allFeatures();
 
@@ -47,7 +50,7 @@ class VulkanBackend : public Backend {
 
  private:
   std::unique_ptr<Device> device_;
-  std::map<std::uint32_t, vitrail::vulkan::Context> contexts_;
+  std::map<std::uint32_t, Context> contexts_;
   std::map<PointPipelinesInfo, PointPipelines> pipelines_; // with the contexts' layouts: they go before
   std::vector<LogLine> log_;
   std::vector<std::string> lastErrors_; // of a device that was closed

@@ -149,6 +149,7 @@ void Device::findFeatures() {
   auto features = zeroed<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.pNext = &of12;
   vkGetPhysicalDeviceFeatures2(physicalDevice_, &features);
+  features_.bindingBytes = limits_.maxStorageBufferRange;
   features_.addresses = of12.bufferDeviceAddress == VK_TRUE;
   features_.dualSourceBlending = features.features.dualSrcBlend == VK_TRUE;
   features_.sampleRateShading = features.features.sampleRateShading == VK_TRUE;

@@ -1,6 +1,7 @@
 #include "point_host.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstring>
 
@@ -35,17 +36,18 @@ bool perPixel(const HostDesc& desc) {
 
 } // namespace
 
-VulkanHost::VulkanHost(VulkanBackend& backend, const HostDesc& desc)
+VulkanHost::VulkanHost(VulkanBackend& backend, const HostDesc& desc, const VulkanOptions& options)
     : backend_(backend),
       device_(backend.device()),
       desc_(desc),
+      options_(options),
       postDepthCoverage_(severalSamples(desc) && desc.postDepthCoverage && device_.features().postDepthCoverage),
       context_(&backend.context(featureBits(backend, desc))),
       commands_(device_) {
   makeImages();
   VitrailVkTargetDesc target = targetDesc();
   if (desc.guarded) guard(target);
-  const VkResult result = vitrail::vulkan::Target::create(*context_, target, target_);
+  const VkResult result = Target::create(*context_, target, target_);
   if (result != VK_SUCCESS) {
     std::string reason = "vitrailVkCreateTarget: VkResult " + std::to_string(result);
     for (const LogLine& line : backend.takeLog()) reason += ": " + line.text;
@@ -93,6 +95,8 @@ VitrailVkTargetDesc VulkanHost::targetDesc() {
   desc.areaPixels = desc_.areaPixels;
   desc.colorFormat = PointImages::colorFormat(desc_);
   desc.views = views();
+  desc.hostBarriers = options_.hostBarriers ? VK_TRUE : VK_FALSE;
+  desc.framesInFlight = options_.framesInFlight;
   desc.debugName = "points";
   if (desc_.stencilMark && !perPixel(desc_)) {
     desc.scope.stencilFormat = PointImages::depthFormat(desc_);
@@ -134,7 +138,7 @@ PointPipelines& VulkanHost::pipelinesFor(VitrailVkTargetDesc target, bool specia
   info.depthFormat = PointImages::depthFormat(desc_);
   info.nearestIsOne = desc_.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
   info.postDepthCoverage = postDepthCoverage_;
-  info.addresses = desc_.addresses;
+  info.addresses = desc_.shaderByAddress.value_or(desc_.addresses);
   if (specialized) {
     target.nodeFormat = desc_.specializedFor.value_or(target.nodeFormat);
     target.overflow = desc_.specializedForOverflow.value_or(target.overflow);
@@ -193,22 +197,48 @@ void VulkanHost::recordRequests(VkCommandBuffer commands) {
 void VulkanHost::recordResolve(VkCommandBuffer commands, PointImages& images, std::uint64_t view) {
   VitrailVkResolveInfo info{};
   if (views().count > 0) info.view = static_cast<std::uint32_t>(view);
+  cmdHostBarrier(commands, VITRAIL_VK_BARRIER_RESOLVE);
   images.cmdToResolve(commands);
   target_.resolve(commands, info);
   if (desc_.resolve == VITRAIL_RESOLVE_FRAGMENT) vkCmdEndRendering(commands);
 }
 
+// What the target asks its host to wait for at a point.
+void VulkanHost::cmdHostBarrier(VkCommandBuffer commands, VitrailVkBarrierPoint point) const {
+  if (!options_.hostBarriers || options_.omitted == point) return;
+  const VitrailVkBarriers barriers = target_.barriers(point);
+  if (barriers.count == 0) return;
+  vkCmdPipelineBarrier(commands, barriers.source, barriers.destination, 0, 0, nullptr, barriers.count, barriers.buffers,
+                       0, nullptr);
+}
+
+void VulkanHost::recordBegin(VkCommandBuffer commands, std::uint64_t frame, const VkRect2D& area) {
+  VitrailVkBeginInfo info{};
+  info.frame = options_.numbersFrames ? frame : 0;
+  info.area = area;
+  cmdHostBarrier(commands, VITRAIL_VK_BARRIER_BEGIN);
+  target_.begin(commands, info);
+  if (desc_.requestedBefore > 0) recordRequests(commands);
+  cmdHostBarrier(commands, VITRAIL_VK_BARRIER_COLLECT);
+}
+
+void VulkanHost::recordCollected(VkCommandBuffer commands) {
+  cmdHostBarrier(commands, VITRAIL_VK_BARRIER_COLLECTED);
+  target_.collected(commands);
+}
+
+void VulkanHost::recordEnd(VkCommandBuffer commands) {
+  cmdHostBarrier(commands, VITRAIL_VK_BARRIER_END);
+  target_.end(commands);
+}
+
 void VulkanHost::recordFrame(VkCommandBuffer commands, std::uint64_t frame, PointImages& images, const VkRect2D& area,
                              const Vertices& vertices) {
-  VitrailVkBeginInfo begin{};
-  begin.frame = frame;
-  begin.area = area;
-  target_.begin(commands, begin);
-  if (desc_.requestedBefore > 0) recordRequests(commands);
+  recordBegin(commands, frame, area);
   if (!vertices.points.empty()) recordPoints(commands, images, vertices);
-  target_.collected(commands);
+  recordCollected(commands);
   recordResolve(commands, images, static_cast<std::uint64_t>(&images - images_.data()));
-  target_.end(commands);
+  recordEnd(commands);
 }
 
 PointResult VulkanHost::read(const PointImages& images, std::uint64_t frame) const {
@@ -232,7 +262,7 @@ std::vector<PointResult> VulkanHost::drawTogether(const std::vector<std::vector<
   for (const std::vector<Point>& points : frames) vertices.push_back(upload(points));
   const std::uint64_t first = frame_;
   frame_ += frames.size();
-  check(target_.update(first), "vitrailVkUpdateTarget");
+  update(first);
   commands_.run([&](VkCommandBuffer commands) {
     for (std::uint64_t frame = first; frame < frame_; ++frame) {
       imagesOf(frame).cmdOpaque(commands, *pipelines_);
@@ -245,26 +275,35 @@ std::vector<PointResult> VulkanHost::drawTogether(const std::vector<std::vector<
   return results;
 }
 
+void VulkanHost::update(std::uint64_t frame) {
+  if (options_.update) check(target_.update(options_.numbersFrames ? frame : 0), "vitrailVkUpdateTarget");
+}
+
+void VulkanHost::resize(Extent extent, std::uint32_t capacity) {
+  desc_.width = extent.width;
+  desc_.height = extent.height;
+  makeImages();
+  VitrailVkResizeInfo resize{};
+  resize.extent = {extent.width, extent.height};
+  resize.nodeCapacity = capacity;
+  resize.views = views();
+  check(target_.resize(resize), "vitrailVkResizeTarget");
+}
+
 std::array<PointResult, 2> VulkanHost::drawAcrossResize(std::span<const Point> first, Extent extent,
-                                                        std::span<const Point> second) {
+                                                        std::span<const Point> second, std::uint32_t capacity) {
   const std::uint64_t frame = frame_;
   frame_ += 2;
   std::array<PointImages, kFramesTogether> old;
   const Vertices before = upload(first);
   Vertices after;
-  check(target_.update(frame), "vitrailVkUpdateTarget");
+  update(frame);
   commands_.run([&](VkCommandBuffer commands) {
     imagesOf(frame).cmdOpaque(commands, *pipelines_);
     recordFrame(commands, frame, imagesOf(frame), wholeArea(), before);
     imagesOf(frame).cmdPicture(commands);
     std::swap(old, images_);
-    desc_.width = extent.width;
-    desc_.height = extent.height;
-    makeImages();
-    VitrailVkResizeInfo resize{};
-    resize.extent = {extent.width, extent.height};
-    resize.views = views();
-    check(target_.resize(resize), "vitrailVkResizeTarget");
+    resize(extent, capacity);
     after = upload(second);
     imagesOf(frame + 1).cmdOpaque(commands, *pipelines_);
     recordFrame(commands, frame + 1, imagesOf(frame + 1), wholeArea(), after);
@@ -273,12 +312,50 @@ std::array<PointResult, 2> VulkanHost::drawAcrossResize(std::span<const Point> f
   return {read(old[frame % kFramesTogether], frame), read(imagesOf(frame + 1), frame + 1)};
 }
 
+VulkanHost::Outcome VulkanHost::drawSteps(std::span<const Point> points, std::span<const Step> steps) {
+  const Vertices vertices = upload(points);
+  std::optional<std::uint64_t> begun;
+  PointImages& images = imagesOf(frame_);
+  commands_.run([&](VkCommandBuffer commands) {
+    images.cmdOpaque(commands, *pipelines_);
+    for (const Step step : steps) {
+      switch (step) {
+        case Step::Begin:
+          begun = frame_++;
+          recordBegin(commands, *begun, wholeArea());
+          recordPoints(commands, images, vertices);
+          break;
+        case Step::Collected:
+          recordCollected(commands);
+          break;
+        case Step::Resolve:
+          recordResolve(commands, images, static_cast<std::uint64_t>(&images - images_.data()));
+          break;
+        case Step::End:
+          recordEnd(commands);
+          break;
+      }
+    }
+    images.cmdPicture(commands);
+  });
+  return {images.pixels(), begun ? stats(*begun) : std::nullopt};
+}
+
+double VulkanHost::seconds(std::span<const Point> points) {
+  const Vertices vertices = upload(points);
+  const std::uint64_t frame = frame_++;
+  recordFrame(commands_.begin(), frame, imagesOf(frame), wholeArea(), vertices);
+  const auto start = std::chrono::steady_clock::now();
+  commands_.execute();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 PointResult VulkanHost::drawAreas(std::span<const Point> points, const NextArea& next) {
   const Vertices vertices = upload(points);
   PointImages& images = images_[0];
   commands_.run([&](VkCommandBuffer commands) { images.cmdOpaque(commands, *pipelines_); });
   VitrailStats stats{};
-  Area area;
+  VitrailRect area{};
   for (bool more = next(nullptr, area); more; more = next(&stats, area)) {
     const std::uint64_t frame = frame_++;
     const VkRect2D part = {{static_cast<std::int32_t>(area.x), static_cast<std::int32_t>(area.y)},
@@ -314,19 +391,17 @@ PointResult VulkanHost::drawScattered(std::span<const Point> points) {
   const std::uint64_t frame = frame_++;
   PointImages& images = imagesOf(frame);
   commands_.run([&](VkCommandBuffer commands) {
-    VitrailVkBeginInfo begin{};
-    begin.frame = frame;
     images.cmdOpaque(commands, *pipelines_);
-    target_.begin(commands, begin);
+    recordBegin(commands, frame, wholeArea());
     recordPoints(commands, images, vertices);
     // Writers: the points. Reader: the copy.
     cmdBarrier(commands, kShaders, kCopyRead);
   });
   scatter();
   commands_.run([&](VkCommandBuffer commands) {
-    target_.collected(commands);
+    recordCollected(commands);
     recordResolve(commands, images, frame % kFramesTogether);
-    target_.end(commands);
+    recordEnd(commands);
     images.cmdPicture(commands);
   });
   return read(images, frame);
@@ -335,7 +410,7 @@ PointResult VulkanHost::drawScattered(std::span<const Point> points) {
 void VulkanHost::drop(std::span<const Point> points) {
   const Vertices vertices = upload(points);
   const std::uint64_t frame = frame_++;
-  check(target_.update(frame), "vitrailVkUpdateTarget");
+  update(frame);
   VkCommandBuffer commands = commands_.begin();
   imagesOf(frame).cmdOpaque(commands, *pipelines_);
   recordFrame(commands, frame, imagesOf(frame), wholeArea(), vertices);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,13 +16,26 @@
 
 namespace vitrail::tests::vulkan {
 
+// The calls of a frame. Points are drawn after Begin.
+enum class Step { Begin, Collected, Resolve, End };
+
+// What hosts of Vulkan may do in another way.
+struct VulkanOptions {
+  bool update = true;        // vitrailVkUpdateTarget() before each frame
+  bool numbersFrames = true; // else the library does
+  std::uint32_t framesInFlight = 0;
+  // The barriers between the calls are this host's. It makes all but this one.
+  bool hostBarriers = false;
+  std::optional<VitrailVkBarrierPoint> omitted;
+};
+
 class VulkanHost : public PointHost {
  public:
-  VulkanHost(VulkanBackend& backend, const HostDesc& desc);
+  VulkanHost(VulkanBackend& backend, const HostDesc& desc, const VulkanOptions& options = {});
 
   std::vector<PointResult> drawTogether(const std::vector<std::vector<Point>>& frames) override;
   std::array<PointResult, 2> drawAcrossResize(std::span<const Point> first, Extent extent,
-                                              std::span<const Point> second) override;
+                                              std::span<const Point> second, std::uint32_t capacity) override;
   PointResult drawAreas(std::span<const Point> points, const NextArea& next) override;
   PointResult drawScattered(std::span<const Point> points) override;
   void drop(std::span<const Point> points) override;
@@ -30,8 +44,22 @@ class VulkanHost : public PointHost {
   [[nodiscard]] VitrailMemory memory() const override { return target_.memory(); }
   [[nodiscard]] std::optional<VitrailStats> stats(std::uint64_t frame) const override;
 
-  [[nodiscard]] vitrail::vulkan::Target& target() { return target_; }
-  [[nodiscard]] const vitrail::vulkan::Context& context() const { return *context_; }
+  // Draws the points by these calls in this order. The statistics are those of the frame that was begun last, where
+  // there are any.
+  struct Outcome {
+    std::vector<FloatColor> pixels;
+    std::optional<VitrailStats> stats;
+  };
+  Outcome drawSteps(std::span<const Point> points, std::span<const Step> steps);
+
+  // Gives the target another size. The frames before have finished.
+  void resize(Extent extent, std::uint32_t capacity = 0);
+
+  // How long the library's calls and the points take to execute, and no more than those.
+  double seconds(std::span<const Point> points);
+
+  [[nodiscard]] Target& target() { return target_; }
+  [[nodiscard]] const Context& context() const { return *context_; }
   [[nodiscard]] VitrailVkTargetDesc targetDesc(); // what the target is made with
 
  private:
@@ -42,12 +70,17 @@ class VulkanHost : public PointHost {
   };
 
   void makeImages();
+  void update(std::uint64_t frame);
   [[nodiscard]] VitrailVkViews views();
   void guard(VitrailVkTargetDesc& desc);
   PointPipelines& pipelinesFor(VitrailVkTargetDesc target, bool specialized);
   [[nodiscard]] Vertices upload(std::span<const Point> points) const;
   PointImages& imagesOf(std::uint64_t frame) { return images_[frame % kFramesTogether]; }
 
+  void cmdHostBarrier(VkCommandBuffer commands, VitrailVkBarrierPoint point) const;
+  void recordBegin(VkCommandBuffer commands, std::uint64_t frame, const VkRect2D& area);
+  void recordCollected(VkCommandBuffer commands);
+  void recordEnd(VkCommandBuffer commands);
   void recordPoints(VkCommandBuffer commands, PointImages& images, const Vertices& vertices);
   void recordRequests(VkCommandBuffer commands);
   void recordResolve(VkCommandBuffer commands, PointImages& images, std::uint64_t view);
@@ -61,9 +94,10 @@ class VulkanHost : public PointHost {
   VulkanBackend& backend_;
   const Device& device_;
   HostDesc desc_;
+  VulkanOptions options_;
   bool postDepthCoverage_ = false;
   std::uint64_t frame_ = 0;
-  vitrail::vulkan::Context* context_ = nullptr;
+  Context* context_ = nullptr;
   std::array<PointImages, kFramesTogether> images_; // of frame n: n % kFramesTogether
   // What views() points to.
   std::array<VkImageView, kFramesTogether> colorViews_{};
@@ -72,7 +106,7 @@ class VulkanHost : public PointHost {
   VkDeviceSize guardBytes_ = 0;
   StorageLayout storage_; // of the memory between the guards
   Buffer memory_;         // guards, the library's memory, guards
-  vitrail::vulkan::Target target_;
+  Target target_;
   PointPipelines* pipelines_ = nullptr; // shared
   PointPipelines* strangers_ = nullptr; // of strangers; shared
   Commands commands_;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -29,14 +30,14 @@ class RefusedTest : public VulkanTest {
 
   // Refused with that code and one line that has that word.
   static void expectRefused(const VitrailVkTargetDesc& desc, VkResult code, const std::string& word) {
-    vitrail::vulkan::Target target;
-    EXPECT_EQ(vitrail::vulkan::Target::create(context(), desc, target), code) << word;
+    Target target;
+    EXPECT_EQ(Target::create(context(), desc, target), code) << word;
     EXPECT_FALSE(target) << word;
     expectOneLine(word);
   }
 
   // Of a context that was told of no features.
-  static vitrail::vulkan::Context& context() { return backend().context(0); }
+  static Context& context() { return backend().context(0); }
 
   Image image_;
   VkImageView view_ = VK_NULL_HANDLE;
@@ -48,6 +49,18 @@ TEST_F(RefusedTest, ContextsWithoutWhatTheyNeed) {
   VitrailVkContext none = nullptr;
   EXPECT_EQ(vitrailVkCreateContext(&desc, &none), VK_ERROR_INITIALIZATION_FAILED);
   EXPECT_EQ(none, nullptr);
+  desc = backend().contextDesc();
+  desc.device = VK_NULL_HANDLE;
+  EXPECT_EQ(vitrailVkCreateContext(&desc, &none), VK_ERROR_INITIALIZATION_FAILED);
+  expectOneLine("device");
+  desc = backend().contextDesc();
+  desc.features = 1U << 20U | VITRAIL_VK_FEATURE_DUAL_SRC_BLEND;
+  EXPECT_EQ(vitrailVkCreateContext(&desc, &none), VK_ERROR_INITIALIZATION_FAILED);
+  expectOneLine("0x100000");
+  desc = backend().contextDesc();
+  desc.next = &desc;
+  EXPECT_EQ(vitrailVkCreateContext(&desc, &none), VK_ERROR_INITIALIZATION_FAILED);
+  expectOneLine("next");
 }
 
 TEST_F(RefusedTest, WrongFields) {
@@ -76,23 +89,109 @@ TEST_F(RefusedTest, WrongFields) {
   desc.framesInFlight = VITRAIL_MAX_FRAMES_IN_FLIGHT + 1;
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "framesInFlight");
   desc = desc_;
+  desc.msaaResolve = static_cast<VitrailMsaaResolve>(2);
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "msaaResolve");
+  desc = desc_;
+  desc.next = &desc;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "next");
+  desc = desc_;
   desc.colorFormat = VK_FORMAT_B8G8R8A8_SRGB;
   expectRefused(desc, VK_ERROR_FORMAT_NOT_SUPPORTED, "colorFormat");
 }
 
 TEST_F(RefusedTest, ViewsThatAreMissing) {
   VitrailVkTargetDesc desc = desc_;
+  desc.views.color = nullptr;
   desc.views.count = 0;
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "views.color");
+  desc = desc_;
   desc.views.count = VITRAIL_MAX_VIEWS + 1;
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "views");
-  const std::vector<std::uint32_t> counts = backend().features().multisampled;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "views.count");
+  const std::vector<std::uint32_t>& counts = backend().features().multisampled;
   if (counts.empty()) return;
   desc = desc_;
   desc.samples = static_cast<VkSampleCountFlagBits>(counts[0]);
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "views.opaque");
   desc.views.opaque = &view_;
   expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "views.depth");
+}
+
+// Whichever resolve is the default: the host has said that there are views, and not how many.
+TEST_F(RefusedTest, ViewsWithoutACount) {
+  for (const VitrailResolve resolve : {VITRAIL_RESOLVE_DEFAULT, VITRAIL_RESOLVE_COMPUTE, VITRAIL_RESOLVE_FRAGMENT}) {
+    VitrailVkTargetDesc desc = desc_;
+    desc.resolve = resolve;
+    desc.views.count = 0;
+    expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "views.count");
+  }
+}
+
+TEST_F(RefusedTest, ViewsThatAreNullHandles) {
+  const std::array<VkImageView, 3> views = {view_, view_, VK_NULL_HANDLE};
+  VitrailVkTargetDesc desc = desc_;
+  desc.views.color = views.data();
+  desc.views.count = 2;
+  Target target;
+  EXPECT_EQ(Target::create(context(), desc, target), VK_SUCCESS);
+  desc.views.count = 3;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "views.color[2]");
+  VitrailVkResizeInfo resize{};
+  resize.extent = {32, 32};
+  resize.views = desc.views;
+  EXPECT_EQ(target.resize(resize), VK_ERROR_INITIALIZATION_FAILED);
+  expectOneLine("views.color[2]");
+  desc = desc_;
+  desc.views.depth = views.data() + 2;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "views.depth[0]");
+}
+
+TEST_F(RefusedTest, FormatsOfTheScopeThatAreOfAnotherKind) {
+  VitrailVkTargetDesc desc = desc_;
+  desc.views = {};
+  desc.resolve = VITRAIL_RESOLVE_FRAGMENT;
+  desc.scope.depthFormat = VK_FORMAT_R8G8B8A8_UNORM;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "depthFormat");
+  desc.scope.depthFormat = VK_FORMAT_UNDEFINED;
+  desc.scope.stencilFormat = VK_FORMAT_D32_SFLOAT;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "stencilFormat");
+  desc.scope.stencilFormat = VK_FORMAT_UNDEFINED;
+  desc.scope.stencilMark = VK_TRUE;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "stencilFormat");
+}
+
+TEST_F(RefusedTest, NeitherCapacityNorBudget) {
+  VitrailVkTargetDesc desc = desc_;
+  desc.nodeCapacity = 0;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "nodeCapacity");
+  VitrailVkRequirements needs{};
+  EXPECT_EQ(context().targetRequirements(desc, needs), VK_ERROR_INITIALIZATION_FAILED);
+  expectOneLine("nodeCapacity");
+}
+
+TEST_F(RefusedTest, BuffersOfTheHostThatDoNotServe) {
+  VitrailVkTargetDesc desc = desc_;
+  VitrailVkRequirements needs{};
+  ASSERT_EQ(context().targetRequirements(desc, needs), VK_SUCCESS);
+  const Buffer buffer(backend().device(), needs.size + needs.alignment, needs.usage, Memory::Device);
+  desc.buffer = buffer.get();
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "bufferSize");
+  desc.bufferSize = needs.size - 1;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "bufferSize");
+  desc.bufferSize = needs.size;
+  desc.bufferOffset = 4;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "bufferOffset");
+  desc.bufferOffset = 0;
+  desc.memoryBudget = 64 << 20;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "memoryBudget");
+  desc.memoryBudget = 0;
+  desc.bufferOffset = needs.alignment;
+  Target target;
+  ASSERT_EQ(Target::create(context(), desc, target), VK_SUCCESS);
+  VitrailVkResizeInfo resize{};
+  resize.extent = {32, 32};
+  resize.views = desc.views;
+  EXPECT_EQ(target.resize(resize), VK_ERROR_INITIALIZATION_FAILED);
+  expectOneLine("host's memory");
 }
 
 TEST_F(RefusedTest, WhatTheDeviceOrTheContextDoesNotOffer) {
@@ -154,42 +253,23 @@ TEST_F(RefusedTest, AreasThatAreTooLargeForListsBuiltByCompute) {
   EXPECT_EQ(context().targetRequirements(desc, requirements), VK_SUCCESS);
 }
 
-// Compute where it can be had, else a draw.
+// Compute where it can be had, else a draw; the target tells which.
 TEST_F(RefusedTest, TheDefaultResolveFollowsTheFields) {
   VitrailVkTargetDesc desc = desc_;
   desc.resolve = VITRAIL_RESOLVE_DEFAULT;
   EXPECT_EQ(context().defaultResolve(desc), VITRAIL_RESOLVE_COMPUTE);
-  desc.views.color = nullptr;
+  Target target;
+  ASSERT_EQ(Target::create(context(), desc, target), VK_SUCCESS);
+  EXPECT_EQ(target.resolveKind(), VITRAIL_RESOLVE_COMPUTE);
+  desc.views = {};
   EXPECT_EQ(context().defaultResolve(desc), VITRAIL_RESOLVE_FRAGMENT);
+  ASSERT_EQ(Target::create(context(), desc, target), VK_SUCCESS);
+  EXPECT_EQ(target.resolveKind(), VITRAIL_RESOLVE_FRAGMENT);
   desc = desc_;
   desc.resolve = VITRAIL_RESOLVE_DEFAULT;
   desc.samples = VK_SAMPLE_COUNT_4_BIT;
   desc.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
   EXPECT_EQ(context().defaultResolve(desc), VITRAIL_RESOLVE_FRAGMENT);
-}
-
-TEST_F(RefusedTest, APixelThatFitsNoBudgetIsAnErrorWithTheBytes) {
-  VitrailTilePlanDesc desc{};
-  desc.memoryBudget = 64 << 10;
-  TilePlan plan;
-  EXPECT_EQ(backend().planTiles(desc, plan), VITRAIL_ERROR_INVALID);
-  expectOneLine("extent");
-  desc.width = 1;
-  desc.height = 1;
-  desc.memoryBudget = 1000;
-  EXPECT_EQ(backend().planTiles(desc, plan), VITRAIL_ERROR_OUT_OF_MEMORY);
-  expectOneLine("memoryBudget");
-  desc.memoryBudget = 64 << 10;
-  ASSERT_EQ(backend().planTiles(desc, plan), VITRAIL_SUCCESS);
-  VitrailRect tile{};
-  ASSERT_TRUE(plan.next(tile));
-  VitrailStats stats{};
-  stats.nodeCapacity = 4000;
-  stats.fragmentsRequested = 100000;
-  stats.fragmentsStored = 4000;
-  stats.fragmentsMissing = 96000;
-  EXPECT_EQ(plan.finish(stats), VITRAIL_ERROR_OUT_OF_MEMORY);
-  expectOneLine("100000");
 }
 
 } // namespace

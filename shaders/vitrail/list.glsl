@@ -1,0 +1,105 @@
+// Walks the fragments of one pixel in order, nearest first, in a compute or fragment shader of the host's: what lies
+// under a pixel, and whose it is. It only reads, so that any number of invocations may walk the same list.
+//
+//   #extension GL_GOOGLE_include_directive : require
+//   #define VITRAIL_SET 0
+//   #include "vitrail/list.glsl"
+//   ...
+//   VitrailList list = vitrailOpenList(pixel);
+//   VitrailLayer layer;
+//   while (vitrailNextLayer(list, layer)) {
+//     ... layer.color, layer.depth, layer.blend, layer.coverage, layer.word
+//   }
+//   if (vitrailListWasCut(list)) ... // there is more
+//
+// When: between vitrailVkCmdCollected() and the target's next vitrailVkCmdBegin(), before the resolve or after it. The
+// host's barrier makes visible what was written at VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT (lists are built, and sorted by
+// the resolve) and VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT (fragments are collected) with VK_ACCESS_SHADER_WRITE_BIT, to
+// the host's stage with VK_ACCESS_SHADER_READ_BIT and VK_ACCESS_UNIFORM_READ_BIT; a barrier on all memory is as good as
+// one on the target's buffer. Another, on execution alone, stands before the resolve where lists are walked before it:
+// it relinks long lists. Lists are not walked while it runs.
+//
+// What: every fragment that vitrailCollect() stored, behind each other by depth; at the same depth in the order that
+// the resolve blends them in (docs/resolve.md), and those that are alike in all that is stored by the host's word. Of a
+// frame that overflowed (VitrailStats) it is what found a node.
+//
+// Cost: a walk of the list for every 16 fragments that are asked for, from its first one on. Two or three layers of any
+// list are cheap, all layers of a list of n take n * n / 16 steps. Mesa's CPU driver ends the loops of an invocation
+// after 65,535 turns; vitrailListWasCut() then says so, from lists of about 1,000 fragments on.
+//
+// Define before the include VITRAIL_SET, and VITRAIL_BUFFER_REFERENCE where the pool is to be reached by its address,
+// as for vitrail/collect.glsl. It may stand beside that one in a shader. The set's layout offers three storage buffers
+// of those that a stage may have.
+#ifndef VITRAIL_LIST_GLSL
+#define VITRAIL_LIST_GLSL
+
+#define VITRAIL_SORT_WORDS
+#include "sort.glsl"
+#include "target.glsl"
+
+struct VitrailList {
+  VitrailLayout nodes;
+  uint head; // where every walk begins
+  uint nodeCount;
+  VitrailEntry batch[16]; // the next fragments, in order,
+  uint left;              // so many of them
+  bool more;              // and those behind
+  VitrailEntry last;      // the one that was handed over last
+};
+
+// The next batch. `more` stays true where a driver ended the walk before its end.
+void vitrailFillBatch(inout VitrailList list) {
+  list.batch = VitrailEntry[16](VITRAIL_LAST_16);
+  uint index = list.head;
+  uint count = 0u; // of nodes that were walked: a corrupt list ends
+  uint found = 0u;
+  while (max(index, count) < list.nodeCount) {
+    uvec4 node = vitrailLoadNode(index, list.nodes);
+    VitrailEntry entry = VitrailEntry(vitrailKey(node, list.nodes), index, 0u);
+    if (vitrailParameters.userWords != 0u) entry.word = vitrailLoadWord(index, list.nodes);
+    index = node.w & vitrailNextMask(list.nodes);
+    ++count;
+    if (VITRAIL_BEFORE(list.last, entry)) {
+      vitrailInsert(list.batch, entry);
+      ++found;
+    }
+  }
+  bool cut = max(index, count) < list.nodeCount;
+  list.left = cut ? 0u : min(found, 16u);
+  list.more = cut || found > 16u;
+}
+
+// Opens the list of a pixel of the target. One outside of the frame's area has no fragments.
+VitrailList vitrailOpenList(ivec2 pixel) {
+  VitrailList list;
+  list.nodes =
+      VitrailLayout(vitrailParameters.format, vitrailParameters.samples, vitrailParameters.nearestIsOne != 0u);
+  list.nodeCount = min(vitrailControl.requested, vitrailParameters.capacity);
+  list.batch = VitrailEntry[16](VITRAIL_LAST_16);
+  list.left = 0u;
+  list.last = VitrailEntry(uvec4(0u), 0u, 0u); // before every fragment: none has an empty key
+  uvec2 local = uvec2(pixel) - uvec2(vitrailParameters.x, vitrailParameters.y);
+  bool inside = local.x < vitrailParameters.width && local.y < vitrailParameters.height; // also not left or above
+  list.head = VITRAIL_END;
+  if (inside) list.head = vitrailHeads[local.y * vitrailParameters.width + local.x];
+  list.more = list.head < list.nodeCount;
+  if (vitrailReachedWidth() == 0u) list.nodeCount = 0u; // the pool is out of reach: what there is remains unseen
+  return list;
+}
+
+// The next fragment. False: that was the last one, or the driver ends the walk.
+bool vitrailNextLayer(inout VitrailList list, out VitrailLayer layer) {
+  if (list.left == 0u && list.more && list.nodeCount > 0u) vitrailFillBatch(list);
+  layer = vitrailLayerOf(list.batch[0].key, list.batch[0].word, list.nodes);
+  if (list.left == 0u) return false;
+  list.last = list.batch[0];
+  vitrailShift(list.batch);
+  --list.left;
+  return true;
+}
+
+// Once vitrailNextLayer() has returned false, or a loop round it has ended: whether the list has more fragments,
+// because the driver ended the loop, or because this shader cannot reach the pool (VITRAIL_BUFFER_REFERENCE).
+bool vitrailListWasCut(VitrailList list) { return list.left > 0u || list.more; }
+
+#endif

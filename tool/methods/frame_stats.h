@@ -1,0 +1,36 @@
+// What a method tells of a frame that it drew: plain numbers, which drivers pass on and report/ writes.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vitrail::tool {
+
+struct FrameStats {
+  // What was taken of the choices that the method has; empty where it has none.
+  std::string nodes{};     // "compact", "standard", "hdr"
+  std::string resolve{};   // "compute", "fragment"
+  std::string listBuild{}; // the same of who puts fragments on their lists
+  bool exact = false;
+  bool counted = false; // whether the method counts fragments: else the counts and layers are 0
+  std::uint64_t fragmentsRequested = 0;
+  std::uint64_t fragmentsStored = 0;
+  std::uint64_t fragmentsMissing = 0;
+  std::uint32_t approximatePixels = 0;
+  std::uint32_t cutPixels = 0; // pixels that the driver did not let the method finish
+  std::uint32_t layersMax = 0;
+  double layersMean = 0.0; // over pixels that hold at least one fragment; 0 where there are none
+  std::uint32_t tiles = 1; // areas that were collected and resolved one after the other
+  std::uint64_t nodesBytes = 0;
+  std::uint64_t headsBytes = 0;
+  std::uint64_t totalBytes = 0;             // all that the method keeps on the device for its target
+  std::vector<std::uint32_t> pixelLayers{}; // of layer-count alone: the fragments of each pixel, rows top to bottom
+};
+
+// FrameStats::layersMean of so many pixels that have fragments.
+inline double meanLayers(std::uint64_t fragments, std::uint64_t coveredPixels) {
+  return coveredPixels > 0 ? static_cast<double>(fragments) / static_cast<double>(coveredPixels) : 0.0;
+}
+
+} // namespace vitrail::tool

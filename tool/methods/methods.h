@@ -1,0 +1,84 @@
+// All transparency methods: one row of a table each, which says how a method is made, what it takes and what it
+// promises.
+//
+// A new method is a folder of its own with its code and its shaders, a line among the factories below, and a row of the
+// table in methods.cpp. Options, help pages, benchmarks and reports follow from the row.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "method.h"
+
+namespace vitrail::tool {
+
+// The options of MethodOptions that only some methods have. What a method has not is refused, never ignored.
+enum MethodOption : std::uint32_t {
+  kTakesSamples = 1U << 0U,     // --samples
+  kTakesNodes = 1U << 1U,       // --nodes
+  kTakesResolve = 1U << 2U,     // --resolve
+  kTakesListBuild = 1U << 3U,   // --list-build
+  kTakesMsaaResolve = 1U << 4U, // --msaa-resolve
+  kTakesLayers = 1U << 5U,      // --layers
+  kTakesPasses = 1U << 6U,      // --passes
+  kTakesMemoryBudget = 1U << 7U // --memory-budget
+};
+
+// A row of the table.
+struct MethodTraits {
+  std::string_view name; // what --method takes
+  std::string_view help; // how it draws: a line of at most 65 characters
+  std::unique_ptr<Method> (*make)(const MethodHost& host, const MethodOptions& options) = nullptr;
+  std::uint32_t options = 0; // of MethodOption
+  bool lists = false;        // its fragments are nodes of lists
+  // Whether pictures are the same whatever order surfaces are drawn in, where they are not exact too; with
+  // depth-peeling and reverse-depth-peeling but for surfaces at equal depths.
+  bool orderIndependent = false;
+  std::string_view wrong{}; // what its pictures get wrong, in words; nothing: they are exact
+  bool listed = true;       // false: no method to draw with
+
+  bool takes(MethodOption option) const { return (options & option) != 0; }
+};
+
+// The methods that are listed, the default first.
+std::span<const std::string_view> methodNames();
+
+// The row of that name, also of one that is not listed; where there is none, throws std::logic_error.
+const MethodTraits& traitsOf(std::string_view name);
+
+// Makes a method. The options have passed checkMethodOptions(), or are kLayerCount's. Throws GpuError where the device
+// does not offer them.
+std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& options);
+
+// Throws std::invalid_argument with a one-line reason for a name that is not listed, for options that the method does
+// not have, or for options that exclude each other.
+void checkMethodOptions(const MethodOptions& options);
+
+// The same for what is chosen with each picture: whether there is a memory budget.
+void checkPictureOptions(std::string_view method, bool memoryBudget);
+
+// Counts the fragments of each pixel and draws no picture; not listed.
+inline constexpr std::string_view kLayerCount = "layer-count";
+
+// The factories, each in the folder of its name. Throw GpuError.
+std::unique_ptr<Method> makeABuffer(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeDepthPeeling(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeDualDepthPeeling(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeInsertion(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeInterlock(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeLayerCount(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeLinkedList(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeLoop(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeMoment(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeMultiLayer(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeReverseDepthPeeling(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeSorted(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeSortedTriangles(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeStencilRouted(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeStochastic(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeUnsorted(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeWeighted(const MethodHost& host, const MethodOptions& options);
+
+} // namespace vitrail::tool

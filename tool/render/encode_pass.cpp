@@ -1,0 +1,76 @@
+#include "encode_pass.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "../gpu/barrier.h"
+#include "../gpu/pipeline.h"
+#include "shaders/encode.comp.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+struct Band { // the push constants of encode.comp
+  std::uint32_t width;
+  std::uint32_t height;
+  std::uint32_t firstRow;
+  std::uint32_t rows;
+};
+
+constexpr std::uint32_t kGroupSide = 8;
+
+// A band's offset in the buffer is a multiple of 256 bytes, the largest alignment that a device may ask for.
+constexpr std::uint32_t kRowAlignment = 64;
+
+std::uint32_t bandGroups(std::uint32_t pixels) { return (pixels + kGroupSide - 1) / kGroupSide; }
+
+} // namespace
+
+EncodePass::EncodePass(Gpu& gpu)
+    : gpu_(gpu),
+      set_(gpu,
+           {{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT},
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC, VK_SHADER_STAGE_COMPUTE_BIT}},
+           "encode"),
+      layout_(makePipelineLayout(gpu, {set_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(Band)}, "encode")),
+      pipeline_(makeComputePipeline(gpu, layout_.get(), shaders::encode_comp, "encode")) {}
+
+void EncodePass::setSource(const GpuImage& color) {
+  extent_ = color.info().extent;
+  const std::uint64_t rowBytes = std::uint64_t{extent_.width} * 4;
+  const std::uint64_t fitting = gpu_.properties().limits.maxStorageBufferRange / rowBytes;
+  bandRows_ = extent_.height;
+  if (fitting < extent_.height) bandRows_ = static_cast<std::uint32_t>(fitting / kRowAlignment * kRowAlignment);
+  const std::uint64_t bands = (extent_.height + bandRows_ - 1) / bandRows_;
+
+  output_ = GpuBuffer(); // first: the old picture and the new one need not fit together
+  output_ = GpuBuffer(gpu_, bands * bandRows_ * rowBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryKind::Readback,
+                      "encoded picture");
+  set_.writeImage(0, color.view(), VK_IMAGE_LAYOUT_GENERAL);
+  set_.writeBuffer(1, output_.get(), bandRows_ * rowBytes);
+}
+
+void EncodePass::cmdEncode(VkCommandBuffer commands) const {
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
+  const VkDescriptorSet set = set_.set();
+  for (std::uint32_t row = 0; row < extent_.height; row += bandRows_) {
+    const Band band{extent_.width, extent_.height, row, std::min(bandRows_, extent_.height - row)};
+    const std::uint64_t offset = std::uint64_t{row} * extent_.width * 4;
+    const auto dynamicOffset = static_cast<std::uint32_t>(offset);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 1, &dynamicOffset);
+    vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(band), &band);
+    vkCmdDispatch(commands, bandGroups(band.width), bandGroups(band.rows), 1);
+  }
+  // The encoding shader writes the pixels -> the host reads them after the fence.
+  cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT},
+                   {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
+}
+
+std::vector<std::uint8_t> EncodePass::pixels() const {
+  std::vector<std::uint8_t> result(std::size_t{extent_.width} * extent_.height * 4);
+  std::memcpy(result.data(), output_.mapped(), result.size());
+  return result;
+}
+
+} // namespace vitrail::tool

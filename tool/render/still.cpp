@@ -1,0 +1,133 @@
+#include "still.h"
+
+#include <fmt/format.h>
+
+#include "../gpu/submit.h"
+#include "../gpu/timers.h"
+#include "../methods/methods.h"
+#include "../stage/frame.h"
+#include "../stage/stage.h"
+#include "encode_pass.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+// The first frame counts, the second one fits: more are never needed unless a device counts wrong.
+constexpr int kMaxAttempts = 3;
+
+} // namespace
+
+struct StillRenderer::Impl {
+  MethodOptions options;
+  Submitter submitter;
+  Stage stage;                    // the method's target holds views of its images
+  std::unique_ptr<Method> method; // draws on it
+  EncodePass encode;
+  Timers timers;
+
+  Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, const MethodOptions& chosen);
+  void prepare(const RenderOptions& picture);
+  bool draw(const Background& background, bool encoded);
+  FrameReport drawUntilComplete(const RenderOptions& picture, bool encoded);
+  FrameReport report(const RenderOptions& picture, const FrameStats& stats);
+};
+
+StillRenderer::Impl::Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, const MethodOptions& chosen)
+    : options(chosen),
+      submitter(gpu),
+      stage(gpu, scene, info),
+      method(makeMethod({gpu, stage.surfaces(), scene}, chosen)),
+      encode(gpu),
+      timers(gpu, Frame::kMostPasses) {
+  stage.setNeeds(method->needs());
+}
+
+void StillRenderer::Impl::prepare(const RenderOptions& picture) {
+  checkPictureOptions(options.name, picture.memoryBudget.has_value());
+  PictureImages& images = stage.images();
+  if (const VkExtent2D extent{picture.width, picture.height}; !stage.hasSize(extent)) {
+    method->releaseTarget();
+    stage.setSize(extent);
+    encode.setSource(images.color().get());
+  }
+  stage.setView(picture.view);
+  MethodTarget target;
+  target.extent = images.extent();
+  target.color = images.color().get().view();
+  target.opaque = images.multisampled().view();
+  target.depth = images.sampledDepth();
+  target.stencil = images.sampledStencil();
+  target.memoryBudget = picture.memoryBudget;
+  target.surfaces = !stage.surfaces().scene().transparentDraws().empty();
+  method->setTarget(target);
+}
+
+// Draws a picture. False: the method has made room, and the picture must be drawn again.
+bool StillRenderer::Impl::draw(const Background& background, bool encoded) {
+  Frame frame(submitter, timers, stage.images(), stage.surfaces());
+  stage.drawOpaque(frame, background);
+  method->draw(frame);
+  stage.finishPicture(frame);
+  if (encoded) {
+    stage.images().cmdToEncode(frame.commands());
+    encode.cmdEncode(frame.commands());
+    frame.endPass("encode");
+  }
+  frame.finish();
+  return method->finish();
+}
+
+// Draws until the method has room for every fragment.
+FrameReport StillRenderer::Impl::drawUntilComplete(const RenderOptions& picture, bool encoded) {
+  prepare(picture);
+  const std::string device = stage.gpu().properties().deviceName;
+  for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
+    const bool complete = draw(picture.background, encoded);
+    const FrameStats stats = method->stats();
+    if (stats.fragmentsMissing == 0 && stats.cutPixels > 0) {
+      throw GpuError(
+          fmt::format("{} pixels have more surfaces, up to {}, than the driver of {} lets a shader sort: use a GPU",
+                      stats.cutPixels, stats.layersMax, device));
+    }
+    if (complete) return report(picture, stats);
+  }
+  throw GpuError(
+      fmt::format("{} counts the picture's fragments differently in each of {} frames", device, kMaxAttempts));
+}
+
+FrameReport StillRenderer::Impl::report(const RenderOptions& picture, const FrameStats& stats) {
+  FrameReport report;
+  static_cast<FrameStats&>(report) = stats;
+  report.device = stage.gpu().properties().deviceName;
+  report.api = "Vulkan 1.3";
+  report.method = options.name;
+  report.width = picture.width;
+  report.height = picture.height;
+  report.samples = options.samples;
+  if (!report.resolve.empty() && options.samples > 1) report.msaaResolve = nameOf(options.msaaResolve);
+  report.peakBytes = stage.gpu().peakMemory();
+  report.passesMs = timers.milliseconds();
+  for (const auto& [name, milliseconds] : report.passesMs) report.frameMs += milliseconds;
+  return report;
+}
+
+StillRenderer::StillRenderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order,
+                             const MethodOptions& method)
+    : impl_(std::make_unique<Impl>(gpu, scene, StageInfo{opacity, order, method.samples}, method)) {}
+
+StillRenderer::~StillRenderer() = default;
+
+RenderResult StillRenderer::render(const RenderOptions& options) {
+  RenderResult result;
+  result.report = impl_->drawUntilComplete(options, true);
+  result.picture.width = options.width;
+  result.picture.height = options.height;
+  result.picture.hasAlpha = options.background.kind == Background::Kind::Transparent;
+  result.picture.rgba = impl_->encode.pixels();
+  return result;
+}
+
+FrameReport StillRenderer::measure(const RenderOptions& options) { return impl_->drawUntilComplete(options, false); }
+
+} // namespace vitrail::tool

@@ -1,0 +1,48 @@
+// The names of the numbers that reports tell of a measured setting, each once, with its unit. JSON, CSV and the pages
+// use these: they are an interface and stay. docs/performance.md and docs/compare.md say more of each.
+#pragma once
+
+namespace vitrail::tool::names {
+
+// The setting.
+inline constexpr const char* kMethod = "method";
+inline constexpr const char* kNodes = "nodes";
+inline constexpr const char* kSamples = "samples"; // of a pixel
+inline constexpr const char* kResolve = "resolve";
+inline constexpr const char* kListBuild = "list_build";
+inline constexpr const char* kMaxLayers = "max_layers"; // --layers, where it was given
+inline constexpr const char* kPasses = "passes";        // --passes, where it was given
+
+// What a frame held.
+inline constexpr const char* kExact = "exact";
+inline constexpr const char* kFragments = "fragments"; // transparent ones that were asked for
+inline constexpr const char* kMissing = "missing";     // of them
+inline constexpr const char* kLayers = "layers";
+inline constexpr const char* kLayersMax = "layers_max"; // fragments of the deepest pixel
+inline constexpr const char* kTiles = "tiles";
+inline constexpr const char* kNodesBytes = "nodes_bytes";
+inline constexpr const char* kMemoryBytes = "memory_bytes"; // all that the method keeps on the device
+
+// What it cost: milliseconds of GPU time, medians where several frames were drawn.
+inline constexpr const char* kPassesMs = "passes_ms";
+inline constexpr const char* kCostMs = "cost_ms";         // all passes but the opaque one
+inline constexpr const char* kFrameMs = "frame_ms";       // all passes
+inline constexpr const char* kCostRatio = "cost_ratio";   // over that of unsorted in the same picture
+inline constexpr const char* kFrameRatio = "frame_ratio"; // so here
+
+// Where it was measured.
+inline constexpr const char* kDevice = "device";
+inline constexpr const char* kDriver = "driver";
+inline constexpr const char* kApi = "api";
+inline constexpr const char* kCpu = "cpu"; // whether the device is one: then only ratios mean anything
+
+// What was drawn.
+inline constexpr const char* kScene = "scene";
+inline constexpr const char* kCount = "count"; // --count
+inline constexpr const char* kSweep = "sweep";
+inline constexpr const char* kStep = "step"; // of the sweep: layers, triangles, pixels or samples
+inline constexpr const char* kWidth = "width";
+inline constexpr const char* kHeight = "height";
+inline constexpr const char* kTriangles = "triangles";
+
+} // namespace vitrail::tool::names

@@ -1,0 +1,361 @@
+// Checks the JSON of a glTF file: tables of the properties that the loader uses, and the walk that applies them.
+#include "check.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "../load.h"
+#include "../message.h"
+
+namespace vitrail::tool {
+namespace {
+
+using Json = nlohmann::json;
+
+enum class Kind {
+  Boolean,
+  Text,
+  Number,    // fits a 32-bit float
+  Numbers,   // an array of those, `length` long (0: any length)
+  Integer,   // 0 to 2^31 - 1
+  Size,      // 0 to 2^53: a byte offset, length or count
+  Index,     // into the top-level array `target`
+  Indices,   // an array of those
+  IndexMap,  // an object of those
+  IndexMaps, // an array of such objects
+  Object,    // with `fields`
+  Objects    // an array of such objects
+};
+
+struct Field {
+  std::string_view name;
+  Kind kind;
+  bool required = false;
+  std::string_view target{};
+  std::size_t length = 0;
+  std::span<const Field> fields{};
+};
+
+constexpr Field index(std::string_view name, std::string_view target, Kind kind = Kind::Index) {
+  return {name, kind, false, target, 0, {}};
+}
+
+constexpr Field numbers(std::string_view name, std::size_t length = 0) {
+  return {name, Kind::Numbers, false, {}, length, {}};
+}
+
+constexpr Field object(std::string_view name, std::span<const Field> fields, Kind kind = Kind::Object) {
+  return {name, kind, false, {}, 0, fields};
+}
+
+constexpr Field required(Field field) {
+  field.required = true;
+  return field;
+}
+
+constexpr Field nameField{"name", Kind::Text};
+
+constexpr std::array assetFields{required({"version", Kind::Text}), Field{"minVersion", Kind::Text}};
+
+constexpr std::array sparseIndicesFields{required(index("bufferView", "bufferViews")),
+                                         Field{"byteOffset", Kind::Integer},
+                                         required({"componentType", Kind::Integer})};
+constexpr std::array sparseValuesFields{required(index("bufferView", "bufferViews")),
+                                        Field{"byteOffset", Kind::Integer}};
+constexpr std::array sparseFields{required({"count", Kind::Integer}), required(object("indices", sparseIndicesFields)),
+                                  required(object("values", sparseValuesFields))};
+constexpr std::array accessorFields{nameField,
+                                    index("bufferView", "bufferViews"),
+                                    Field{"byteOffset", Kind::Size},
+                                    required({"componentType", Kind::Integer}),
+                                    Field{"normalized", Kind::Boolean},
+                                    required({"count", Kind::Size}),
+                                    required({"type", Kind::Text}),
+                                    object("sparse", sparseFields)};
+
+constexpr std::array bufferFields{nameField, required({"byteLength", Kind::Size}), Field{"uri", Kind::Text}};
+constexpr std::array bufferViewFields{nameField, required(index("buffer", "buffers")), Field{"byteOffset", Kind::Size},
+                                      required({"byteLength", Kind::Size}), Field{"byteStride", Kind::Size}};
+
+constexpr std::array perspectiveFields{required({"yfov", Kind::Number}), required({"znear", Kind::Number}),
+                                       Field{"zfar", Kind::Number}};
+constexpr std::array orthographicFields{required({"xmag", Kind::Number}), required({"ymag", Kind::Number}),
+                                        required({"znear", Kind::Number}), required({"zfar", Kind::Number})};
+constexpr std::array cameraFields{nameField, required({"type", Kind::Text}), object("perspective", perspectiveFields),
+                                  object("orthographic", orthographicFields)};
+
+constexpr std::array imageFields{nameField, Field{"uri", Kind::Text}, Field{"mimeType", Kind::Text},
+                                 index("bufferView", "bufferViews")};
+constexpr std::array samplerFields{nameField, Field{"magFilter", Kind::Integer}, Field{"minFilter", Kind::Integer},
+                                   Field{"wrapS", Kind::Integer}, Field{"wrapT", Kind::Integer}};
+constexpr std::array textureFields{nameField, index("sampler", "samplers"), index("source", "images")};
+
+constexpr std::array textureTransformFields{numbers("offset", 2), Field{"rotation", Kind::Number}, numbers("scale", 2),
+                                            Field{"texCoord", Kind::Integer}};
+constexpr std::array textureExtensionFields{object("KHR_texture_transform", textureTransformFields)};
+constexpr std::array textureInfoFields{required(index("index", "textures")), Field{"texCoord", Kind::Integer},
+                                       Field{"scale", Kind::Number}, Field{"strength", Kind::Number},
+                                       object("extensions", textureExtensionFields)};
+constexpr std::array pbrFields{numbers("baseColorFactor", 4), object("baseColorTexture", textureInfoFields),
+                               Field{"metallicFactor", Kind::Number}, Field{"roughnessFactor", Kind::Number},
+                               object("metallicRoughnessTexture", textureInfoFields)};
+constexpr std::array emissiveStrengthFields{Field{"emissiveStrength", Kind::Number}};
+constexpr std::array transmissionFields{Field{"transmissionFactor", Kind::Number},
+                                        object("transmissionTexture", textureInfoFields)};
+constexpr std::array materialExtensionFields{object("KHR_materials_unlit", {}),
+                                             object("KHR_materials_emissive_strength", emissiveStrengthFields),
+                                             object("KHR_materials_transmission", transmissionFields)};
+constexpr std::array materialFields{nameField,
+                                    object("pbrMetallicRoughness", pbrFields),
+                                    object("normalTexture", textureInfoFields),
+                                    object("occlusionTexture", textureInfoFields),
+                                    object("emissiveTexture", textureInfoFields),
+                                    numbers("emissiveFactor", 3),
+                                    Field{"alphaMode", Kind::Text},
+                                    Field{"alphaCutoff", Kind::Number},
+                                    Field{"doubleSided", Kind::Boolean},
+                                    object("extensions", materialExtensionFields)};
+
+constexpr std::array primitiveFields{required(index("attributes", "accessors", Kind::IndexMap)),
+                                     index("indices", "accessors"), index("material", "materials"),
+                                     Field{"mode", Kind::Integer}, index("targets", "accessors", Kind::IndexMaps)};
+constexpr std::array meshFields{nameField, required(object("primitives", primitiveFields, Kind::Objects)),
+                                numbers("weights")};
+
+constexpr std::array nodeFields{nameField,
+                                index("mesh", "meshes"),
+                                index("skin", "skins"),
+                                index("camera", "cameras"),
+                                index("children", "nodes", Kind::Indices),
+                                numbers("matrix", 16),
+                                numbers("translation", 3),
+                                numbers("rotation", 4),
+                                numbers("scale", 3),
+                                numbers("weights")};
+constexpr std::array sceneFields{nameField, index("nodes", "nodes", Kind::Indices)};
+constexpr std::array skinFields{nameField, required(index("joints", "nodes", Kind::Indices)),
+                                index("inverseBindMatrices", "accessors"), index("skeleton", "nodes")};
+
+struct Section {
+  std::string_view array;    // the top-level array
+  std::string_view singular; // what one of its objects is called in messages
+  std::span<const Field> fields;
+};
+
+constexpr std::array<Section, 12> sections{{{"accessors", "accessor", accessorFields},
+                                            {"buffers", "buffer", bufferFields},
+                                            {"bufferViews", "buffer view", bufferViewFields},
+                                            {"cameras", "camera", cameraFields},
+                                            {"images", "image", imageFields},
+                                            {"materials", "material", materialFields},
+                                            {"meshes", "mesh", meshFields},
+                                            {"nodes", "node", nodeFields},
+                                            {"samplers", "sampler", samplerFields},
+                                            {"scenes", "scene", sceneFields},
+                                            {"skins", "skin", skinFields},
+                                            {"textures", "texture", textureFields}}};
+
+constexpr std::array<std::string_view, 5> implementedExtensions{"KHR_materials_emissive_strength",
+                                                                "KHR_materials_transmission", "KHR_materials_unlit",
+                                                                "KHR_mesh_quantization", "KHR_texture_transform"};
+
+// Applies the tables to one document. `where` names the object that is looked at, `path` the property inside it.
+class Checker {
+ public:
+  explicit Checker(const Json& document) : document_(document) {}
+
+  void fields(const Json& value, std::span<const Field> fields, const std::string& where, const std::string& path) {
+    if (!value.is_object()) fail(where, path, "is not a JSON object");
+    for (const Field& field : fields) {
+      const std::string inner = path.empty() ? std::string(field.name) : fmt::format("{}.{}", path, field.name);
+      const auto member = value.find(field.name);
+      if (member != value.end())
+        check(*member, field, where, inner);
+      else if (field.required)
+        fail(where, inner, "is missing");
+    }
+  }
+
+  void index(const Json& value, std::string_view target, const std::string& where, const std::string& path) {
+    const std::uint64_t number = unsignedNumber(value, std::numeric_limits<std::int32_t>::max(), where, path);
+    const auto array = document_.find(target);
+    const std::size_t size = array != document_.end() && array->is_array() ? array->size() : 0;
+    if (number >= size)
+      fail(where, path, fmt::format("is {}, but {} has {} element{}", number, target, size, size == 1 ? "" : "s"));
+  }
+
+  [[noreturn]] static void fail(const std::string& where, const std::string& path, std::string_view problem) {
+    const std::string object = where.empty() ? "" : where + ": ";
+    throw LoadError(path.empty() ? fmt::format("{} {}", where, problem)
+                                 : fmt::format("{}{} {}", object, oneLine(path), problem));
+  }
+
+ private:
+  void check(const Json& value, const Field& field, const std::string& where, const std::string& path) {
+    switch (field.kind) {
+      case Kind::Boolean:
+        if (!value.is_boolean()) fail(where, path, "is neither true nor false");
+        break;
+      case Kind::Text:
+        if (!value.is_string()) fail(where, path, "is not a string");
+        break;
+      case Kind::Number:
+        number(value, where, path);
+        break;
+      case Kind::Numbers:
+        checkNumbers(value, field.length, where, path);
+        break;
+      case Kind::Integer:
+        unsignedNumber(value, std::numeric_limits<std::int32_t>::max(), where, path);
+        break;
+      case Kind::Size:
+        unsignedNumber(value, std::uint64_t{1} << 53U, where, path);
+        break;
+      case Kind::Index:
+        index(value, field.target, where, path);
+        break;
+      case Kind::IndexMap:
+        checkIndexMap(value, field.target, where, path);
+        break;
+      case Kind::Object:
+        fields(value, field.fields, where, path);
+        break;
+      case Kind::Indices:
+      case Kind::IndexMaps:
+      case Kind::Objects:
+        checkElements(value, field, where, path);
+        break;
+    }
+  }
+
+  void checkNumbers(const Json& value, std::size_t length, const std::string& where, const std::string& path) {
+    if (!value.is_array()) fail(where, path, "is not an array");
+    if (length != 0 && value.size() != length)
+      fail(where, path, fmt::format("has {} numbers where {} belong", value.size(), length));
+    for (std::size_t i = 0; i < value.size(); ++i) number(value[i], where, fmt::format("{}[{}]", path, i));
+  }
+
+  void checkIndexMap(const Json& value, std::string_view target, const std::string& where, const std::string& path) {
+    if (!value.is_object()) fail(where, path, "is not a JSON object");
+    for (const auto& [key, entry] : value.items()) index(entry, target, where, fmt::format("{}.{}", path, key));
+  }
+
+  void checkElements(const Json& value, const Field& field, const std::string& where, const std::string& path) {
+    if (!value.is_array()) fail(where, path, "is not an array");
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const std::string inner = fmt::format("{}[{}]", path, i);
+      if (field.kind == Kind::Indices)
+        index(value[i], field.target, where, inner);
+      else if (field.kind == Kind::IndexMaps)
+        checkIndexMap(value[i], field.target, where, inner);
+      else
+        fields(value[i], field.fields, where, inner);
+    }
+  }
+
+  static void number(const Json& value, const std::string& where, const std::string& path) {
+    if (!value.is_number()) fail(where, path, "is not a number");
+    const double number = value.get<double>();
+    // Written so that a NaN fails too.
+    if (!(number >= std::numeric_limits<float>::lowest() && number <= std::numeric_limits<float>::max()))
+      fail(where, path, fmt::format("is {}, which a 32-bit float cannot hold", number));
+  }
+
+  static std::uint64_t unsignedNumber(const Json& value, std::uint64_t largest, const std::string& where,
+                                      const std::string& path) {
+    if (!value.is_number()) fail(where, path, "is not a number");
+    if (value.is_number_float()) fail(where, path, fmt::format("is {}, not a whole number", value.get<double>()));
+    if (!value.is_number_unsigned()) fail(where, path, fmt::format("is {}, below zero", value.get<std::int64_t>()));
+    const auto number = value.get<std::uint64_t>();
+    if (number > largest) fail(where, path, fmt::format("is {}, more than {}", number, largest));
+    return number;
+  }
+
+  const Json& document_;
+};
+
+void checkAsset(Checker& checker, const Json& document) {
+  const auto asset = document.find("asset");
+  if (asset == document.end()) throw LoadError("the JSON has no asset, so it is not glTF");
+  checker.fields(*asset, assetFields, "asset", "");
+  const auto version = asset->at("version").get<std::string>();
+  if (!version.starts_with("2."))
+    throw LoadError(fmt::format("it is glTF {}, but only glTF 2.0 can be read", oneLine(version)));
+  const auto minVersion = asset->find("minVersion");
+  if (minVersion != asset->end() && minVersion->get<std::string>() != "2.0")
+    throw LoadError(fmt::format("it asks for glTF {} or later, but only glTF 2.0 can be read",
+                                oneLine(minVersion->get<std::string>())));
+}
+
+void checkRequiredExtensions(const Json& document) {
+  const auto extensions = document.find("extensionsRequired");
+  if (extensions == document.end()) return;
+  if (!extensions->is_array()) throw LoadError("extensionsRequired is not an array");
+  for (const Json& extension : *extensions) {
+    if (!extension.is_string()) throw LoadError("extensionsRequired holds something else than a string");
+    const auto name = extension.get<std::string>();
+    if (std::ranges::find(implementedExtensions, name) == implementedExtensions.end())
+      throw LoadError(fmt::format("it requires the extension {}, which Vitrail does not implement", oneLine(name)));
+  }
+}
+
+// What the tables cannot say.
+void checkChoices(const Json& value, std::string_view section, const std::string& where) {
+  if (section == "accessors") {
+    constexpr std::array<std::string_view, 7> types{"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
+    constexpr std::array<int, 6> components{5120, 5121, 5122, 5123, 5125, 5126};
+    if (std::ranges::find(types, value.at("type").get<std::string>()) == types.end())
+      throw LoadError(
+          fmt::format("{}: type is \"{}\", not an accessor type", where, oneLine(value.at("type").get<std::string>())));
+    if (std::ranges::find(components, value.at("componentType").get<int>()) == components.end())
+      throw LoadError(
+          fmt::format("{}: componentType is {}, not a component type", where, value.at("componentType").get<int>()));
+  } else if (section == "bufferViews" && value.contains("byteStride")) {
+    const auto stride = value.at("byteStride").get<std::uint64_t>();
+    if (stride > 252 || stride % 4 != 0)
+      throw LoadError(fmt::format("{}: byteStride is {}, not a multiple of 4 up to 252", where, stride));
+  } else if (section == "cameras") {
+    const auto type = value.at("type").get<std::string>();
+    if (type != "perspective" && type != "orthographic")
+      throw LoadError(fmt::format("{}: type is \"{}\", neither perspective nor orthographic", where, oneLine(type)));
+    if (!value.contains(type)) throw LoadError(fmt::format("{}: {} is missing", where, type));
+  } else if (section == "images" && value.contains("uri") == value.contains("bufferView")) {
+    throw LoadError(fmt::format("{}: has {} of uri and bufferView", where, value.contains("uri") ? "both" : "neither"));
+  }
+}
+
+void checkSection(Checker& checker, const Json& document, const Section& section) {
+  const auto array = document.find(section.array);
+  if (array == document.end()) return;
+  if (!array->is_array()) throw LoadError(fmt::format("{} is not an array", section.array));
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const Json& value = (*array)[i];
+    const auto name = value.is_object() ? value.find("name") : value.end();
+    const bool named = name != value.end() && name->is_string();
+    const std::string where = objectName(section.singular, i, named ? name->get<std::string>() : std::string{});
+    checker.fields(value, section.fields, where, "");
+    checkChoices(value, section.array, where);
+  }
+}
+
+} // namespace
+
+void checkGltfJson(const nlohmann::json& document) {
+  if (!document.is_object()) throw LoadError("the JSON is not an object, so it is not glTF");
+  Checker checker(document);
+  checkAsset(checker, document);
+  checkRequiredExtensions(document);
+  for (const Section& section : sections) checkSection(checker, document, section);
+  const auto scene = document.find("scene");
+  if (scene != document.end()) checker.index(*scene, "scenes", "", "scene");
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,106 @@
+// Poses a skinned mesh (glTF 2.0, section 3.7.3).
+#include "skin.h"
+
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "../load.h"
+#include "../message.h"
+#include "accessor.h"
+
+namespace vitrail::tool {
+namespace {
+
+std::vector<glm::dmat4> jointMatrices(const GltfDocument& document, std::span<const glm::dmat4> nodes,
+                                      std::size_t index) {
+  const tinygltf::Skin& skin = document.model.skins[index];
+  std::vector<glm::mat4> inverseBinds;
+  if (skin.inverseBindMatrices >= 0) {
+    inverseBinds = readMatrices(document, static_cast<std::size_t>(skin.inverseBindMatrices), "inverseBindMatrices");
+    if (inverseBinds.size() < skin.joints.size())
+      throw LoadError(fmt::format("{}: has {} joints, but {} inverse bind matrices",
+                                  objectName("skin", index, skin.name), skin.joints.size(), inverseBinds.size()));
+  }
+  std::vector<glm::dmat4> matrices;
+  for (std::size_t i = 0; i < skin.joints.size(); ++i) {
+    const glm::dmat4& joint = nodes[static_cast<std::size_t>(skin.joints[i])];
+    matrices.push_back(inverseBinds.empty() ? joint : joint * glm::dmat4(inverseBinds[i]));
+  }
+  return matrices;
+}
+
+// One set of influences, JOINTS_n and WEIGHTS_n.
+struct InfluenceSet {
+  std::vector<glm::uvec4> joints;
+  std::vector<glm::vec4> weights;
+};
+
+std::vector<InfluenceSet> readInfluences(const GltfDocument& document, const tinygltf::Primitive& primitive,
+                                         const std::string& where, std::size_t vertexCount) {
+  std::vector<InfluenceSet> sets;
+  for (int set = 0; set < 2; ++set) {
+    const std::string jointsName = fmt::format("JOINTS_{}", set);
+    const std::string weightsName = fmt::format("WEIGHTS_{}", set);
+    const auto joints = primitive.attributes.find(jointsName);
+    const auto weights = primitive.attributes.find(weightsName);
+    if (joints == primitive.attributes.end() || weights == primitive.attributes.end()) continue;
+    InfluenceSet influences{readJoints(document, static_cast<std::size_t>(joints->second), jointsName),
+                            readVectors(document, static_cast<std::size_t>(weights->second), 4, 4, weightsName)};
+    if (influences.joints.size() != vertexCount || influences.weights.size() != vertexCount)
+      throw LoadError(fmt::format("{}: has {} positions, but {} {} and {} {}", where, vertexCount,
+                                  influences.joints.size(), jointsName, influences.weights.size(), weightsName));
+    sets.push_back(std::move(influences));
+  }
+  return sets;
+}
+
+// The weighted mean of the joint matrices of one vertex; identity where no joint has a weight.
+glm::dmat4 blendedMatrix(std::span<const InfluenceSet> sets, std::span<const glm::dmat4> joints, std::size_t vertex,
+                         const std::string& where) {
+  glm::dmat4 sum(0.0);
+  double total = 0.0;
+  for (const InfluenceSet& set : sets)
+    for (int i = 0; i < 4; ++i) {
+      const auto weight = static_cast<double>(set.weights[vertex][i]);
+      // A joint that weighs nothing may be any number. So may a weight that is not a number: it weighs nothing.
+      if (!(weight > 0.0)) continue;
+      const std::uint32_t joint = set.joints[vertex][i];
+      if (joint >= joints.size())
+        throw LoadError(fmt::format("{}: vertex {} follows joint {}, but the skin has {} joints", where, vertex, joint,
+                                    joints.size()));
+      sum += joints[joint] * weight;
+      total += weight;
+    }
+  return total > 0.0 ? sum / total : glm::dmat4(1.0);
+}
+
+// The matrix that carries area vectors, and so the normals of any surface, even where `m` has no inverse.
+glm::dmat3 cofactors(const glm::dmat3& m) {
+  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+} // namespace
+
+void applySkin(const GltfDocument& document, std::span<const glm::dmat4> nodes, std::size_t skin,
+               const tinygltf::Primitive& primitive, const std::string& where, Mesh& mesh) {
+  const std::vector<glm::dmat4> joints = jointMatrices(document, nodes, skin);
+  const std::vector<InfluenceSet> sets = readInfluences(document, primitive, where, mesh.vertices.size());
+  std::vector<bool> mirrored(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    Vertex& vertex = mesh.vertices[i];
+    const glm::dmat4 matrix = blendedMatrix(sets, joints, i, where);
+    const glm::dmat3 linear(matrix);
+    const double sign = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+    mirrored[i] = sign < 0.0;
+    vertex.position = glm::vec3(matrix * glm::dvec4(vertex.position, 1.0));
+    vertex.normal = glm::vec3(glm::normalize(cofactors(linear) * glm::dvec3(vertex.normal)) * sign);
+    vertex.tangent = glm::vec4(glm::vec3(glm::normalize(linear * glm::dvec3(vertex.tangent))),
+                               vertex.tangent.w * static_cast<float>(sign));
+  }
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    if (mirrored[mesh.indices[i]]) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+}
+
+} // namespace vitrail::tool

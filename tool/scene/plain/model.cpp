@@ -1,0 +1,84 @@
+// What the readers of OBJ, PLY and STL share.
+#include "model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "../image_decode.h"
+#include "../load.h"
+#include "../mesh_build.h"
+#include "../read_file.h"
+
+namespace vitrail::tool {
+namespace {
+
+bool isTranslucent(const Mesh& mesh) {
+  return std::ranges::any_of(mesh.vertices, [](const Vertex& vertex) { return vertex.color.a < 1.0F; });
+}
+
+bool isTranslucent(const Image& image) {
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+    if (image.rgba[i] != 255) return true;
+  return false;
+}
+
+} // namespace
+
+Material plainMaterial(bool colored) {
+  Material material;
+  material.doubleSided = true;
+  material.metallic = 0.0F;
+  material.roughness = 0.5F;
+  if (!colored) material.baseColor = glm::vec4(0.8F, 0.8F, 0.8F, 1.0F);
+  return material;
+}
+
+void addPlainMesh(Scene& scene, Mesh mesh, NormalsFrom normals, Material material) {
+  constexpr float crease = 0.7853982F;
+  dropDegenerateTriangles(mesh);
+  dropUnusedVertices(mesh);
+  if (mesh.indices.empty()) return;
+  switch (normals) {
+    case NormalsFrom::File:
+      repairNormals(mesh);
+      turnTrianglesToNormals(mesh);
+      break;
+    case NormalsFrom::SharedCorners:
+      makeSmoothNormals(mesh);
+      break;
+    case NormalsFrom::Places:
+      makeCreasedNormals(mesh, crease);
+      break;
+  }
+  const std::int32_t image = material.baseColorTexture.image;
+  if (material.baseColor.a < 1.0F || isTranslucent(mesh) ||
+      (image >= 0 && isTranslucent(scene.images[static_cast<std::size_t>(image)])))
+    material.alphaMode = AlphaMode::Blend;
+  scene.draws.push_back({static_cast<std::uint32_t>(scene.meshes.size()),
+                         static_cast<std::uint32_t>(scene.materials.size()), glm::mat4(1.0F)});
+  scene.meshes.push_back(std::move(mesh));
+  scene.materials.push_back(std::move(material));
+}
+
+TextureSlot TextureFiles::read(Scene& scene, std::string name) {
+  std::ranges::replace(name, '\\', '/');
+  TextureSlot slot;
+  const auto known = images_.find(name);
+  if (known != images_.end()) {
+    slot.image = known->second;
+    return slot;
+  }
+  try {
+    Image image = decodeImage(readFileBeside(name, base_));
+    slot.image = static_cast<std::int32_t>(scene.images.size());
+    scene.images.push_back(std::move(image));
+  } catch (const LoadError&) {
+    slot.image = -1;
+  }
+  images_.emplace(std::move(name), slot.image);
+  return slot;
+}
+
+} // namespace vitrail::tool

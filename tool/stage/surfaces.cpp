@@ -1,0 +1,116 @@
+#include "surfaces.h"
+
+#include <array>
+#include <cstddef>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "shaders/surface.vert.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+constexpr std::array<VkVertexInputAttributeDescription, 6> kVertexAttributes{{
+    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
+    {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
+    {2, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
+    {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texCoord0)},
+    {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texCoord1)},
+    {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, color)},
+}};
+
+Unique<VkPipelineLayout> makeLayout(const Surfaces& surfaces, const SurfaceProgram& program) {
+  std::vector<VkDescriptorSetLayout> sets{surfaces.frameLayout(), surfaces.scene().textureLayout()};
+  if (program.set != VK_NULL_HANDLE) sets.push_back(program.set);
+  return makePipelineLayout(surfaces.gpu(), sets, {VK_SHADER_STAGE_FRAGMENT_BIT, program.constantBytes}, program.name);
+}
+
+} // namespace
+
+SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const GpuDraw> draws,
+                                   const SurfaceProgram& program, const Describe& describe)
+    : layout_(makeLayout(surfaces, program)) {
+  for (const GpuDraw& draw : draws) {
+    if (pipelines_.contains(draw.features)) continue;
+    GraphicsPipelineInfo info;
+    info.vertexShader = shaders::surface_vert;
+    info.vertices = {sizeof(Vertex), kVertexAttributes};
+    info.depthTest = VK_COMPARE_OP_GREATER;
+    describe(draw.features, info);
+    info.layout = layout_.get();
+    info.constants.emplace_back(0, draw.features);
+    info.name = fmt::format("{} (features {:#x})", program.name, draw.features);
+    pipelines_.emplace(draw.features, makeGraphicsPipeline(surfaces.gpu(), info));
+  }
+}
+
+Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order)
+    : gpu_(gpu),
+      scene_(gpu, scene, opacity, order),
+      transparentRuns_(runsOf(scene_.transparentDraws())),
+      viewBuffer_(gpu, sizeof(shaders::FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::Upload,
+                  "frame data"),
+      frameSet_(
+          gpu,
+          {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT},
+           {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT},
+           {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT}},
+          "frame") {
+  frameSet_.writeBuffer(0, viewBuffer_.get(), viewBuffer_.size());
+  frameSet_.writeBuffer(1, scene_.drawData().get(), sizeof(shaders::DrawData));
+  frameSet_.writeBuffer(2, scene_.materials().get(), sizeof(shaders::MaterialData));
+}
+
+std::vector<SurfaceRun> Surfaces::runsOf(std::span<const GpuDraw> draws) {
+  std::vector<SurfaceRun> runs;
+  runs.reserve(draws.size());
+  for (std::uint32_t i = 0; i < draws.size(); ++i) runs.push_back({i, draws[i].firstIndex, draws[i].indexCount});
+  return runs;
+}
+
+void Surfaces::setView(const shaders::FrameData& view) {
+  view_ = view;
+  std::memcpy(viewBuffer_.mapped(), &view, sizeof(view));
+}
+
+void Surfaces::cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout) const {
+  const VkDescriptorSet set = frameSet_.set();
+  const std::array<std::uint32_t, 2> offsets{}; // of no draw
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set, 2, offsets.data());
+}
+
+// Runs of one draw that follow each other bind nothing anew.
+void Surfaces::cmdDraw(VkCommandBuffer commands, std::span<const GpuDraw> draws, std::span<const SurfaceRun> runs,
+                       const SurfacePipelines& pipelines, VkDescriptorSet set, VkBuffer indices) const {
+  if (runs.empty()) return;
+  const VkPipelineLayout layout = pipelines.layout();
+  if (set != VK_NULL_HANDLE) {
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1, &set, 0, nullptr);
+  }
+  const VkBuffer vertices = scene_.vertices().get();
+  const VkDeviceSize offset = 0;
+  vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &offset);
+  vkCmdBindIndexBuffer(commands, indices != VK_NULL_HANDLE ? indices : scene_.indices().get(), 0, VK_INDEX_TYPE_UINT32);
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  const GpuDraw* bound = nullptr;
+  for (const SurfaceRun& run : runs) {
+    const GpuDraw& draw = draws[run.draw];
+    if (VkPipeline wanted = pipelines.get(draw.features); wanted != pipeline) {
+      pipeline = wanted;
+      vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    }
+    if (&draw != bound) {
+      const std::array<VkDescriptorSet, 2> sets{frameSet_.set(), draw.textures};
+      const std::array<std::uint32_t, 2> offsets{draw.dataOffset, draw.materialOffset};
+      vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 2, sets.data(), 2, offsets.data());
+      if (bound == nullptr || bound->frontFace != draw.frontFace) vkCmdSetFrontFace(commands, draw.frontFace);
+      if (bound == nullptr || bound->cullMode != draw.cullMode) vkCmdSetCullMode(commands, draw.cullMode);
+      bound = &draw;
+    }
+    vkCmdDrawIndexed(commands, run.indexCount, 1, run.firstIndex, draw.vertexOffset, 0);
+  }
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,90 @@
+// The surfaces of a scene as pipelines draw them, and the view that they are seen with: descriptor sets 0 and 1 of
+// surface.vert and surface.glsl.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "../gpu/descriptors.h"
+#include "../gpu/pipeline.h"
+#include "gpu_scene.h"
+#include "surface_shared.h"
+
+namespace vitrail::tool {
+
+class Surfaces;
+
+// The fragment shader of surfaces, and what it writes. Sets 0 and 1 are those of surface.glsl, and constant 0
+// is the features; the rest is the method's.
+struct SurfaceProgram {
+  VkDescriptorSetLayout set = VK_NULL_HANDLE; // set 2; null: there is none
+  std::uint32_t constantBytes = 0;            // push constants of the fragment shader
+  std::string name;
+};
+
+// Pipelines that surfaces are drawn with, one for each set of features (surface_shared.h) that some draws have.
+class SurfacePipelines {
+ public:
+  // Fills in what draws with some features are drawn with: of `info`, which has the vertex shader and passes fragments
+  // in front of the opaque scene, all but layout and constant 0 may be changed.
+  using Describe = std::function<void(std::uint32_t features, GraphicsPipelineInfo& info)>;
+
+  // Makes them all. Throws GpuError.
+  SurfacePipelines(const Surfaces& surfaces, std::span<const GpuDraw> draws, const SurfaceProgram& program,
+                   const Describe& describe);
+
+  VkPipelineLayout layout() const { return layout_.get(); }
+  VkPipeline get(std::uint32_t features) const { return pipelines_.at(features).get(); }
+
+ private:
+  Unique<VkPipelineLayout> layout_;
+  std::map<std::uint32_t, Unique<VkPipeline>> pipelines_;
+};
+
+// A part of a draw: indices of it that are drawn together.
+struct SurfaceRun {
+  std::uint32_t draw = 0; // index into GpuScene's opaque or transparent draws
+  std::uint32_t firstIndex = 0;
+  std::uint32_t indexCount = 0;
+};
+
+class Surfaces {
+ public:
+  // With `opacity` every material is transparent. `order` is that of the transparent draws. Throws GpuError.
+  Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order);
+
+  Gpu& gpu() const { return gpu_; }
+  const GpuScene& scene() const { return scene_; }
+  // What draws all of a list of draws, in its order.
+  static std::vector<SurfaceRun> runsOf(std::span<const GpuDraw> draws);
+  const std::vector<SurfaceRun>& transparentRuns() const { return transparentRuns_; }
+
+  // No frame is pending.
+  void setView(const shaders::FrameData& view);
+  const shaders::FrameData& view() const { return view_; }
+
+  VkDescriptorSetLayout frameLayout() const { return frameSet_.layout(); } // set 0
+  // Binds set 0 for shaders that read the view alone.
+  void cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout) const;
+
+  // Draws runs of `draws` in their order in the present rendering scope. `set` is set 2 of the pipelines, null where
+  // they have none. `indices` null: the scene's own.
+  void cmdDraw(VkCommandBuffer commands, std::span<const GpuDraw> draws, std::span<const SurfaceRun> runs,
+               const SurfacePipelines& pipelines, VkDescriptorSet set = VK_NULL_HANDLE,
+               VkBuffer indices = VK_NULL_HANDLE) const;
+
+ private:
+  Gpu& gpu_;
+  GpuScene scene_;
+  std::vector<SurfaceRun> transparentRuns_;
+  shaders::FrameData view_{};
+  GpuBuffer viewBuffer_; // shaders::FrameData
+  SingleSet frameSet_;
+};
+
+} // namespace vitrail::tool
