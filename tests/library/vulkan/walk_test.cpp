@@ -236,7 +236,9 @@ class WalkTest : public VulkanTest {};
 TEST_F(WalkTest, ListsAreWalkedAndCopiedInOrder) {
   for (const std::uint32_t samples : sampleCounts(backend().features())) {
     for (const VitrailNodeFormat nodes : nodeFormats(samples)) {
-      for (const Way& way : everyWay(backend().features(), samples)) {
+      std::vector<Way> ways = everyWay(backend().features(), samples);
+      if (nodes != VITRAIL_NODE_STANDARD) ways.resize(2);
+      for (const Way& way : ways) {
         SCOPED_TRACE(way.name + ", format " + std::to_string(nodes) + ", samples " + std::to_string(samples));
         HostDesc desc;
         apply(way, desc);
