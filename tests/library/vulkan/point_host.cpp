@@ -34,6 +34,24 @@ bool perPixel(const HostDesc& desc) {
   return severalSamples(desc) && desc.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_PIXEL;
 }
 
+// What the library copied out.
+void decodeCopy(const Buffer& copy, std::uint32_t pixels, ListsRead& read) {
+  const auto* bytes = static_cast<const std::byte*>(copy.mapped());
+  VitrailVkCopyHeader header{};
+  std::memcpy(&header, bytes, sizeof(header));
+  read.layers = header.layers;
+  std::vector<VitrailVkCopiedList> lists(pixels);
+  std::memcpy(lists.data(), bytes + sizeof(header), pixels * sizeof(VitrailVkCopiedList));
+  const std::byte* layers = bytes + sizeof(header) + pixels * sizeof(VitrailVkCopiedList);
+  for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+    const VitrailVkCopiedList& list = lists[pixel];
+    if (list.count == 0) read.pixels[pixel].emplace();
+    if (list.count == 0 || list.first == 0xffffffffU) continue;
+    std::vector<VitrailLayer>& copied = read.pixels[pixel].emplace(list.count);
+    std::memcpy(copied.data(), layers + list.first * sizeof(VitrailLayer), list.count * sizeof(VitrailLayer));
+  }
+}
+
 } // namespace
 
 VulkanHost::VulkanHost(VulkanBackend& backend, const HostDesc& desc, const VulkanOptions& options)
@@ -123,9 +141,9 @@ void VulkanHost::guard(VitrailVkTargetDesc& desc) {
   parts.areaPixels = desc.extent.width * desc.extent.height;
   parts.nodeCapacity = desc.nodeCapacity;
   parts.format = desc.nodeFormat;
+  parts.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
   parts.userWords = desc_.userWords;
   parts.copyLayers = desc_.copyLayers;
-  parts.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
   parts.alignment = needs.alignment;
   storage_ = layoutStorage(parts);
   desc.buffer = memory_.get();
@@ -143,7 +161,7 @@ PointPipelines& VulkanHost::pipelinesFor(VitrailVkTargetDesc target, bool specia
   info.nearestIsOne = desc_.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
   info.postDepthCoverage = postDepthCoverage_;
   info.addresses = desc_.shaderByAddress.value_or(desc_.addresses);
-  info.narrowShader = desc_.narrowShader;
+  info.shader = desc_.shader;
   if (specialized) {
     target.nodeFormat = desc_.specializedFor.value_or(target.nodeFormat);
     target.overflow = desc_.specializedForOverflow.value_or(target.overflow);
@@ -242,35 +260,8 @@ void VulkanHost::recordFrame(VkCommandBuffer commands, std::uint64_t frame, Poin
   recordBegin(commands, frame, area);
   if (!vertices.points.empty()) recordPoints(commands, images, vertices);
   recordCollected(commands);
-  if (desc_.copyLayers > 0) recordCopy(commands, area);
   recordResolve(commands, images, static_cast<std::uint64_t>(&images - images_.data()));
   recordEnd(commands);
-}
-
-void VulkanHost::recordCopy(VkCommandBuffer commands, const VkRect2D& area) {
-  copy_ = Buffer(device_, target_.copySize(area.extent.width, area.extent.height), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                 Memory::Host);
-  VitrailVkCopyInfo info{};
-  info.area = area;
-  info.buffer = copy_.get();
-  target_.copyLists(commands, info);
-  // Writer: the copy. Reader: the host.
-  cmdBarrier(commands, kCopyWrite, kHostAccess);
-}
-
-CopiedLists VulkanHost::copied() const {
-  CopiedLists copied;
-  const auto* bytes = static_cast<const std::byte*>(copy_.mapped());
-  const auto read = [&](void* to, std::size_t size) {
-    std::memcpy(to, bytes, size);
-    bytes += size;
-  };
-  read(&copied.header, sizeof(copied.header));
-  copied.lists.resize(std::size_t{copied.header.width} * copied.header.height);
-  read(copied.lists.data(), copied.lists.size() * sizeof(copied.lists[0]));
-  copied.layers.resize(copied.header.capacity);
-  read(copied.layers.data(), copied.layers.size() * sizeof(copied.layers[0]));
-  return copied;
 }
 
 PointResult VulkanHost::read(const PointImages& images, std::uint64_t frame) const {
@@ -437,6 +428,62 @@ PointResult VulkanHost::drawScattered(std::span<const Point> points) {
     images.cmdPicture(commands);
   });
   return read(images, frame);
+}
+
+// By the walker where there is one, else by the library's copy.
+void VulkanHost::recordRead(VkCommandBuffer commands, const VitrailRect& area, ListWalker* walker, const Buffer& copy) {
+  if (walker != nullptr) {
+    // Writers: the points, and who builds and sorts lists. Reader: the walk.
+    cmdBarrier(commands, {kShaders.stages, VK_ACCESS_2_SHADER_WRITE_BIT},
+               {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT});
+    walker->cmdWalk(commands, target_.descriptorSet(), area);
+    // Reader: the walk. Writer: a resolve, which relinks long lists.
+    cmdBarrier(commands, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_NONE},
+               {kShaders.stages, VK_ACCESS_2_NONE});
+    return;
+  }
+  VitrailVkCopyInfo info{};
+  info.area = {{static_cast<std::int32_t>(area.x), static_cast<std::int32_t>(area.y)}, {area.width, area.height}};
+  info.buffer = copy.get();
+  target_.copyLists(commands, info);
+  // Writer: the library's copy. Reader: the host.
+  cmdBarrier(commands, kTransferWrite, kHostAccess);
+}
+
+ListsRead VulkanHost::drawAndRead(std::span<const Point> points, const VitrailRect& area, ReadBy by,
+                                  bool afterResolve) {
+  const Vertices vertices = upload(points);
+  const std::uint64_t frame = frame_++;
+  PointImages& images = imagesOf(frame);
+  ListWalker* walker = nullptr;
+  Buffer copy;
+  if (by == ReadBy::Shader) {
+    walker = &backend_.walker(*context_, desc_.addresses);
+  } else {
+    copy = Buffer(device_, target_.copySize(area.width, area.height), VK_BUFFER_USAGE_TRANSFER_DST_BIT, Memory::Host);
+  }
+  const auto read = [&](VkCommandBuffer commands) { recordRead(commands, area, walker, copy); };
+  update(frame);
+  commands_.run([&](VkCommandBuffer commands) {
+    images.cmdOpaque(commands, *pipelines_);
+    recordBegin(commands, frame, wholeArea());
+    recordPoints(commands, images, vertices);
+    recordCollected(commands);
+    if (!afterResolve) read(commands);
+    recordResolve(commands, images, frame % kFramesTogether);
+    if (afterResolve) read(commands);
+    recordEnd(commands);
+    images.cmdPicture(commands);
+  });
+  ListsRead result;
+  result.frame = VulkanHost::read(images, frame);
+  result.pixels.resize(std::size_t{area.width} * area.height);
+  if (walker != nullptr) {
+    result.pixels = walker->read();
+  } else {
+    decodeCopy(copy, area.width * area.height, result);
+  }
+  return result;
 }
 
 void VulkanHost::drop(std::span<const Point> points) {

@@ -10,6 +10,7 @@
 
 #include "../host.h"
 #include "backend.h"
+#include "list_walker.h"
 #include "objects.h"
 #include "point_images.h"
 #include "point_pipelines.h"
@@ -29,13 +30,6 @@ struct VulkanOptions {
   std::optional<VitrailVkBarrierPoint> omitted;
 };
 
-// What vitrailVkCmdCopyLists() wrote.
-struct CopiedLists {
-  VitrailVkCopyHeader header{};
-  std::vector<VitrailVkCopiedList> lists;
-  std::vector<VitrailLayer> layers;
-};
-
 class VulkanHost : public PointHost {
  public:
   VulkanHost(VulkanBackend& backend, const HostDesc& desc, const VulkanOptions& options = {});
@@ -45,6 +39,7 @@ class VulkanHost : public PointHost {
                                               std::span<const Point> second, std::uint32_t capacity) override;
   PointResult drawAreas(std::span<const Point> points, const NextArea& next) override;
   PointResult drawScattered(std::span<const Point> points) override;
+  ListsRead drawAndRead(std::span<const Point> points, const VitrailRect& area, ReadBy by, bool afterResolve) override;
   void drop(std::span<const Point> points) override;
   [[nodiscard]] bool guardsUntouched() override;
   [[nodiscard]] std::vector<std::uint32_t> words(StoragePart StorageLayout::*part) override;
@@ -68,7 +63,6 @@ class VulkanHost : public PointHost {
   [[nodiscard]] Target& target() { return target_; }
   [[nodiscard]] const Context& context() const { return *context_; }
   [[nodiscard]] VitrailVkTargetDesc targetDesc(); // what the target is made with
-  [[nodiscard]] CopiedLists copied() const;       // of the last frame, where HostDesc::copyLayers are
 
  private:
   // Points in memory that the device reads.
@@ -92,9 +86,9 @@ class VulkanHost : public PointHost {
   void recordPoints(VkCommandBuffer commands, PointImages& images, const Vertices& vertices);
   void recordRequests(VkCommandBuffer commands);
   void recordResolve(VkCommandBuffer commands, PointImages& images, std::uint64_t view);
-  void recordCopy(VkCommandBuffer commands, const VkRect2D& area);
   void recordFrame(VkCommandBuffer commands, std::uint64_t frame, PointImages& images, const VkRect2D& area,
                    const Vertices& vertices);
+  void recordRead(VkCommandBuffer commands, const VitrailRect& area, ListWalker* walker, const Buffer& copy);
   void scatter();
   [[nodiscard]] std::vector<std::uint32_t> wordsAt(VkDeviceSize offset, VkDeviceSize size); // of memory_
   [[nodiscard]] PointResult read(const PointImages& images, std::uint64_t frame) const;
@@ -106,7 +100,6 @@ class VulkanHost : public PointHost {
   VulkanOptions options_;
   bool postDepthCoverage_ = false;
   std::uint64_t frame_ = 0;
-  Buffer copy_; // what the last frame's lists were copied to
   Context* context_ = nullptr;
   std::array<PointImages, kFramesTogether> images_; // of frame n: n % kFramesTogether
   // What views() points to.
