@@ -30,7 +30,7 @@ struct Features {
   bool postDepthCoverage = false;
   bool stencil = false;                    // beside a 32-bit float depth
   bool addresses = false;                  // pools can be reached by their address
-  std::uint64_t bindingBytes = 0; // what one binding reaches of a buffer
+  std::uint64_t bindingBytes = 0;          // what one binding reaches of a buffer
   std::vector<std::uint32_t> multisampled; // which of 2, 4 and 8 samples it has
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tuple>
 
 namespace vitrail::tests {
 
@@ -94,6 +95,37 @@ Expected expectedFrame(const HostDesc& desc, std::span<const Point> points, bool
     expected.pixels.push_back(resolvePixel(list, behind));
   }
   return expected;
+}
+
+std::vector<std::vector<VitrailLayer>> expectedLists(const HostDesc& desc, std::span<const Point> points) {
+  struct Stored {
+    SortKey key;
+    VitrailLayer layer;
+  };
+  const NodeCoding coding = codingOf(desc);
+  std::vector<std::vector<Stored>> stored(std::size_t{desc.width} * desc.height);
+  for (const Point& p : points) {
+    const auto node = packNode(coding, {doubleColor(p.color), p.depth, p.blend, p.coverage});
+    if (!node) continue;
+    const Fragment fragment = unpackNode(coding, *node);
+    VitrailLayer layer{};
+    for (unsigned i = 0; i < 4; ++i) layer.color[i] = static_cast<float>(fragment.color[i]);
+    layer.depth = fragment.depth;
+    layer.blend = fragment.blend;
+    layer.coverage = fragment.coverage;
+    layer.word = desc.userWords ? p.word : 0;
+    stored[std::size_t{p.y} * desc.width + p.x].push_back({sortKey(coding, *node), layer});
+  }
+  std::vector<std::vector<VitrailLayer>> lists;
+  lists.reserve(stored.size());
+  for (std::vector<Stored>& list : stored) {
+    std::sort(list.begin(), list.end(), [](const Stored& a, const Stored& b) {
+      return std::tie(a.key, a.layer.word) < std::tie(b.key, b.layer.word);
+    });
+    std::vector<VitrailLayer>& layers = lists.emplace_back();
+    for (const Stored& one : list) layers.push_back(one.layer);
+  }
+  return lists;
 }
 
 double largestError(std::span<const FloatColor> got, std::span<const Color> expected) {

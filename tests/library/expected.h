@@ -24,6 +24,9 @@ struct Expected {
 // `hasPostDepthCoverage`: whether the device has it; the host uses it where it may.
 Expected expectedFrame(const HostDesc& desc, std::span<const Point> points, bool hasPostDepthCoverage = true);
 
+// The stored fragments of every pixel, in order.
+std::vector<std::vector<VitrailLayer>> expectedLists(const HostDesc& desc, std::span<const Point> points);
+
 // Averages are sums of integers in 1/65536, and transmittances sums of logarithms in 1/4096.
 inline constexpr double kSumTolerance = 2e-3;
 

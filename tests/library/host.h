@@ -30,7 +30,8 @@ struct Point {
   std::array<float, 4> color{};
   std::uint32_t blend = VITRAIL_BLEND_OVER;
   std::uint32_t coverage = 0xff;
-  bool stranger = false; // drawn by HostDesc::strangersFor
+  bool stranger = false;  // drawn by HostDesc::strangersFor
+  std::uint32_t word = 0; // for nodes that carry one
 };
 
 using FloatColor = std::array<float, 4>;
@@ -41,6 +42,10 @@ struct Extent {
 };
 
 enum class ColorFormat { Float32, Float16 }; // of the picture; results of Float16 are not read back
+
+// How the collecting shader is compiled: as most hosts do; for CPU drivers (VITRAIL_CPU_DRIVER); or for one kind of target
+// and no other (VITRAIL_ONLY_*): `standard` nodes without words at 1 sample, lists built as collected, overflow skipped.
+enum class ShaderKind { Usual, ForCpu, Narrow };
 
 struct HostDesc {
   std::uint32_t width = 8;
@@ -57,6 +62,8 @@ struct HostDesc {
   VitrailListBuild listBuild = VITRAIL_LIST_BUILD_FRAGMENT;
   std::uint64_t memoryBudget = 0; // the pool follows it: every draw updates the target first
   std::uint32_t areaPixels = 0;
+  bool userWords = false;
+  std::uint32_t copyLayers = 0;
   bool postDepthCoverage = true;       // where there are several samples and the device has it
   bool dualSourceBlending = true;      // where the device has it
   bool addresses = false;              // the pool is reached by its address
@@ -68,6 +75,7 @@ struct HostDesc {
   std::optional<VitrailListBuild> specializedForListBuild;
   // Strangers among the points are drawn by a shader that is specialized for a target that differs in this.
   std::optional<VitrailOverflow> strangersFor;
+  ShaderKind shader = ShaderKind::Usual;
   bool guarded = false; // the memory is this host's, between guard words
   // The fragments that are taken to have asked for a node before the first point. `guarded` only.
   std::uint32_t requestedBefore = 0;
@@ -85,6 +93,16 @@ FloatColor behindAt(const HostDesc& desc, std::uint32_t sample);
 struct PointResult {
   std::vector<FloatColor> pixels; // rows top to bottom; the mean of the samples
   VitrailStats stats{};
+};
+
+// How a host reads lists: the library copies them out, or a shader of the host's walks them (vitrail/list.glsl).
+enum class ReadBy { Copy, Shader };
+
+struct ListsRead {
+  PointResult frame;
+  // Of every pixel of the area, row by row, front to back; nothing where a list was left out.
+  std::vector<std::optional<std::vector<VitrailLayer>>> pixels;
+  std::uint32_t layers = 0; // that the pixels have; by Copy only
 };
 
 class PointHost {
@@ -120,6 +138,11 @@ class PointHost {
   // As draw(), but between collecting and resolving every node moves to another place of the pool (scatterNodes()):
   // devices that run many fragments at once hand nodes out in any order, others along each list.
   virtual PointResult drawScattered(std::span<const Point> points) = 0;
+
+  // As draw(), and reads the lists of an area, before the resolve or after it. By Shader up to kMostWalked a pixel.
+  static constexpr std::uint32_t kMostWalked = 128;
+  virtual ListsRead drawAndRead(std::span<const Point> points, const VitrailRect& area, ReadBy by,
+                                bool afterResolve) = 0;
 
   // Records a frame and never submits it, as hosts do whose swapchain is out of date.
   virtual void drop(std::span<const Point> points) = 0;

@@ -29,6 +29,7 @@ std::vector<std::string> VulkanBackend::takeErrors() {
 }
 
 void VulkanBackend::close() {
+  walkers_.clear();
   pipelines_.clear();
   contexts_.clear();
   if (!device_) return;
@@ -75,6 +76,11 @@ std::uint32_t VulkanBackend::allFeatures() {
 
 PointPipelines& VulkanBackend::pipelines(const PointPipelinesInfo& info) {
   return pipelines_.try_emplace(info, device(), info).first->second;
+}
+
+ListWalker& VulkanBackend::walker(const Context& context, bool byAddress) {
+  const VkDescriptorSetLayout set = context.descriptorSetLayout();
+  return walkers_.try_emplace({set, byAddress}, device(), set, byAddress).first->second;
 }
 
 VulkanBackend& backend() { return Registered<VulkanBackend>::get(); }

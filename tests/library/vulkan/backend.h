@@ -5,12 +5,14 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <vitrail/vitrail.hpp>
 
 #include "../backend.h"
 #include "device.h"
+#include "list_walker.h"
 #include "point_pipelines.h"
 
 namespace vitrail::tests::vulkan {
@@ -42,6 +44,7 @@ class VulkanBackend : public Backend {
   std::uint32_t allFeatures();
 
   PointPipelines& pipelines(const PointPipelinesInfo& info);
+  ListWalker& walker(const Context& context, bool byAddress);
 
   // What a context is made with: this device, and its log here.
   VitrailVkContextDesc contextDesc();
@@ -51,7 +54,8 @@ class VulkanBackend : public Backend {
  private:
   std::unique_ptr<Device> device_;
   std::map<std::uint32_t, Context> contexts_;
-  std::map<PointPipelinesInfo, PointPipelines> pipelines_; // with the contexts' layouts: they go before
+  std::map<PointPipelinesInfo, PointPipelines> pipelines_;               // with the contexts' layouts: they go before
+  std::map<std::pair<VkDescriptorSetLayout, bool>, ListWalker> walkers_; // as well
   std::vector<LogLine> log_;
   std::vector<std::string> lastErrors_; // of a device that was closed
 };

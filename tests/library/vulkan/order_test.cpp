@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -189,6 +190,54 @@ TEST_F(OrderTest, AreasAndViewsThatAreNotThereAreTakenFromWhatIs) {
   VitrailStats stats{};
   ASSERT_EQ(target.readStats(target.frame(), stats), VK_SUCCESS);
   EXPECT_EQ(stats.exact, 0U);
+}
+
+// A copy of lists that cannot be had records nothing and says why; the frame is what it is.
+TEST_F(OrderTest, CopiesThatCannotBeHadAreRefused) {
+  HostDesc desc;
+  desc.capacity = 4;
+  desc.copyLayers = 16;
+  VulkanHost host(backend(), desc);
+  HostDesc without = desc;
+  without.copyLayers = 0;
+  VulkanHost other(backend(), without);
+  const std::vector<Point> points = {{0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}}};
+  host.draw(points);
+  other.draw(points);
+  const Buffer buffer(backend().device(), host.target().copySize(4, 4), VK_BUFFER_USAGE_TRANSFER_DST_BIT, Memory::Host);
+  std::memset(buffer.mapped(), 0x5a, buffer.size());
+  const auto refuse = [&](VkCommandBuffer commands, const Target& target, const VkRect2D& area, VkBuffer into,
+                          VkDeviceSize offset, const std::string& word) {
+    VitrailVkCopyInfo info{};
+    info.area = area;
+    info.buffer = into;
+    info.offset = offset;
+    target.copyLists(commands, info);
+    expectOneLine(word);
+  };
+  Commands recorded(backend().device());
+  recorded.run([&](VkCommandBuffer commands) {
+    Target& target = host.target();
+    refuse(commands, target, {{0, 0}, {4, 4}}, buffer.get(), 0, "CopyLists"); // before the frame
+    target.begin(commands);
+    target.collected(commands);
+    refuse(commands, target, {{0, 0}, {8, 8}}, buffer.get(), 0, "copyLayers 16"); // more pixels than layers
+    refuse(commands, target, {{6, 0}, {4, 4}}, buffer.get(), 0, "inside");
+    refuse(commands, target, {{-1, 0}, {4, 4}}, buffer.get(), 0, "inside");
+    refuse(commands, target, {{0, 0}, {0, 4}}, buffer.get(), 0, "inside");
+    refuse(commands, target, {{0, 0}, {4, 4}}, VK_NULL_HANDLE, 0, "buffer");
+    refuse(commands, target, {{0, 0}, {4, 4}}, buffer.get(), 2, "offset");
+    target.resolve(commands);
+    target.end(commands);
+    other.target().begin(commands);
+    other.target().collected(commands);
+    refuse(commands, other.target(), {{0, 0}, {4, 4}}, buffer.get(), 0, "without copyLayers");
+    other.target().resolve(commands);
+    other.target().end(commands);
+  });
+  const auto* bytes = static_cast<const std::uint8_t*>(buffer.mapped());
+  EXPECT_TRUE(std::all_of(bytes, bytes + buffer.size(), [](std::uint8_t byte) { return byte == 0x5a; }));
+  EXPECT_EQ(host.draw(points).stats.exact, 1U);
 }
 
 // Frames that the library numbers are 0, 1, 2, ... and their statistics are theirs.

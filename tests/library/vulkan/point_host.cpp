@@ -18,7 +18,7 @@ PointVertex toVertex(const Point& point, const HostDesc& desc) {
   const auto clip = [](std::uint32_t pixel, std::uint32_t size) {
     return (static_cast<float>(pixel) + 0.5F) * 2.0F / static_cast<float>(size) - 1.0F;
   };
-  return {{clip(point.x, desc.width), clip(point.y, desc.height), point.depth}, point.color, point.blend};
+  return {{clip(point.x, desc.width), clip(point.y, desc.height), point.depth}, point.color, point.blend, point.word};
 }
 
 std::uint32_t featureBits(VulkanBackend& backend, const HostDesc& desc) {
@@ -32,6 +32,24 @@ bool severalSamples(const HostDesc& desc) { return desc.samples > 1; }
 
 bool perPixel(const HostDesc& desc) {
   return severalSamples(desc) && desc.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_PIXEL;
+}
+
+// What the library copied out.
+void decodeCopy(const Buffer& copy, std::uint32_t pixels, ListsRead& read) {
+  const auto* bytes = static_cast<const std::byte*>(copy.mapped());
+  VitrailVkCopyHeader header{};
+  std::memcpy(&header, bytes, sizeof(header));
+  read.layers = header.layers;
+  std::vector<VitrailVkCopiedList> lists(pixels);
+  std::memcpy(lists.data(), bytes + sizeof(header), pixels * sizeof(VitrailVkCopiedList));
+  const std::byte* layers = bytes + sizeof(header) + pixels * sizeof(VitrailVkCopiedList);
+  for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+    const VitrailVkCopiedList& list = lists[pixel];
+    if (list.count == 0) read.pixels[pixel].emplace();
+    if (list.count == 0 || list.first == 0xffffffffU) continue;
+    std::vector<VitrailLayer>& copied = read.pixels[pixel].emplace(list.count);
+    std::memcpy(copied.data(), layers + list.first * sizeof(VitrailLayer), list.count * sizeof(VitrailLayer));
+  }
 }
 
 } // namespace
@@ -93,6 +111,8 @@ VitrailVkTargetDesc VulkanHost::targetDesc() {
   desc.nodeCapacity = desc_.capacity;
   desc.memoryBudget = desc_.memoryBudget;
   desc.areaPixels = desc_.areaPixels;
+  desc.userWords = desc_.userWords ? VK_TRUE : VK_FALSE;
+  desc.copyLayers = desc_.copyLayers;
   desc.colorFormat = PointImages::colorFormat(desc_);
   desc.views = views();
   desc.hostBarriers = options_.hostBarriers ? VK_TRUE : VK_FALSE;
@@ -122,6 +142,8 @@ void VulkanHost::guard(VitrailVkTargetDesc& desc) {
   parts.nodeCapacity = desc.nodeCapacity;
   parts.format = desc.nodeFormat;
   parts.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
+  parts.userWords = desc_.userWords;
+  parts.copyLayers = desc_.copyLayers;
   parts.alignment = needs.alignment;
   storage_ = layoutStorage(parts);
   desc.buffer = memory_.get();
@@ -139,6 +161,7 @@ PointPipelines& VulkanHost::pipelinesFor(VitrailVkTargetDesc target, bool specia
   info.nearestIsOne = desc_.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
   info.postDepthCoverage = postDepthCoverage_;
   info.addresses = desc_.shaderByAddress.value_or(desc_.addresses);
+  info.shader = desc_.shader;
   if (specialized) {
     target.nodeFormat = desc_.specializedFor.value_or(target.nodeFormat);
     target.overflow = desc_.specializedForOverflow.value_or(target.overflow);
@@ -405,6 +428,62 @@ PointResult VulkanHost::drawScattered(std::span<const Point> points) {
     images.cmdPicture(commands);
   });
   return read(images, frame);
+}
+
+// By the walker where there is one, else by the library's copy.
+void VulkanHost::recordRead(VkCommandBuffer commands, const VitrailRect& area, ListWalker* walker, const Buffer& copy) {
+  if (walker != nullptr) {
+    // Writers: the points, and who builds and sorts lists. Reader: the walk.
+    cmdBarrier(commands, {kShaders.stages, VK_ACCESS_2_SHADER_WRITE_BIT},
+               {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT});
+    walker->cmdWalk(commands, target_.descriptorSet(), area);
+    // Reader: the walk. Writer: a resolve, which relinks long lists.
+    cmdBarrier(commands, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_NONE},
+               {kShaders.stages, VK_ACCESS_2_NONE});
+    return;
+  }
+  VitrailVkCopyInfo info{};
+  info.area = {{static_cast<std::int32_t>(area.x), static_cast<std::int32_t>(area.y)}, {area.width, area.height}};
+  info.buffer = copy.get();
+  target_.copyLists(commands, info);
+  // Writer: the library's copy. Reader: the host.
+  cmdBarrier(commands, kTransferWrite, kHostAccess);
+}
+
+ListsRead VulkanHost::drawAndRead(std::span<const Point> points, const VitrailRect& area, ReadBy by,
+                                  bool afterResolve) {
+  const Vertices vertices = upload(points);
+  const std::uint64_t frame = frame_++;
+  PointImages& images = imagesOf(frame);
+  ListWalker* walker = nullptr;
+  Buffer copy;
+  if (by == ReadBy::Shader) {
+    walker = &backend_.walker(*context_, desc_.addresses);
+  } else {
+    copy = Buffer(device_, target_.copySize(area.width, area.height), VK_BUFFER_USAGE_TRANSFER_DST_BIT, Memory::Host);
+  }
+  const auto read = [&](VkCommandBuffer commands) { recordRead(commands, area, walker, copy); };
+  update(frame);
+  commands_.run([&](VkCommandBuffer commands) {
+    images.cmdOpaque(commands, *pipelines_);
+    recordBegin(commands, frame, wholeArea());
+    recordPoints(commands, images, vertices);
+    recordCollected(commands);
+    if (!afterResolve) read(commands);
+    recordResolve(commands, images, frame % kFramesTogether);
+    if (afterResolve) read(commands);
+    recordEnd(commands);
+    images.cmdPicture(commands);
+  });
+  ListsRead result;
+  result.frame = VulkanHost::read(images, frame);
+  result.pixels.resize(std::size_t{area.width} * area.height);
+  if (walker != nullptr) {
+    result.pixels = walker->read();
+  } else {
+    decodeCopy(copy, area.width * area.height, result);
+  }
+  return result;
 }
 
 void VulkanHost::drop(std::span<const Point> points) {

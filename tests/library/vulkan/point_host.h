@@ -10,6 +10,7 @@
 
 #include "../host.h"
 #include "backend.h"
+#include "list_walker.h"
 #include "objects.h"
 #include "point_images.h"
 #include "point_pipelines.h"
@@ -38,6 +39,7 @@ class VulkanHost : public PointHost {
                                               std::span<const Point> second, std::uint32_t capacity) override;
   PointResult drawAreas(std::span<const Point> points, const NextArea& next) override;
   PointResult drawScattered(std::span<const Point> points) override;
+  ListsRead drawAndRead(std::span<const Point> points, const VitrailRect& area, ReadBy by, bool afterResolve) override;
   void drop(std::span<const Point> points) override;
   [[nodiscard]] bool guardsUntouched() override;
   [[nodiscard]] std::vector<std::uint32_t> words(StoragePart StorageLayout::*part) override;
@@ -86,6 +88,7 @@ class VulkanHost : public PointHost {
   void recordResolve(VkCommandBuffer commands, PointImages& images, std::uint64_t view);
   void recordFrame(VkCommandBuffer commands, std::uint64_t frame, PointImages& images, const VkRect2D& area,
                    const Vertices& vertices);
+  void recordRead(VkCommandBuffer commands, const VitrailRect& area, ListWalker* walker, const Buffer& copy);
   void scatter();
   [[nodiscard]] std::vector<std::uint32_t> wordsAt(VkDeviceSize offset, VkDeviceSize size); // of memory_
   [[nodiscard]] PointResult read(const PointImages& images, std::uint64_t frame) const;

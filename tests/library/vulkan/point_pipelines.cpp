@@ -7,6 +7,9 @@
 #include "shaders/opaque.vert.h"
 #include "shaders/points.vert.h"
 #include "shaders/points_address.frag.h"
+#include "shaders/points_cpu.frag.h"
+#include "shaders/points_cpu_address.frag.h"
+#include "shaders/points_narrow.frag.h"
 #include "shaders/points_post_depth.frag.h"
 #include "shaders/points_post_depth_address.frag.h"
 #include "shaders/points_simple.frag.h"
@@ -43,10 +46,11 @@ struct Draws {
   VkPipelineRenderingCreateInfo rendering;
 };
 
-constexpr std::array<VkVertexInputAttributeDescription, 3> kAttributes = {
+constexpr std::array<VkVertexInputAttributeDescription, 4> kAttributes = {
     VkVertexInputAttributeDescription{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(PointVertex, position)},
     VkVertexInputAttributeDescription{1, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(PointVertex, color)},
     VkVertexInputAttributeDescription{2, 0, VK_FORMAT_R32_UINT, offsetof(PointVertex, blend)},
+    VkVertexInputAttributeDescription{3, 0, VK_FORMAT_R32_UINT, offsetof(PointVertex, word)},
 };
 constexpr VkVertexInputBindingDescription kBinding = {0, sizeof(PointVertex), VK_VERTEX_INPUT_RATE_VERTEX};
 
@@ -113,6 +117,10 @@ VkPipeline PointPipelines::opaque(std::uint32_t mask) {
 }
 
 std::span<const std::uint32_t> PointPipelines::pointsShader() const {
+  if (info_.shader == ShaderKind::Narrow) return shaders::points_narrow_frag;
+  if (info_.shader == ShaderKind::ForCpu && !info_.postDepthCoverage) {
+    return info_.addresses ? std::span<const std::uint32_t>(shaders::points_cpu_address_frag) : shaders::points_cpu_frag;
+  }
   if (info_.postDepthCoverage && info_.addresses) return shaders::points_post_depth_address_frag;
   if (info_.postDepthCoverage) return shaders::points_post_depth_frag;
   if (info_.addresses) return shaders::points_address_frag;

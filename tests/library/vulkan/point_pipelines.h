@@ -20,6 +20,7 @@ struct PointVertex {
   std::array<float, 3> position; // clip space
   std::array<float, 4> color;
   std::uint32_t blend;
+  std::uint32_t word;
 };
 
 // Specialization constants of collecting shaders.
@@ -33,6 +34,7 @@ struct PointPipelinesInfo {
   bool nearestIsOne = false;
   bool postDepthCoverage = false; // as the points' shader is compiled
   bool addresses = false;
+  ShaderKind shader = ShaderKind::Usual;
   bool specialized = false; // the points' shader is, by these constants
   std::array<std::uint32_t, kConstants> constants{};
   std::uint32_t firstConstant = 0;

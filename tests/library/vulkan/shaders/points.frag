@@ -6,5 +6,6 @@
 
 layout(location = 0) flat in vec4 color;
 layout(location = 1) flat in uint blend;
+layout(location = 2) flat in uint word;
 
-void main() { vitrailCollect(color, blend); }
+void main() { vitrailCollectWord(color, blend, word); }

@@ -1,0 +1,34 @@
+// A compute shader of the host's that walks lists (vitrail/list.glsl) and writes them down.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "../host.h"
+#include "objects.h"
+
+namespace vitrail::tests::vulkan {
+
+class ListWalker {
+ public:
+  // `set` is the library's layout; `byAddress`: the shader reaches the pool by its address.
+  ListWalker(const Device& device, VkDescriptorSetLayout set, bool byAddress);
+
+  // Walks the lists of an area of the target with this set. The lists are visible to compute shaders.
+  void cmdWalk(VkCommandBuffer commands, VkDescriptorSet set, const VitrailRect& area);
+
+  // What was written down, once it has been executed; nothing for a list whose walk was cut.
+  [[nodiscard]] std::vector<std::optional<std::vector<VitrailLayer>>> read() const;
+
+ private:
+  const Device& device_;
+  Owned<VkDescriptorSetLayout> setLayout_;
+  Owned<VkPipelineLayout> layout_;
+  Owned<VkPipeline> pipeline_;
+  Owned<VkDescriptorPool> pool_;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  Buffer walked_;
+  std::uint32_t pixels_ = 0;
+};
+
+} // namespace vitrail::tests::vulkan
