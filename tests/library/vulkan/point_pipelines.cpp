@@ -7,6 +7,8 @@
 #include "shaders/opaque.vert.h"
 #include "shaders/points.vert.h"
 #include "shaders/points_address.frag.h"
+#include "shaders/points_cpu.frag.h"
+#include "shaders/points_cpu_address.frag.h"
 #include "shaders/points_post_depth.frag.h"
 #include "shaders/points_post_depth_address.frag.h"
 #include "shaders/points_simple.frag.h"
@@ -116,6 +118,8 @@ VkPipeline PointPipelines::opaque(std::uint32_t mask) {
 std::span<const std::uint32_t> PointPipelines::pointsShader() const {
   if (info_.postDepthCoverage && info_.addresses) return shaders::points_post_depth_address_frag;
   if (info_.postDepthCoverage) return shaders::points_post_depth_frag;
+  if (info_.cpuDriver && info_.addresses) return shaders::points_cpu_address_frag;
+  if (info_.cpuDriver) return shaders::points_cpu_frag;
   if (info_.addresses) return shaders::points_address_frag;
   return shaders::points_simple_frag;
 }
