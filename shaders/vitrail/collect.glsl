@@ -26,6 +26,15 @@
 //                                 way that suits them
 //   VITRAIL_CONSTANT_ID           the first of five specialization constants, default 1700; see
 //                                 vitrailVkCollectSpecialization()
+//
+// and, to make the shader smaller where one kind of target is all that it is for, what that is. What others take is not
+// in the shader then; fragments on another target count as missing, as with the specialization constants, which are
+// left out.
+//   VITRAIL_ONLY_FORMAT       a value of VitrailNodeFormat: 0, 1 or 2
+//   VITRAIL_ONLY_SAMPLES      1, 2, 4 or 8
+//   VITRAIL_ONLY_OVERFLOW     a value of VitrailOverflow: 0 or 1
+//   VITRAIL_ONLY_LIST_BUILD   a value of VitrailListBuild, as vitrailVkTargetListBuild() has it: 1 or 2
+//   VITRAIL_ONLY_USER_WORDS   0 or 1
 #ifndef VITRAIL_COLLECT_GLSL
 #define VITRAIL_COLLECT_GLSL
 
@@ -44,13 +53,38 @@ layout(post_depth_coverage) in;
 layout(early_fragment_tests) in;
 
 // By default all are read from the target.
+#ifdef VITRAIL_ONLY_FORMAT
+const uint VITRAIL_NODE_FORMAT = VITRAIL_ONLY_FORMAT;
+#else
 layout(constant_id = VITRAIL_CONSTANT_ID) const uint VITRAIL_NODE_FORMAT = 0xffffffffu;
+#endif
+#ifdef VITRAIL_ONLY_SAMPLES
+const uint VITRAIL_SAMPLES = VITRAIL_ONLY_SAMPLES;
+#else
 layout(constant_id = VITRAIL_CONSTANT_ID + 1) const uint VITRAIL_SAMPLES = 0u;
+#endif
+#ifdef VITRAIL_ONLY_OVERFLOW
+const uint VITRAIL_KEEP_SUMS = 1u - VITRAIL_ONLY_OVERFLOW;
+#else
+#define VITRAIL_ONLY_OVERFLOW 0 // as far as code is concerned
 layout(constant_id = VITRAIL_CONSTANT_ID + 2) const uint VITRAIL_KEEP_SUMS = 0xffffffffu; // 0 or 1
+#endif
+#ifdef VITRAIL_ONLY_LIST_BUILD
+const uint VITRAIL_LOOSE = VITRAIL_ONLY_LIST_BUILD - 1u;
+#else
+#define VITRAIL_ONLY_LIST_BUILD 0
 layout(constant_id = VITRAIL_CONSTANT_ID + 3) const uint VITRAIL_LOOSE = 0xffffffffu; // 0 or 1
+#endif
+#ifdef VITRAIL_ONLY_USER_WORDS
+const uint VITRAIL_USER_WORDS = VITRAIL_ONLY_USER_WORDS;
+#else
+#define VITRAIL_ONLY_USER_WORDS 1
 layout(constant_id = VITRAIL_CONSTANT_ID + 4) const uint VITRAIL_USER_WORDS = 0xffffffffu; // 0 or 1
+#endif
 
+#if VITRAIL_ONLY_OVERFLOW == 0
 layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_SUMS, std430) buffer VitrailSumsBlock { uint vitrailPixelSums[]; };
+#endif
 #ifdef VITRAIL_CPU_DRIVER
 // The same memory again. Mesa's lavapipe waits before every draw until the draws before it are done where it sees that
 // the draw's shader writes a buffer; where a binding is declared more than once, as the pool's is, it does not look.
@@ -61,13 +95,17 @@ layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_CONTROL, std430) buffer Vitr
 layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_HEADS, std430) buffer VitrailHeadsAgain {
   uint vitrailHeadsAgain[];
 };
+#if VITRAIL_ONLY_OVERFLOW == 0
 layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_SUMS, std430) buffer VitrailSumsAgain {
   uint vitrailPixelSumsAgain[];
 };
 #endif
+#endif
 
 #include "loose.glsl"
+#if VITRAIL_ONLY_OVERFLOW == 0
 #include "sums.glsl"
+#endif
 
 VitrailLayout vitrailTargetLayout() {
   return VitrailLayout(VITRAIL_NODE_FORMAT == 0xffffffffu ? vitrailParameters.format : VITRAIL_NODE_FORMAT,
@@ -117,8 +155,7 @@ uint vitrailTakeNode(uint capacity) { return atomicAdd(vitrailControl.requested,
 void vitrailTurnAway(uint index, uint pixelIndex) {
   if (index < vitrailParameters.capacity) {
     atomicAdd(vitrailControl.misfitNodes, 1u);
-    VitrailLayout target = VitrailLayout(vitrailParameters.format, vitrailParameters.samples, false);
-    vitrailStoreNode(index, uvec4(0u, 0u, 0u, pixelIndex & VITRAIL_PIXEL_MASK), target);
+    vitrailStoreEmpty(index, pixelIndex & VITRAIL_PIXEL_MASK, vitrailParameters.format);
   }
 }
 
@@ -160,6 +197,10 @@ void vitrailCountMissing(uint index, uint pixelIndex, uint capacity) {
 
 // Adds a fragment that found no node to the sums of its pixel.
 void vitrailAddMissing(uint pixelIndex, uvec4 node, uint coverage, VitrailLayout nodes) {
+#if VITRAIL_ONLY_OVERFLOW == 0
+#if VITRAIL_ONLY_LIST_BUILD != 1
+  if (vitrailKeepsLoose()) node = vitrailFinish(node, nodes);
+#endif
   float weight = float(bitCount(coverage)) / float(nodes.samples);
   VitrailSums sums = vitrailMergeFilters(vitrailSumsOf(vitrailKey(node, nodes), nodes, weight));
   uint first = pixelIndex * VITRAIL_SUM_WORDS;
@@ -168,6 +209,7 @@ void vitrailAddMissing(uint pixelIndex, uvec4 node, uint coverage, VitrailLayout
   atomicAdd(vitrailPixelSums[first + 2u], sums.color.b);
   atomicAdd(vitrailPixelSums[first + 3u], sums.opacity);
   atomicAdd(vitrailPixelSums[first + 4u], sums.density);
+#endif
 }
 
 // Names the declarations that are there twice, so that compilers keep them, in code that no pipeline has. They are
@@ -177,7 +219,9 @@ void vitrailKeepDeclarations() {
 #ifdef VITRAIL_CPU_DRIVER
   if (VITRAIL_SAMPLES != 0xffffffffu) return; // a specialization constant, never so
   atomicAdd(vitrailHeadsAgain[0], 0u);
+#if VITRAIL_ONLY_OVERFLOW == 0
   atomicAdd(vitrailPixelSumsAgain[0], 0u);
+#endif
 #endif
 }
 
@@ -212,11 +256,15 @@ void vitrailCollect(vec4 color, uint blend, float depth, uint word) {
   uint coverage = nodes.samples == 1u ? 1u : uint(gl_SampleMaskIn[0]) & ((1u << nodes.samples) - 1u);
   uvec4 node;
   bool changes;
-  if (vitrailKeepsLoose()) {
-    changes = vitrailPackLoose(color, blend, depth, coverage, nodes, node);
+#if VITRAIL_ONLY_LIST_BUILD == 1
+  changes = vitrailPack(color, blend, depth, coverage, nodes, node);
+#else
+  if (vitrailKeepsLoose() && vitrailIsRaw(nodes)) {
+    changes = vitrailPackRaw(color, blend, depth, nodes, node);
   } else {
     changes = vitrailPack(color, blend, depth, coverage, nodes, node);
   }
+#endif
   if (!changes || coverage == 0u) return;
 
   uint pixelIndex = pixel.y * vitrailWidth() + pixel.x;
@@ -225,7 +273,6 @@ void vitrailCollect(vec4 color, uint blend, float depth, uint word) {
   if (index >= capacity) {
     vitrailCountMissing(index, pixelIndex, capacity);
     if (vitrailKeepsSums() && vitrailParameters.keepSums != 0u) { // a shader for another target looks at both
-      if (vitrailKeepsLoose()) node = vitrailFinish(node, nodes);
       vitrailAddMissing(pixelIndex, node, coverage, nodes);
     }
     return;
@@ -234,7 +281,9 @@ void vitrailCollect(vec4 color, uint blend, float depth, uint word) {
   if (!vitrailKeepsLoose()) next = atomicExchange(vitrailHeads[pixelIndex], index);
   node.w |= next & vitrailNextMask(nodes);
   vitrailStoreNode(index, node, nodes);
+#if VITRAIL_ONLY_USER_WORDS == 1
   if (vitrailKeepsWords()) vitrailStoreWord(index, word, nodes);
+#endif
 }
 
 void vitrailCollect(vec4 color, uint blend, float depth) { vitrailCollect(color, blend, depth, 0u); }

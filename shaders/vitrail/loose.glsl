@@ -18,9 +18,7 @@ const uint VITRAIL_PIXEL_MASK = VITRAIL_LOOSE_PIXELS - 1u;
 const float VITRAIL_COLOR_BIAS = 0.0078125; // 2^-7; its bits are 0 where those of the colour are cut out
 
 // Whether more than the link is to be done when such a node is put on its list.
-bool vitrailIsRaw(VitrailLayout nodes) {
-  return nodes.format == VITRAIL_FORMAT_STANDARD && nodes.samples == 1u;
-}
+bool vitrailIsRaw(VitrailLayout nodes) { return VITRAIL_CHOOSE(nodes, nodes.samples == 1u, false, false); }
 
 // Each channel's bits stand where the fewest instructions leave them.
 uint vitrailPackRawColor(vec3 color) {
@@ -47,9 +45,9 @@ uint vitrailFinishColor(uint word) {
   return q.r | q.g << 8 | q.b << 16;
 }
 
-// The node of a fragment, with 0 where its pixel goes. False: it would change nothing, and is not stored.
-bool vitrailPackLoose(vec4 color, uint blend, float depth, uint coverage, VitrailLayout nodes, out uvec4 node) {
-  if (!vitrailIsRaw(nodes)) return vitrailPack(color, blend, depth, coverage, nodes, node);
+// Where vitrailIsRaw() the node of a fragment, with 0 where its pixel goes. False: it would change nothing, and is not
+// stored.
+bool vitrailPackRaw(vec4 color, uint blend, float depth, VitrailLayout nodes, out uvec4 node) {
   uint alpha = vitrailQuantize(vitrailSaturate(color), vec4(255.0)).a;
   uint depthWord = vitrailDepthBits(depth, nodes.nearestIsOne) | blend << 30;
   node = uvec4(vitrailPackRawColor(color.rgb), depthWord, 0u, alpha << 24);

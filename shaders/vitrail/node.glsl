@@ -5,6 +5,29 @@
 
 #include "layout.h"
 
+// Where VITRAIL_ONLY_FORMAT (collect.glsl) says which format nodes have, what others take is not in the shader: whether
+// one is possible, and expressions of one type of which the format of a VitrailLayout chooses.
+#ifndef VITRAIL_ONLY_FORMAT
+#define VITRAIL_MAY_BE(format) 1
+#define VITRAIL_CHOOSE(nodes, standard, compact, hdr) \
+  (nodes.format == VITRAIL_FORMAT_STANDARD ? (standard) : nodes.format == VITRAIL_FORMAT_COMPACT ? (compact) : (hdr))
+#define VITRAIL_IF_COMPACT(nodes, compact, other) (nodes.format == VITRAIL_FORMAT_COMPACT ? (compact) : (other))
+#else
+#define VITRAIL_MAY_BE(format) (VITRAIL_ONLY_FORMAT == format)
+#if VITRAIL_ONLY_FORMAT == 0
+#define VITRAIL_CHOOSE(nodes, standard, compact, hdr) (standard)
+#define VITRAIL_IF_COMPACT(nodes, compact, other) (other)
+#elif VITRAIL_ONLY_FORMAT == 1
+#define VITRAIL_CHOOSE(nodes, standard, compact, hdr) (compact)
+#define VITRAIL_IF_COMPACT(nodes, compact, other) (compact)
+#elif VITRAIL_ONLY_FORMAT == 2
+#define VITRAIL_CHOOSE(nodes, standard, compact, hdr) (hdr)
+#define VITRAIL_IF_COMPACT(nodes, compact, other) (other)
+#else
+#error VITRAIL_ONLY_FORMAT is none of the values of VitrailNodeFormat
+#endif
+#endif
+
 // How the nodes of a target are stored.
 struct VitrailLayout {
   uint format;  // VITRAIL_FORMAT_*
@@ -35,7 +58,7 @@ uvec4 vitrailQuantize(vec4 v, vec4 steps) { return floatBitsToUint(v * steps + 8
 // Bits of the coverage, and of an index of the next node.
 uint vitrailCoverageBits(uint samples) { return samples == 1u ? 0u : samples == 8u ? 8u : 4u; }
 uint vitrailNextBits(VitrailLayout nodes) {
-  return nodes.format == VITRAIL_FORMAT_COMPACT ? 24u : 32u - vitrailCoverageBits(nodes.samples);
+  return VITRAIL_IF_COMPACT(nodes, 24u, 32u - vitrailCoverageBits(nodes.samples));
 }
 // Where it is full, it ends the list: no pool has so many nodes.
 uint vitrailNextMask(VitrailLayout nodes) { return 0xffffffffu >> (32u - vitrailNextBits(nodes)); }
@@ -106,25 +129,35 @@ uint vitrailPackHalves(vec2 v) {
   return packHalf2x16(min(max(v, 0.0), 65504.0)) & 0x7fff7fffu;
 }
 
+#if VITRAIL_MAY_BE(0) || VITRAIL_MAY_BE(2)
+// Of the other two.
 bool vitrailPackFull(vec4 color, uint blend, float depth, uint coverage, VitrailLayout nodes, out uvec4 node) {
   uint depthWord = vitrailDepthBits(depth, nodes.nearestIsOne) | blend << 30;
   uint coverageWord = nodes.samples == 1u ? 0u : coverage << vitrailNextBits(nodes);
-  if (nodes.format == VITRAIL_FORMAT_STANDARD) {
+#if VITRAIL_MAY_BE(0)
+#if VITRAIL_MAY_BE(2)
+  if (nodes.format == VITRAIL_FORMAT_STANDARD)
+#endif
+  {
     uint bits = vitrailPackRgba8(color);
     node = uvec4(bits, depthWord, 0u, coverageWord);
     return !vitrailIsNothing(bits >> 24, bits & 0xffffffu, blend);
   }
+#endif
+#if VITRAIL_MAY_BE(2)
   uint alpha = vitrailQuantize(vitrailSaturate(color), vec4(65535.0)).a;
   uint redGreen = vitrailPackHalves(color.rg);
   uint blue = vitrailPackHalves(vec2(color.b, 0.0));
   node = uvec4(redGreen, blue | alpha << 16, depthWord, coverageWord);
   return !vitrailIsNothing(alpha, redGreen | blue, blend);
+#endif
 }
+#endif
 
 // The node of a fragment, with 0 where the next index goes. False: it would change nothing, and is not stored.
 bool vitrailPack(vec4 color, uint blend, float depth, uint coverage, VitrailLayout nodes, out uvec4 node) {
-  if (nodes.format == VITRAIL_FORMAT_COMPACT) return vitrailPackCompact(color, blend, depth, coverage, nodes, node);
-  return vitrailPackFull(color, blend, depth, coverage, nodes, node);
+  return VITRAIL_IF_COMPACT(nodes, vitrailPackCompact(color, blend, depth, coverage, nodes, node),
+                            vitrailPackFull(color, blend, depth, coverage, nodes, node));
 }
 
 // ---- Sorting keys. A key is the whole fragment in an order that grows away from the viewer, so two fragments with one
@@ -137,29 +170,33 @@ uint vitrailCompactRest(uvec4 node, uint samples) {
   return node.w >> 30 << 24 | alpha << 19 | (node.w >> 24 & 15u) << 15 | (node.x & 0x7fffu);
 }
 
-uvec4 vitrailKey(uvec4 node, VitrailLayout nodes) {
-  if (nodes.format == VITRAIL_FORMAT_COMPACT) {
-    uint code = node.x >> (nodes.samples == 1u ? 16 : 18);
-    return uvec4(vitrailCodeLargest(nodes.samples) - code, vitrailCompactRest(node, nodes.samples), 0u, 0u);
-  }
-  bool standard = nodes.format == VITRAIL_FORMAT_STANDARD;
-  uint depth = standard ? node.y : node.z;
+uvec4 vitrailCompactKey(uvec4 node, VitrailLayout nodes) {
+  uint code = node.x >> (nodes.samples == 1u ? 16 : 18);
+  return uvec4(vitrailCodeLargest(nodes.samples) - code, vitrailCompactRest(node, nodes.samples), 0u, 0u);
+}
+
+// Of the other two.
+uvec4 vitrailFullKey(uvec4 node, VitrailLayout nodes) {
+  uint depth = VITRAIL_CHOOSE(nodes, node.y, 0u, node.z);
   uint coverage = nodes.samples == 1u ? 0u : node.w >> vitrailNextBits(nodes);
   uint order = vitrailDepthKey(depth & VITRAIL_DEPTH_MASK, nodes.nearestIsOne) << 2 | depth >> 30;
-  return standard ? uvec4(order, node.x, coverage, 0u) : uvec4(order, node.x, node.y, coverage);
+  return VITRAIL_CHOOSE(nodes, uvec4(order, node.x, coverage, 0u), uvec4(0u), uvec4(order, node.xy, coverage));
+}
+
+uvec4 vitrailKey(uvec4 node, VitrailLayout nodes) {
+  return VITRAIL_IF_COMPACT(nodes, vitrailCompactKey(node, nodes), vitrailFullKey(node, nodes));
 }
 
 // ---- What a key holds
 
 uint vitrailKeyBlend(uvec4 key, VitrailLayout nodes) {
-  return nodes.format == VITRAIL_FORMAT_COMPACT ? key.y >> (nodes.samples == 1u ? 22 : 24) : key.x & 3u;
+  return VITRAIL_IF_COMPACT(nodes, key.y >> (nodes.samples == 1u ? 22 : 24), key.x & 3u);
 }
 
 // One bit a sample.
 uint vitrailKeyCoverage(uvec4 key, VitrailLayout nodes) {
   if (nodes.samples == 1u) return 1u;
-  if (nodes.format == VITRAIL_FORMAT_COMPACT) return key.y >> 15 & 15u;
-  return nodes.format == VITRAIL_FORMAT_STANDARD ? key.z : key.w;
+  return VITRAIL_CHOOSE(nodes, key.z, key.y >> 15 & 15u, key.w);
 }
 
 // The depth in a key, and that of any point rounded as a fragment's would be: greater is farther away.
@@ -172,16 +209,20 @@ uint vitrailDepthOrder(float depth, VitrailLayout nodes) {
 }
 
 // Colour and alpha, the colour as it is stored: linear in the hdr format, else on the sRGB curve.
-vec4 vitrailKeyCurve(uvec4 key, VitrailLayout nodes) {
-  if (nodes.format == VITRAIL_FORMAT_HDR) {
-    return vec4(unpackHalf2x16(key.y), unpackHalf2x16(key.z & 0xffffu).x, float(key.z >> 16) / 65535.0);
-  }
-  if (nodes.format == VITRAIL_FORMAT_STANDARD) return unpackUnorm4x8(key.y);
+vec4 vitrailHdrColor(uvec4 key) {
+  return vec4(unpackHalf2x16(key.y), unpackHalf2x16(key.z & 0xffffu).x, float(key.z >> 16) / 65535.0);
+}
+
+vec4 vitrailCompactCurve(uvec4 key, VitrailLayout nodes) {
   if (nodes.samples == 1u) {
     const uvec4 steps = uvec4(31u, 63u, 31u, 63u);
     return vec4(uvec4(key.y, key.y >> 5, key.y >> 11, key.y >> 16) & steps) / vec4(steps);
   }
   return vec4(uvec4(key.y, key.y >> 5, key.y >> 10, key.y >> 19) & 31u) / 31.0;
+}
+
+vec4 vitrailKeyCurve(uvec4 key, VitrailLayout nodes) {
+  return VITRAIL_CHOOSE(nodes, unpackUnorm4x8(key.y), vitrailCompactCurve(key, nodes), vitrailHdrColor(key));
 }
 
 // The depth of a fragment, from its key.

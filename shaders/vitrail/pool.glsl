@@ -30,19 +30,19 @@ uvec2 vitrailLinksAddress() {
   uint low = uaddCarry(pool.x, vitrailPoolCapacity() << 3, carry);
   return uvec2(low, pool.y + (vitrailPoolCapacity() >> 29) + carry);
 }
-// Behind all nodes, of `perNode` words each.
-uvec2 vitrailWordsAddress(uint perNode) {
+// Behind so many nodes of `perNode` words each.
+uvec2 vitrailWordsAddress(uint count, uint perNode) {
   uvec2 pool = vitrailPoolAddress();
   uint high;
   uint bytes;
-  umulExtended(vitrailPoolCapacity(), 4u * perNode, high, bytes);
+  umulExtended(count, 4u * perNode, high, bytes);
   uint carry;
   uint low = uaddCarry(pool.x, bytes, carry);
   return uvec2(low, pool.y + high + carry);
 }
 #define VITRAIL_STANDARD(index) VitrailStandardNodes(vitrailPoolAddress()).nodes[index].words
 #define VITRAIL_LINK(index) VitrailLinks(vitrailLinksAddress()).links[index]
-#define VITRAIL_WORD(index, perNode) VitrailWords(vitrailWordsAddress(perNode)).words[index]
+#define VITRAIL_WORD(index, perNode) VitrailWords(vitrailWordsAddress(vitrailPoolCapacity(), perNode)).words[index]
 #define VITRAIL_COMPACT(index) VitrailCompactNodes(vitrailPoolAddress()).nodes[index].words
 #define VITRAIL_HDR(index) VitrailHdrNodes(vitrailPoolAddress()).nodes[index].words
 #else
@@ -63,34 +63,49 @@ layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer Vitrai
 #define VITRAIL_HDR(index) vitrailHdrNodes[index].words
 #endif
 
+void vitrailStoreStandard(uint index, uvec4 node) {
+  VITRAIL_STANDARD(index) = node.xy;
+  VITRAIL_LINK(index) = node.w;
+}
+void vitrailStoreCompact(uint index, uvec4 node) { VITRAIL_COMPACT(index) = node.xw; }
+void vitrailStoreHdr(uint index, uvec4 node) { VITRAIL_HDR(index) = node; }
+
 void vitrailStoreNode(uint index, uvec4 node, VitrailLayout nodes) {
+#ifdef VITRAIL_ONLY_FORMAT
+#if VITRAIL_MAY_BE(0)
+  vitrailStoreStandard(index, node);
+#elif VITRAIL_MAY_BE(1)
+  vitrailStoreCompact(index, node);
+#else
+  vitrailStoreHdr(index, node);
+#endif
+#else
   if (nodes.format == VITRAIL_FORMAT_STANDARD) {
-    VITRAIL_STANDARD(index) = node.xy;
-    VITRAIL_LINK(index) = node.w;
+    vitrailStoreStandard(index, node);
   } else if (nodes.format == VITRAIL_FORMAT_COMPACT) {
-    VITRAIL_COMPACT(index) = node.xw;
+    vitrailStoreCompact(index, node);
   } else {
-    VITRAIL_HDR(index) = node;
+    vitrailStoreHdr(index, node);
   }
+#endif
+}
+
+uvec4 vitrailLoadStandard(uint index) {
+  uint link = VITRAIL_LINK(index); // first: the next node waits for it
+  return uvec4(VITRAIL_STANDARD(index), 0u, link);
+}
+uvec4 vitrailLoadCompact(uint index) {
+  uvec2 words = VITRAIL_COMPACT(index);
+  return uvec4(words.x, 0u, 0u, words.y);
 }
 
 uvec4 vitrailLoadNode(uint index, VitrailLayout nodes) {
-  if (nodes.format == VITRAIL_FORMAT_STANDARD) {
-    uint link = VITRAIL_LINK(index); // first: the next node waits for it
-    return uvec4(VITRAIL_STANDARD(index), 0u, link);
-  }
-  if (nodes.format == VITRAIL_FORMAT_COMPACT) {
-    uvec2 words = VITRAIL_COMPACT(index);
-    return uvec4(words.x, 0u, 0u, words.y);
-  }
-  return VITRAIL_HDR(index);
+  return VITRAIL_CHOOSE(nodes, vitrailLoadStandard(index), vitrailLoadCompact(index), VITRAIL_HDR(index));
 }
 
 // Only the word that holds the index of the next node, and what shares it.
 uint vitrailLoadNext(uint index, VitrailLayout nodes) {
-  if (nodes.format == VITRAIL_FORMAT_STANDARD) return VITRAIL_LINK(index);
-  if (nodes.format == VITRAIL_FORMAT_COMPACT) return VITRAIL_COMPACT(index).y;
-  return VITRAIL_HDR(index).w;
+  return VITRAIL_CHOOSE(nodes, VITRAIL_LINK(index), VITRAIL_COMPACT(index).y, VITRAIL_HDR(index).w);
 }
 
 // Links a node to another; what else its word holds stays.
@@ -109,7 +124,7 @@ void vitrailStoreNext(uint index, uint next, VitrailLayout nodes) {
 
 // The words of a node, in however many arrays they lie.
 uint vitrailNodeWords(VitrailLayout nodes) {
-  return nodes.format == VITRAIL_FORMAT_STANDARD ? 3u : nodes.format == VITRAIL_FORMAT_COMPACT ? 2u : 4u;
+  return VITRAIL_CHOOSE(nodes, 3u, 2u, 4u);
 }
 
 // The host's word of a node, of targets whose nodes carry one.
@@ -117,5 +132,24 @@ void vitrailStoreWord(uint index, uint word, VitrailLayout nodes) {
   VITRAIL_WORD(index, vitrailNodeWords(nodes)) = word;
 }
 uint vitrailLoadWord(uint index, VitrailLayout nodes) { return VITRAIL_WORD(index, vitrailNodeWords(nodes)); }
+
+// Leaves a node of any format empty but for one word, in the place of `next`: what a shader does that is made for
+// another format.
+void vitrailStoreEmpty(uint index, uint next, uint format) {
+  uint perNode = format == VITRAIL_FORMAT_HDR ? 4u : 2u; // of those that lie together
+#ifdef VITRAIL_BUFFER_REFERENCE
+  VitrailWords node = VitrailWords(vitrailWordsAddress(index, perNode));
+#define VITRAIL_NODE_WORD(i) node.words[i]
+#else
+#define VITRAIL_NODE_WORD(i) vitrailLinks[perNode * index + i]
+#endif
+  for (uint i = 0u; i < perNode; ++i) VITRAIL_NODE_WORD(i) = 0u;
+  if (format == VITRAIL_FORMAT_STANDARD) {
+    VITRAIL_LINK(index) = next;
+  } else {
+    VITRAIL_NODE_WORD(perNode - 1u) = next;
+  }
+#undef VITRAIL_NODE_WORD
+}
 
 #endif

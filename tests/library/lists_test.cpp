@@ -507,6 +507,37 @@ std::string describe(const Kind& kind) {
   return "list build " + std::to_string(kind.listBuild) + (kind.addresses ? ", by address" : ", by binding");
 }
 
+// A shader that is compiled for one kind of target (VITRAIL_ONLY_FORMAT and so on) draws the same there, and stores
+// nothing anywhere else.
+TEST_P(ListsTest, AShaderForOneKindOfTargetSuitsNoOther) {
+  HostDesc desc;
+  desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
+  desc.overflow = VITRAIL_OVERFLOW_SKIP;
+  const std::vector<Point> points = randomLists(desc, {1, 5, 20, 40}, 3);
+  desc.capacity = static_cast<std::uint32_t>(points.size());
+  const PointResult wide = draw(desc, points);
+  desc.narrowShader = true;
+  const PointResult narrow = draw(desc, points);
+  EXPECT_TRUE(narrow.pixels == wide.pixels);
+  EXPECT_EQ(narrow.stats.exact, 1U);
+  for (const int difference : {0, 1, 2, 3}) {
+    SCOPED_TRACE(difference);
+    HostDesc other = desc;
+    if (difference == 0) other.nodes = VITRAIL_NODE_HDR;
+    if (difference == 1) other.overflow = VITRAIL_OVERFLOW_APPROXIMATE;
+    if (difference == 2) other.listBuild = VITRAIL_LIST_BUILD_COMPUTE;
+    if (difference == 3) other.userWords = true;
+    other.guarded = true;
+    const std::unique_ptr<PointHost> host = makeHost(other);
+    const PointResult result = host->draw(points);
+    EXPECT_EQ(result.stats.fragmentsStored, 0U);
+    EXPECT_EQ(result.stats.fragmentsMissing, points.size());
+    EXPECT_EQ(result.stats.exact, 0U);
+    EXPECT_EQ(result.pixels[0], desc.behind);
+    EXPECT_TRUE(host->guardsUntouched());
+  }
+}
+
 // A shader that is specialized for another target stores nothing there, and says so.
 TEST_P(ListsTest, AShaderOfAnotherTargetStoresNothing) {
   for (const Kind& kind : kindsOf(features())) {

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <set>
+#include <sstream>
 #include <thread>
 #include <utility>
 
@@ -49,6 +50,19 @@ TEST(Cli, TheHelpPageNamesEveryOption) {
                              "--resolve", "--layers",     "--memory-budget", "--list-build"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
+}
+
+TEST(Cli, TheHelpPageNamesEveryMethodThatThereIs) {
+  const std::string help = vitrail({"render", "--help"}).out;
+  const std::string names = vitrail({"render", "--scene", "spheres", "-o", "a.png", "--method", "none"}).error;
+  const std::string all = names.substr(names.find("methods are ") + 12);
+  std::istringstream words(all);
+  std::size_t count = 0;
+  for (std::string name; words >> name; ++count) {
+    if (name.ends_with(',')) name.pop_back();
+    EXPECT_NE(help.find("\n    " + name + " "), std::string::npos) << name;
+  }
+  EXPECT_GT(count, 10U);
 }
 
 TEST(Cli, WrongUsageIsOneLineAndExitCode2) {

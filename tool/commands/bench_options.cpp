@@ -128,7 +128,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
   addList<std::uint32_t>(command, "--samples", matrix.samples, "1, 2, 4 or 8", sampleCount);
   addList<VitrailResolve>(command, "--resolve", matrix.resolves, "a resolve: compute or fragment", resolveNamed);
   addList<VitrailListBuild>(command, "--list-build", matrix.listBuilds, "a list build: fragment or compute",
-                          listBuildNamed);
+                            listBuildNamed);
   addLimits(command, matrix.limits);
 }
 

@@ -21,4 +21,12 @@ inline void setHelpPage(CLI::App& app, std::string page) {
   app.formatter_fn([page = std::move(page)](const CLI::App*, const std::string&, CLI::AppFormatMode) { return page; });
 }
 
+// Adds a command without options that does one thing.
+inline void addPlainCommand(CLI::App& app, std::function<void()>& run, const char* name, const char* page,
+                            void (*what)()) {
+  CLI::App* command = app.add_subcommand(name);
+  setHelpPage(*command, page);
+  command->callback([&run, what] { run = what; });
+}
+
 } // namespace vitrail::tool

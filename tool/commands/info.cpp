@@ -63,9 +63,7 @@ void runInfo() {
 } // namespace
 
 void addInfoCommand(CLI::App& app, std::function<void()>& run) {
-  CLI::App* command = app.add_subcommand("info");
-  setHelpPage(*command, kInfoHelp);
-  command->callback([&run] { run = runInfo; });
+  addPlainCommand(app, run, "info", kInfoHelp, runInfo);
 }
 
 } // namespace vitrail::tool

@@ -26,9 +26,7 @@ void runScenes() {
 } // namespace
 
 void addScenesCommand(CLI::App& app, std::function<void()>& run) {
-  CLI::App* command = app.add_subcommand("scenes");
-  setHelpPage(*command, kScenesHelp);
-  command->callback([&run] { run = runScenes; });
+  addPlainCommand(app, run, "scenes", kScenesHelp, runScenes);
 }
 
 } // namespace vitrail::tool

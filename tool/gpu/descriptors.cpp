@@ -46,23 +46,22 @@ SingleSet::SingleSet(Gpu& gpu, const std::vector<std::pair<VkDescriptorType, VkS
 
 void SingleSet::writeBuffer(std::uint32_t binding, VkBuffer buffer, VkDeviceSize range) {
   const VkDescriptorBufferInfo info{buffer, 0, range};
-  auto write = vkStruct<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
-  write.dstSet = set_;
-  write.dstBinding = binding;
-  write.descriptorCount = 1;
-  write.descriptorType = types_.at(binding);
-  write.pBufferInfo = &info;
-  vkUpdateDescriptorSets(device_, 1, &write, 0, nullptr);
+  write(binding, &info, nullptr);
 }
 
 void SingleSet::writeImage(std::uint32_t binding, VkImageView view, VkImageLayout imageLayout) {
   const VkDescriptorImageInfo info{VK_NULL_HANDLE, view, imageLayout};
+  write(binding, nullptr, &info);
+}
+
+void SingleSet::write(std::uint32_t binding, const VkDescriptorBufferInfo* buffer, const VkDescriptorImageInfo* image) {
   auto write = vkStruct<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
   write.dstSet = set_;
   write.dstBinding = binding;
   write.descriptorCount = 1;
   write.descriptorType = types_.at(binding);
-  write.pImageInfo = &info;
+  write.pBufferInfo = buffer;
+  write.pImageInfo = image;
   vkUpdateDescriptorSets(device_, 1, &write, 0, nullptr);
 }
 

@@ -24,6 +24,9 @@ class SingleSet {
   void writeImage(std::uint32_t binding, VkImageView view, VkImageLayout imageLayout);
 
  private:
+  // What the binding's type is of; the other is null.
+  void write(std::uint32_t binding, const VkDescriptorBufferInfo* buffer, const VkDescriptorImageInfo* image);
+
   VkDevice device_ = VK_NULL_HANDLE;
   std::vector<VkDescriptorType> types_;
   Unique<VkDescriptorSetLayout> layout_;

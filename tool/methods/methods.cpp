@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "method.h"
+
 namespace vitrail::tool {
 
 namespace {

@@ -10,9 +10,12 @@
 #include <span>
 #include <string_view>
 
-#include "method.h"
+#include "method_options.h"
 
 namespace vitrail::tool {
+
+class Method; // method.h
+struct MethodHost;
 
 // The options of MethodOptions that only some methods have. What a method has not is refused, never ignored.
 enum MethodOption : std::uint32_t {

@@ -4,6 +4,7 @@
 
 #include "../gpu/submit.h"
 #include "../gpu/timers.h"
+#include "../methods/method.h"
 #include "../methods/methods.h"
 #include "../stage/frame.h"
 #include "../stage/stage.h"

@@ -161,6 +161,7 @@ PointPipelines& VulkanHost::pipelinesFor(VitrailVkTargetDesc target, bool specia
   info.nearestIsOne = desc_.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
   info.postDepthCoverage = postDepthCoverage_;
   info.addresses = desc_.shaderByAddress.value_or(desc_.addresses);
+  info.narrowShader = desc_.narrowShader;
   info.cpuDriver = device_.isCpu() && specialized; // of each flow some
   if (specialized) {
     target.nodeFormat = desc_.specializedFor.value_or(target.nodeFormat);

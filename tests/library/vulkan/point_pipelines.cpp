@@ -9,6 +9,7 @@
 #include "shaders/points_address.frag.h"
 #include "shaders/points_cpu.frag.h"
 #include "shaders/points_cpu_address.frag.h"
+#include "shaders/points_narrow.frag.h"
 #include "shaders/points_post_depth.frag.h"
 #include "shaders/points_post_depth_address.frag.h"
 #include "shaders/points_simple.frag.h"
@@ -116,6 +117,7 @@ VkPipeline PointPipelines::opaque(std::uint32_t mask) {
 }
 
 std::span<const std::uint32_t> PointPipelines::pointsShader() const {
+  if (info_.narrowShader) return shaders::points_narrow_frag;
   if (info_.postDepthCoverage && info_.addresses) return shaders::points_post_depth_address_frag;
   if (info_.postDepthCoverage) return shaders::points_post_depth_frag;
   if (info_.cpuDriver && info_.addresses) return shaders::points_cpu_address_frag;

@@ -35,7 +35,8 @@ struct PointPipelinesInfo {
   bool postDepthCoverage = false; // as the points' shader is compiled
   bool addresses = false;
   bool cpuDriver = false;
-  bool specialized = false; // the points' shader is, by these constants
+  bool narrowShader = false; // HostDesc has it
+  bool specialized = false;  // the points' shader is, by these constants
   std::array<std::uint32_t, kConstants> constants{};
   std::uint32_t firstConstant = 0;
 

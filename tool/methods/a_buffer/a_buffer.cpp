@@ -24,7 +24,9 @@
 #include "../../gpu/counters.h"
 #include "../../gpu/descriptors.h"
 #include "../../gpu/pixel_pass.h"
+#include "../method.h"
 #include "../methods.h"
+#include "../shared/counts.h"
 #include "../shared/fragment_pool.h"
 #include "../shared/storing_surfaces.h"
 #include "a_buffer_shared.h"
@@ -208,20 +210,15 @@ void ABuffer::sortAndBlend(Frame& frame) {
 bool ABuffer::finish() { return fragments_.fits(control_.read<shaders::ABufferControl>().total); }
 
 FrameStats ABuffer::stats() const {
-  const auto control = control_.read<shaders::ABufferControl>();
-  std::uint64_t covered = 0;
+  const PictureCounts counts = pictureCounts(control_.read<shaders::ABufferControl>().counts);
   FrameStats stats;
   stats.counted = true;
   stats.resolve = "compute";
-  for (const shaders::ABufferCounts& counts : control.counts) {
-    covered += counts.coveredPixels;
-    stats.fragmentsStored += counts.fragments;
-    stats.layersMax = std::max(stats.layersMax, counts.layersMax);
-    stats.cutPixels += counts.cutPixels;
-  }
-  stats.fragmentsRequested = stats.fragmentsStored;
+  stats.fragmentsRequested = stats.fragmentsStored = counts.fragments;
+  stats.layersMax = counts.layersMax;
+  stats.cutPixels = counts.cutPixels;
   stats.exact = stats.cutPixels == 0;
-  stats.layersMean = meanLayers(stats.fragmentsStored, covered);
+  stats.layersMean = meanLayers(stats.fragmentsStored, counts.coveredPixels);
   stats.nodesBytes = fragments_.bytes();
   stats.headsBytes = offsets_.size() + filled_.size();
   stats.totalBytes = stats.nodesBytes + stats.headsBytes + control_.bytes();

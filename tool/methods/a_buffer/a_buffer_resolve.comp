@@ -60,7 +60,7 @@ void main() {
   if (fits && pixel.x < picture.width && pixel.y < picture.height) resolve(ivec2(pixel));
   barrier();
   if (!first || groupCovered == 0u) return;
-  uint slot = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) % A_BUFFER_SLOTS;
+  uint slot = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) % COUNT_SLOTS;
   atomicAdd(control.counts[slot].coveredPixels, groupCovered);
   atomicMax(control.counts[slot].layersMax, groupLayers);
   atomicAdd(control.counts[slot].cutPixels, groupCut);

@@ -17,6 +17,7 @@
 
 #include "../../gpu/accesses.h"
 #include "../../gpu/pixel_pass.h"
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/depth_complexity.h"
 #include "../shared/device_needs.h"

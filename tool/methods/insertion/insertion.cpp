@@ -12,7 +12,9 @@
 #include "../../gpu/descriptors.h"
 #include "../../gpu/pixel_pass.h"
 #include "../../gpu/used_image.h"
+#include "../method.h"
 #include "../methods.h"
+#include "../shared/counts.h"
 #include "../shared/fragment_pool.h"
 #include "../shared/storing_surfaces.h"
 #include "insertion_shared.h"
@@ -123,23 +125,18 @@ bool Insertion::finish() { return nodes_.fits(control_.read<shaders::InsertionCo
 
 FrameStats Insertion::stats() const {
   const auto control = control_.read<shaders::InsertionControl>();
-  std::uint64_t dropped = 0;
-  std::uint64_t covered = 0;
+  const PictureCounts counts = pictureCounts(control.counts);
+  const std::uint64_t inLists = std::min<std::uint64_t>(control.taken, nodes_.capacity());
   FrameStats stats;
   stats.counted = true;
   stats.resolve = "compute";
-  for (const shaders::InsertionCounts& counts : control.counts) {
-    covered += counts.coveredPixels;
-    dropped += counts.dropped;
-    stats.layersMax = std::max(stats.layersMax, counts.layersMax);
-    stats.approximatePixels += counts.cutPixels;
-  }
-  const std::uint64_t inLists = std::min<std::uint64_t>(control.taken, nodes_.capacity());
+  stats.layersMax = counts.layersMax;
+  stats.approximatePixels = counts.cutPixels;
   stats.fragmentsRequested = control.taken;
-  stats.fragmentsStored = inLists - dropped;
+  stats.fragmentsStored = inLists - counts.fragments;
   stats.fragmentsMissing = stats.fragmentsRequested - stats.fragmentsStored;
   stats.exact = stats.fragmentsMissing == 0;
-  stats.layersMean = meanLayers(inLists, covered);
+  stats.layersMean = meanLayers(inLists, counts.coveredPixels);
   stats.nodesBytes = nodes_.bytes();
   stats.headsBytes = std::uint64_t{extent_.width} * extent_.height * sizeof(std::uint32_t);
   stats.totalBytes = stats.nodesBytes + stats.headsBytes + control_.bytes();

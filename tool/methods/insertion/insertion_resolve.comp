@@ -75,10 +75,10 @@ void main() {
   if (all(lessThan(pixel, imageSize(colorImage)))) countInGroup(resolve(pixel));
   barrier();
   if (!first || groupCovered == 0u) return;
-  uint slot = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) % INSERTION_SLOTS;
+  uint slot = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) % COUNT_SLOTS;
   atomicAdd(control.counts[slot].coveredPixels, groupCovered);
   atomicMax(control.counts[slot].layersMax, groupLayers);
   if (groupCut == 0u) return;
   atomicAdd(control.counts[slot].cutPixels, groupCut);
-  atomicAdd(control.counts[slot].dropped, groupDropped);
+  atomicAdd(control.counts[slot].fragments, groupDropped);
 }

@@ -10,6 +10,7 @@
 // What it gets wrong: fragments beyond the nearest layers, as `loop`.
 #include <memory>
 
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/device_needs.h"
 #include "../shared/nearest_layers.h"

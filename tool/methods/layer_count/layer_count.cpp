@@ -7,6 +7,7 @@
 #include "../../gpu/accesses.h"
 #include "../../gpu/descriptors.h"
 #include "../../gpu/used_image.h"
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/storing_surfaces.h"
 #include "shaders/layer_count.frag.h"

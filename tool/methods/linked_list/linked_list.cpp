@@ -19,6 +19,7 @@
 #include "../../gpu/device.h"
 #include "../../gpu/vk.h"
 #include "../../stage/picture_images.h"
+#include "../method.h"
 #include "../methods.h"
 #include "shaders/collect.frag.h"
 #include "shaders/collect_address.frag.h"
@@ -120,8 +121,8 @@ class LinkedList final : public Method {
   PipelineKind pipelines_; // of surfaces_
   std::optional<SurfacePipelines> surfaces_;
   vulkan::Target target_;
-  std::uint64_t frame_ = 0;  // of the target: rises with every area
-  TilePlan plan_;            // where inTiles_
+  std::uint64_t frame_ = 0;    // of the target: rises with every area
+  TilePlan plan_;              // where inTiles_
   VitrailVkTargetDesc made_{}; // what target_ was made for; its pointers are not kept
   MethodTarget wanted_;
   std::uint64_t budget_ = 0;   // bytes for a tile
@@ -176,7 +177,8 @@ void LinkedList::makeSurfaces() {
   const bool coverage = options_.samples > 1 && gpu_.features().postDepthCoverage;
   const bool address = gpu_.features().poolByAddress;
   VitrailVkTargetDesc desc = targetDesc();
-  desc.listBuild = options_.listBuild != VITRAIL_LIST_BUILD_DEFAULT ? options_.listBuild : context_.defaultListBuild(desc);
+  desc.listBuild =
+      options_.listBuild != VITRAIL_LIST_BUILD_DEFAULT ? options_.listBuild : context_.defaultListBuild(desc);
   PipelineKind kind;
   kind.listBuild = desc.listBuild;
   // To spare the fragment shaders of GPUs; Mesa's CPU driver takes longer. Where samples are tested in the resolve,
@@ -254,7 +256,7 @@ bool LinkedList::createTarget(const VitrailVkTargetDesc& desc) {
   const bool same = made_.nodeCapacity == desc.nodeCapacity && made_.areaPixels == desc.areaPixels &&
                     made_.memoryBudget == desc.memoryBudget;
   if (target_ && same) return true; // the images are the same until releaseTarget()
-  target_ = vulkan::Target();               // first: the old pool and the new one need not fit together
+  target_ = vulkan::Target();       // first: the old pool and the new one need not fit together
   gpu_.memoryFreed(std::exchange(counted_, 0));
   VitrailVkTargetDesc full = desc;
   full.views.count = 1;
@@ -303,7 +305,8 @@ void LinkedList::drawTiles(Frame& frame) {
   planTiles(boxesOf(frame.surfaces()));
   VitrailRect tile{};
   while (plan_ && plan_.next(tile)) {
-    drawArea(frame, {{static_cast<std::int32_t>(tile.x), static_cast<std::int32_t>(tile.y)}, {tile.width, tile.height}});
+    drawArea(frame,
+             {{static_cast<std::int32_t>(tile.x), static_cast<std::int32_t>(tile.y)}, {tile.width, tile.height}});
     frame.submitAndWait();
     const VitrailStats stats = readStats();
     check(resultOf(plan_.finish(stats)), "vitrailFinishTile");

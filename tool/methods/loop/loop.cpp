@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "../../gpu/accesses.h"
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/device_needs.h"
 #include "../shared/nearest_layers.h"

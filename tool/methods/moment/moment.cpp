@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "../../gpu/accesses.h"
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/composite.h"
 #include "../shared/depth_range.h"

@@ -15,6 +15,7 @@
 
 #include "../../gpu/accesses.h"
 #include "../../gpu/pixel_pass.h"
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/device_needs.h"
 #include "../shared/layer_memory.h"

@@ -16,6 +16,7 @@
 
 #include "../../gpu/accesses.h"
 #include "../../stage/surface_shared.h"
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/depth_complexity.h"
 #include "../shared/fixed_blending.h"

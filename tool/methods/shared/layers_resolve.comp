@@ -68,9 +68,9 @@ void main() {
   if (all(lessThan(pixel, size))) resolve(pixel, size);
   barrier();
   if (!first || groupCovered == 0u) return;
-  uint slot = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) % LAYERS_SLOTS;
+  uint slot = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) % COUNT_SLOTS;
   atomicAdd(control.counts[slot].coveredPixels, groupCovered);
   atomicMax(control.counts[slot].layersMax, groupLayers);
   atomicAdd(control.counts[slot].fragments, groupFragments);
-  atomicAdd(control.counts[slot].tailPixels, groupTails);
+  atomicAdd(control.counts[slot].cutPixels, groupTails);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "../../gpu/accesses.h"
+#include "counts.h"
 #include "layer_memory.h"
 #include "layers_shared.h"
 #include "shaders/layers_resolve.comp.h"
@@ -90,20 +91,15 @@ void NearestLayers::blend(Frame& frame) const {
 }
 
 FrameStats NearestLayers::stats() const {
-  const auto control = control_.read<shaders::LayersControl>();
-  std::uint64_t covered = 0;
+  const PictureCounts counts = pictureCounts(control_.read<shaders::LayersControl>().counts);
   FrameStats stats;
   stats.counted = true;
   stats.resolve = "compute";
-  for (const shaders::LayersCounts& counts : control.counts) {
-    covered += counts.coveredPixels;
-    stats.fragmentsRequested += counts.fragments;
-    stats.approximatePixels += counts.tailPixels;
-    stats.layersMax = std::max(stats.layersMax, counts.layersMax);
-  }
-  stats.fragmentsStored = stats.fragmentsRequested; // those of the tails as sums
+  stats.fragmentsRequested = stats.fragmentsStored = counts.fragments; // those of the tails as sums
+  stats.approximatePixels = counts.cutPixels;
+  stats.layersMax = counts.layersMax;
   stats.exact = stats.approximatePixels == 0;
-  stats.layersMean = meanLayers(stats.fragmentsStored, covered);
+  stats.layersMean = meanLayers(stats.fragmentsStored, counts.coveredPixels);
   stats.nodesBytes = entries_.size();
   stats.totalBytes = entries_.size() + tails_.size() + control_.bytes();
   return stats;

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/camera_distance.h"
 #include "../shared/fixed_blending.h"

@@ -21,6 +21,7 @@
 
 #include <fmt/format.h>
 
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/camera_distance.h"
 #include "../shared/fixed_blending.h"

@@ -27,6 +27,7 @@
 #include "../../gpu/accesses.h"
 #include "../../gpu/pixel_pass.h"
 #include "../../gpu/screen_pass.h"
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/depth_complexity.h"
 #include "shaders/stencil_routed.frag.h"

@@ -20,6 +20,7 @@
 
 #include "../../gpu/accesses.h"
 #include "../../stage/surface_shared.h"
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/composite.h"
 #include "../shared/device_needs.h"
@@ -190,24 +191,23 @@ void Stochastic::cmdCopyDepth(Frame& frame) {
 }
 
 void Stochastic::drawPass(Frame& frame, std::uint32_t number, std::uint32_t channel) {
-  VkCommandBuffer commands = frame.commands();
   const shaders::StochasticPass pass{number, channel, 1.0F / static_cast<float>(passes_)};
+  const auto draw = [&](const Scope& scope, const SurfacePipelines& surfaces) {
+    cmdBeginScope(frame.commands(), scope);
+    vkCmdPushConstants(frame.commands(), surfaces.layout(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(pass), &pass);
+    frame.drawSurfaces(surfaces);
+    vkCmdEndRendering(frame.commands());
+  };
   cmdCopyDepth(frame);
   Scope cover = frame.images().wholeScope();
   cover.depth = {.image = &depth_, .depth = AspectUse::Write};
-  cmdBeginScope(commands, cover);
-  vkCmdPushConstants(commands, cover_.layout(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(pass), &pass);
-  frame.drawSurfaces(cover_);
-  vkCmdEndRendering(commands);
+  draw(cover, cover_);
   frame.endPass("cover");
 
   Scope light = frame.images().wholeScope();
   light.colors.push_back({.image = &planes_.image(kLightPlane)});
   light.depth = {.image = &depth_, .depth = AspectUse::Test};
-  cmdBeginScope(commands, light);
-  vkCmdPushConstants(commands, light_.layout(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(pass), &pass);
-  frame.drawSurfaces(light_);
-  vkCmdEndRendering(commands);
+  draw(light, light_);
   frame.endPass("blend");
 }
 

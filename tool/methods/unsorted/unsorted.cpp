@@ -4,6 +4,7 @@
 // Cost: one draw of the surfaces, whose every fragment reads and writes the colour once. No memory.
 #include <memory>
 
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/fixed_blending.h"
 

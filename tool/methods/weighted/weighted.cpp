@@ -17,6 +17,7 @@
 #include <memory>
 #include <vector>
 
+#include "../method.h"
 #include "../methods.h"
 #include "../shared/composite.h"
 #include "../shared/depth_range.h"

@@ -253,22 +253,8 @@ Slot slotOf(std::string_view name) {
 
 // Integer colours run to their type's largest value, floating ones to 1.
 double colorScale(Type type) {
-  switch (type) {
-    case Type::Int8:
-      return 1.0 / 127.0;
-    case Type::Uint8:
-      return 1.0 / 255.0;
-    case Type::Int16:
-      return 1.0 / 32767.0;
-    case Type::Uint16:
-      return 1.0 / 65535.0;
-    case Type::Int32:
-      return 1.0 / 2147483647.0;
-    case Type::Uint32:
-      return 1.0 / 4294967295.0;
-    default:
-      return 1.0;
-  }
+  constexpr std::array<double, 8> largest{127.0, 255.0, 32767.0, 65535.0, 2147483647.0, 4294967295.0, 1.0, 1.0};
+  return 1.0 / largest[static_cast<std::size_t>(type)];
 }
 
 // Not a number where a float cannot hold it; what uses it decides what that means.

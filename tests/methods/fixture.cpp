@@ -1,5 +1,5 @@
 // The shared device lives until the test program ends its environments, before static objects go.
-#include "gpu_fixture.h"
+#include "fixture.h"
 
 #include <algorithm>
 #include <cstddef>

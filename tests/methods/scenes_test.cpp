@@ -12,7 +12,7 @@
 #include "../../tool/scene/builtin/shapes.h"
 #include "../reference/compare.h"
 #include "../reference/test_scenes.h"
-#include "gpu_fixture.h"
+#include "fixture.h"
 
 namespace vitrail::tool::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "../../tool/scene/builtin/builtin.h"
 #include "../reference/test_scenes.h"
-#include "gpu_fixture.h"
+#include "fixture.h"
 
 namespace vitrail::tool::test {
 namespace {
@@ -15,17 +15,18 @@ using reference::straightView;
 using reference::unlitMaterial;
 
 constexpr std::uint64_t kMebibyte = 1 << 20;
+constexpr std::uint64_t kTooLittle = kMebibyte / 4; // for all of the scenes below
 
 class BudgetTest : public GpuTest {
  protected:
-  // Draws a scene without a budget and with ever larger ones, from 1 MiB on, until one tile holds it.
+  // Draws a scene without a budget and with ever larger ones, until one tile holds it.
   void expectSameBits(const Scene& scene, const RenderOptions& options, const MethodOptions& method = {}) {
     SCOPED_TRACE(describe(method));
     StillRenderer renderer(gpu(), scene, {}, DrawOrder::Forward, method);
     const RenderResult whole = renderer.render(options);
     EXPECT_EQ(whole.report.tiles, 1U);
     std::uint32_t tiles = 2;
-    for (std::uint64_t budget = kMebibyte; tiles > 1; budget *= 4) {
+    for (std::uint64_t budget = kTooLittle; tiles > 1; budget *= 4) {
       RenderOptions bounded = options;
       bounded.memoryBudget = budget;
       const RenderResult result = renderer.render(bounded);
@@ -34,7 +35,7 @@ class BudgetTest : public GpuTest {
       EXPECT_EQ(result.report.fragmentsRequested, whole.report.fragmentsRequested) << budget << " bytes";
       EXPECT_EQ(result.report.layersMax, whole.report.layersMax) << budget << " bytes";
       EXPECT_LE(result.report.totalBytes, budget + 4096); // statistics come on top
-      EXPECT_TRUE(budget > kMebibyte || result.report.tiles > 1);
+      EXPECT_TRUE(budget > kTooLittle || result.report.tiles > 1);
       tiles = result.report.tiles;
       ASSERT_LT(budget, 1024 * kMebibyte);
     }
@@ -52,6 +53,23 @@ TEST_F(BudgetTest, ScenesAreTheSameUnderEveryBudget) {
 TEST_F(BudgetTest, AndHoweverTheyAreDrawn) {
   const Scene scene = makeBuiltinScene("spheres", {});
   for (const MethodOptions& method : methodVariety(gpu())) expectSameBits(scene, usualOptions(scene, 320, 180), method);
+}
+
+TEST_F(BudgetTest, ThePoolGrowsWithinTheBudget) {
+  const Scene scene = makeBuiltinScene("hairball", {});
+  RenderOptions options = usualOptions(scene, 320, 180);
+  StillRenderer renderer(gpu(), scene);
+  const RenderResult whole = renderer.render(options);
+  options.memoryBudget = 32 * kMebibyte;
+  for (int i = 0; i < 2; ++i) { // the pool that was made for the first picture holds the second one
+    const RenderResult bounded = renderer.render(options);
+    EXPECT_TRUE(bounded.picture.rgba == whole.picture.rgba);
+    EXPECT_TRUE(bounded.report.exact);
+    EXPECT_EQ(bounded.report.tiles, 1U);
+    EXPECT_GE(bounded.report.nodesBytes, 12 * whole.report.fragmentsRequested);
+    EXPECT_GT(bounded.report.nodesBytes, 12ULL * 4 * 320 * 180); // more than it began with
+    EXPECT_LE(bounded.report.totalBytes, *options.memoryBudget);
+  }
 }
 
 // Panes that fill the picture, each of a colour of its own.

@@ -6,7 +6,7 @@
 #include "../../tool/methods/shared/layer_memory.h"
 #include "../../tool/scene/builtin/builtin.h"
 #include "../reference/test_scenes.h"
-#include "gpu_fixture.h"
+#include "fixture.h"
 
 namespace vitrail::tool::test {
 namespace {

@@ -18,7 +18,7 @@
 #include "../../tool/scene/builtin/builtin.h"
 #include "../reference/compare.h"
 #include "../reference/test_scenes.h"
-#include "gpu_fixture.h"
+#include "fixture.h"
 
 namespace vitrail::tool::test {
 namespace {

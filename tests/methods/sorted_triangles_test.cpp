@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "../reference/test_scenes.h"
-#include "gpu_fixture.h"
+#include "fixture.h"
 
 namespace vitrail::tool::test {
 namespace {

@@ -7,7 +7,7 @@
 #include "../../tool/scene/builtin/builtin.h"
 #include "../../tool/scene/srgb.h"
 #include "../reference/test_scenes.h"
-#include "gpu_fixture.h"
+#include "fixture.h"
 
 namespace vitrail::tool::test {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "../reference/shading.h"
 #include "../reference/test_scenes.h"
-#include "gpu_fixture.h"
+#include "fixture.h"
 
 namespace vitrail::tool::test {
 namespace {

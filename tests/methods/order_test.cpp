@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "../../tool/scene/builtin/builtin.h"
-#include "gpu_fixture.h"
+#include "fixture.h"
 
 namespace vitrail::tool::test {
 namespace {
