@@ -59,4 +59,4 @@ install(FILES ${PROJECT_BINARY_DIR}/package/vitrailConfig.cmake ${PROJECT_BINARY
 install(FILES ${PROJECT_BINARY_DIR}/package/vitrail.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 # The guides, whose links to each other and to README.md hold there as here.
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)

@@ -3,7 +3,8 @@
 
     check_docs.py --prefix PREFIX --cc CC --cxx CXX FILE.md...
 
-```c and ```cpp: the body of a function, after docs/prelude.h. ```glsl: a whole shader, or the body of one's main().
+```c and ```cpp: the body of a function, after docs/prelude.h. ```glsl: a whole fragment or compute shader, or the body of
+a fragment shader's main().
 ```cmake: the end of a CMakeLists.txt with an executable `renderer`. ```sh is not run."""
 import argparse
 import os
@@ -71,8 +72,9 @@ def compile_glsl(options, folder, line, where, text):
     elif "#version" not in text:
         text = "#version 460\n" + text
     source = text.replace("void main()", prelude + "void main()")
+    stage = "comp" if "local_size_x" in text else "frag"
     return ["glslc", "--target-env=vulkan1.2", "-Werror", f"-I{options.prefix}/share/vitrail/shaders", "-o", os.devnull,
-            write(folder, "block.frag", source)]
+            write(folder, f"block.{stage}", source)]
 
 
 def configure_cmake(options, folder, line, where, text):

@@ -43,6 +43,11 @@ struct Extent {
 
 enum class ColorFormat { Float32, Float16 }; // of the picture; results of Float16 are not read back
 
+// How the collecting shader is compiled: as most hosts do; for CPU drivers (VITRAIL_CPU_DRIVER); or for one kind of
+// target and no other (VITRAIL_ONLY_*): `standard` nodes without words at 1 sample, lists built as collected, overflow
+// skipped.
+enum class ShaderKind { Usual, ForCpu, Narrow };
+
 struct HostDesc {
   std::uint32_t width = 8;
   std::uint32_t height = 8;
@@ -71,8 +76,13 @@ struct HostDesc {
   std::optional<VitrailListBuild> specializedForListBuild;
   // Strangers among the points are drawn by a shader that is specialized for a target that differs in this.
   std::optional<VitrailOverflow> strangersFor;
+<<<<<<< HEAD
   bool narrowShader = false; // the collecting shader is compiled for `standard` at 1 sample and nothing else
   bool guarded = false;      // the memory is this host's, between guard words
+=======
+  ShaderKind shader = ShaderKind::Usual;
+  bool guarded = false; // the memory is this host's, between guard words
+>>>>>>> api04
   // The fragments that are taken to have asked for a node before the first point. `guarded` only.
   std::uint32_t requestedBefore = 0;
 

@@ -493,18 +493,24 @@ TEST_P(ListsTest, CompactDepthsAreToldApartAsStated) {
 struct Kind {
   VitrailListBuild listBuild;
   bool addresses;
+  ShaderKind shader;
 };
 
 std::vector<Kind> kindsOf(const Features& features) {
-  std::vector<Kind> kinds = {{VITRAIL_LIST_BUILD_FRAGMENT, false}, {VITRAIL_LIST_BUILD_COMPUTE, false}};
-  if (!features.addresses) return kinds;
-  kinds.push_back({VITRAIL_LIST_BUILD_FRAGMENT, true});
-  kinds.push_back({VITRAIL_LIST_BUILD_COMPUTE, true});
+  std::vector<Kind> kinds;
+  for (const ShaderKind shader : {ShaderKind::Usual, ShaderKind::ForCpu}) {
+    for (const bool addresses : {false, true}) {
+      if (addresses && !features.addresses) continue;
+      kinds.push_back({VITRAIL_LIST_BUILD_FRAGMENT, addresses, shader});
+      kinds.push_back({VITRAIL_LIST_BUILD_COMPUTE, addresses, shader});
+    }
+  }
   return kinds;
 }
 
 std::string describe(const Kind& kind) {
-  return "list build " + std::to_string(kind.listBuild) + (kind.addresses ? ", by address" : ", by binding");
+  return "list build " + std::to_string(kind.listBuild) + (kind.addresses ? ", by address" : ", by binding") +
+         (kind.shader == ShaderKind::ForCpu ? ", for CPU drivers" : "");
 }
 
 // A shader that is compiled for one kind of target (VITRAIL_ONLY_FORMAT and so on) draws the same there, and stores
@@ -547,6 +553,7 @@ TEST_P(ListsTest, AShaderOfAnotherTargetStoresNothing) {
     desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
     desc.listBuild = kind.listBuild;
     desc.addresses = kind.addresses;
+    desc.shader = kind.shader;
     const Point point = {0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}};
     desc.specialized = true;
     EXPECT_EQ(draw(desc, std::span(&point, 1)).stats.fragmentsStored, 1U);
@@ -569,6 +576,31 @@ TEST_P(ListsTest, AShaderOfAnotherTargetStoresNothing) {
   }
 }
 
+// A shader that was compiled for one kind of target draws there what every shader does, and stores nothing elsewhere.
+TEST_P(ListsTest, AShaderForOneKindOfTargetSuitsNoOther) {
+  HostDesc desc;
+  desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
+  desc.overflow = VITRAIL_OVERFLOW_SKIP;
+  const std::vector<Point> points = randomLists(desc, {0, 1, 5, 20, 3}, 9);
+  desc.capacity = static_cast<std::uint32_t>(points.size());
+  const PointResult usual = draw(desc, points);
+  desc.shader = ShaderKind::Narrow;
+  const PointResult narrow = draw(desc, points);
+  EXPECT_TRUE(narrow.pixels == usual.pixels);
+  EXPECT_EQ(narrow.stats.exact, 1U);
+  std::vector<HostDesc> others(4, desc);
+  others[0].nodes = VITRAIL_NODE_HDR;
+  others[1].overflow = VITRAIL_OVERFLOW_APPROXIMATE;
+  others[2].listBuild = VITRAIL_LIST_BUILD_COMPUTE;
+  others[3].userWords = true;
+  for (const HostDesc& other : others) {
+    const PointResult result = draw(other, points);
+    EXPECT_EQ(result.stats.fragmentsStored, 0U);
+    EXPECT_EQ(result.stats.fragmentsMissing, usual.stats.fragmentsStored);
+    EXPECT_EQ(result.stats.exact, 0U);
+  }
+}
+
 // Nodes that were given to such a shader are on no list that shows: what is left of other frames in them stays unseen.
 TEST_P(ListsTest, NodesThatNobodyWroteAreNotSeen) {
   for (const Kind& kind : kindsOf(features())) {
@@ -577,6 +609,7 @@ TEST_P(ListsTest, NodesThatNobodyWroteAreNotSeen) {
     desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
     desc.listBuild = kind.listBuild;
     desc.addresses = kind.addresses;
+    desc.shader = kind.shader;
     desc.specialized = true;
     desc.specializedForListBuild =
         kind.listBuild == VITRAIL_LIST_BUILD_COMPUTE ? VITRAIL_LIST_BUILD_FRAGMENT : VITRAIL_LIST_BUILD_COMPUTE;

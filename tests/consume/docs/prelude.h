@@ -42,6 +42,14 @@ extern VkImageView multisampledColorView;
 extern VkImageView multisampledDepthView;
 extern VkBuffer poolBuffer;
 extern VkDeviceSize firstFreeByte;
+extern VkDeviceSize poolBufferSize;
+
+extern VkPipeline pickPipeline;
+extern VkPipelineLayout pickLayout;
+extern VkDescriptorSet pickedSet;
+extern const int32_t cursor[2];
+extern VkBuffer readbackBuffer;
+extern const void* readbackMapped;
 
 extern VkRenderPass resolvePass;
 extern VkRenderingInfo colorAndDepth;
@@ -59,6 +67,9 @@ void imageBarrier(VkCommandBuffer commandBuffer, VkImage image, VkImageLayout ol
                   VkAccessFlags newAccess);
 void drawOpaque(VkCommandBuffer commandBuffer);
 void drawInterface(VkCommandBuffer commandBuffer);
+void waitForFenceOf(uint64_t pastFrame);
+void printObject(uint32_t object);
+void recordFrame(VitrailVkTarget drawnTarget, uint64_t frameNumber);
 void drawTransparentFrame(VitrailVkTarget drawnTarget, const VitrailVkBeginInfo* info);
 void graphUsesBuffer(VkBuffer buffer, VkDeviceSize offset, VkDeviceSize size, VkPipelineStageFlags source,
                      VkPipelineStageFlags destination);
