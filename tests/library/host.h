@@ -76,13 +76,8 @@ struct HostDesc {
   std::optional<VitrailListBuild> specializedForListBuild;
   // Strangers among the points are drawn by a shader that is specialized for a target that differs in this.
   std::optional<VitrailOverflow> strangersFor;
-<<<<<<< HEAD
-  bool narrowShader = false; // the collecting shader is compiled for `standard` at 1 sample and nothing else
-  bool guarded = false;      // the memory is this host's, between guard words
-=======
   ShaderKind shader = ShaderKind::Usual;
   bool guarded = false; // the memory is this host's, between guard words
->>>>>>> api04
   // The fragments that are taken to have asked for a node before the first point. `guarded` only.
   std::uint32_t requestedBefore = 0;
 

@@ -105,6 +105,8 @@ TEST_P(ListsTest, EveryFormatAndBlendModeMatchesTheReferenceInEveryOrder) {
       desc.depthOrder = way.stencilMark ? VITRAIL_DEPTH_NEAREST_IS_ONE : VITRAIL_DEPTH_NEAREST_IS_ZERO;
       desc.specialized = true;
       apply(way, desc);
+      if (desc.listBuild == VITRAIL_LIST_BUILD_COMPUTE) desc.shader = ShaderKind::ForCpu; // with each list build
+      if (desc.resolve == VITRAIL_RESOLVE_FRAGMENT && !way.stencilMark) desc.shader = ShaderKind::ForCpu;
       PointVariety variety;
       variety.blendModes = true;
       variety.brightest = format == VITRAIL_NODE_HDR ? 8.0F : 1.0F;
@@ -511,37 +513,6 @@ std::vector<Kind> kindsOf(const Features& features) {
 std::string describe(const Kind& kind) {
   return "list build " + std::to_string(kind.listBuild) + (kind.addresses ? ", by address" : ", by binding") +
          (kind.shader == ShaderKind::ForCpu ? ", for CPU drivers" : "");
-}
-
-// A shader that is compiled for one kind of target (VITRAIL_ONLY_FORMAT and so on) draws the same there, and stores
-// nothing anywhere else.
-TEST_P(ListsTest, AShaderForOneKindOfTargetSuitsNoOther) {
-  HostDesc desc;
-  desc.behind = {0.5F, 0.25F, 0.75F, 1.0F};
-  desc.overflow = VITRAIL_OVERFLOW_SKIP;
-  const std::vector<Point> points = randomLists(desc, {1, 5, 20, 40}, 3);
-  desc.capacity = static_cast<std::uint32_t>(points.size());
-  const PointResult wide = draw(desc, points);
-  desc.narrowShader = true;
-  const PointResult narrow = draw(desc, points);
-  EXPECT_TRUE(narrow.pixels == wide.pixels);
-  EXPECT_EQ(narrow.stats.exact, 1U);
-  for (const int difference : {0, 1, 2, 3}) {
-    SCOPED_TRACE(difference);
-    HostDesc other = desc;
-    if (difference == 0) other.nodes = VITRAIL_NODE_HDR;
-    if (difference == 1) other.overflow = VITRAIL_OVERFLOW_APPROXIMATE;
-    if (difference == 2) other.listBuild = VITRAIL_LIST_BUILD_COMPUTE;
-    if (difference == 3) other.userWords = true;
-    other.guarded = true;
-    const std::unique_ptr<PointHost> host = makeHost(other);
-    const PointResult result = host->draw(points);
-    EXPECT_EQ(result.stats.fragmentsStored, 0U);
-    EXPECT_EQ(result.stats.fragmentsMissing, points.size());
-    EXPECT_EQ(result.stats.exact, 0U);
-    EXPECT_EQ(result.pixels[0], desc.behind);
-    EXPECT_TRUE(host->guardsUntouched());
-  }
 }
 
 // A shader that is specialized for another target stores nothing there, and says so.

@@ -42,7 +42,6 @@ class Device {
   [[nodiscard]] std::uint32_t queueFamily() const { return queueFamily_; }
   [[nodiscard]] const VkPhysicalDeviceLimits& limits() const { return limits_; }
   [[nodiscard]] const Features& features() const { return features_; }
-  [[nodiscard]] bool isCpu() const { return isCpu_; } // a driver that runs shaders on the CPU
 
   // A type of memory among the allowed ones that has all of the properties; throws HostError where there is none.
   [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed, VkMemoryPropertyFlags properties) const;
@@ -69,7 +68,6 @@ class Device {
   VkPhysicalDeviceLimits limits_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   Features features_;
-  bool isCpu_ = false;
   std::mutex mutex_; // messages arrive on any thread
   std::vector<std::string> errors_;
 };

@@ -161,12 +161,7 @@ PointPipelines& VulkanHost::pipelinesFor(VitrailVkTargetDesc target, bool specia
   info.nearestIsOne = desc_.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
   info.postDepthCoverage = postDepthCoverage_;
   info.addresses = desc_.shaderByAddress.value_or(desc_.addresses);
-<<<<<<< HEAD
-  info.narrowShader = desc_.narrowShader;
-  info.cpuDriver = device_.isCpu() && specialized; // of each flow some
-=======
   info.shader = desc_.shader;
->>>>>>> api04
   if (specialized) {
     target.nodeFormat = desc_.specializedFor.value_or(target.nodeFormat);
     target.overflow = desc_.specializedForOverflow.value_or(target.overflow);

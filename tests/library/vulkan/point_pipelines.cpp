@@ -124,8 +124,6 @@ std::span<const std::uint32_t> PointPipelines::pointsShader() const {
   }
   if (info_.postDepthCoverage && info_.addresses) return shaders::points_post_depth_address_frag;
   if (info_.postDepthCoverage) return shaders::points_post_depth_frag;
-  if (info_.cpuDriver && info_.addresses) return shaders::points_cpu_address_frag;
-  if (info_.cpuDriver) return shaders::points_cpu_frag;
   if (info_.addresses) return shaders::points_address_frag;
   return shaders::points_simple_frag;
 }

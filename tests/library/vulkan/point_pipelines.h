@@ -34,14 +34,8 @@ struct PointPipelinesInfo {
   bool nearestIsOne = false;
   bool postDepthCoverage = false; // as the points' shader is compiled
   bool addresses = false;
-<<<<<<< HEAD
-  bool cpuDriver = false;
-  bool narrowShader = false; // HostDesc has it
-  bool specialized = false;  // the points' shader is, by these constants
-=======
   ShaderKind shader = ShaderKind::Usual;
   bool specialized = false; // the points' shader is, by these constants
->>>>>>> api04
   std::array<std::uint32_t, kConstants> constants{};
   std::uint32_t firstConstant = 0;
 
