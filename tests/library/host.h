@@ -43,8 +43,9 @@ struct Extent {
 
 enum class ColorFormat { Float32, Float16 }; // of the picture; results of Float16 are not read back
 
-// How the collecting shader is compiled: as most hosts do; for CPU drivers (VITRAIL_CPU_DRIVER); or for one kind of target
-// and no other (VITRAIL_ONLY_*): `standard` nodes without words at 1 sample, lists built as collected, overflow skipped.
+// How the collecting shader is compiled: as most hosts do; for CPU drivers (VITRAIL_CPU_DRIVER); or for one kind of
+// target and no other (VITRAIL_ONLY_*): `standard` nodes without words at 1 sample, lists built as collected, overflow
+// skipped.
 enum class ShaderKind { Usual, ForCpu, Narrow };
 
 struct HostDesc {

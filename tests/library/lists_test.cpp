@@ -105,6 +105,8 @@ TEST_P(ListsTest, EveryFormatAndBlendModeMatchesTheReferenceInEveryOrder) {
       desc.depthOrder = way.stencilMark ? VITRAIL_DEPTH_NEAREST_IS_ONE : VITRAIL_DEPTH_NEAREST_IS_ZERO;
       desc.specialized = true;
       apply(way, desc);
+      if (desc.listBuild == VITRAIL_LIST_BUILD_COMPUTE) desc.shader = ShaderKind::ForCpu; // with each list build
+      if (desc.resolve == VITRAIL_RESOLVE_FRAGMENT && !way.stencilMark) desc.shader = ShaderKind::ForCpu;
       PointVariety variety;
       variety.blendModes = true;
       variety.brightest = format == VITRAIL_NODE_HDR ? 8.0F : 1.0F;

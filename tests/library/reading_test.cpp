@@ -131,6 +131,21 @@ TEST_P(ReadingTest, SamplesPoolsAndAreasOfAllKinds) {
   }
 }
 
+// Words are no part of what is drawn.
+TEST_P(ReadingTest, WordsChangeNoPicture) {
+  for (const Way& way : everyWay(features(), 1)) {
+    SCOPED_TRACE(way.name);
+    HostDesc desc = hostDesc();
+    apply(way, desc);
+    const std::vector<Point> points = wordyPoints(desc, 7);
+    desc.capacity = static_cast<std::uint32_t>(points.size());
+    const PointResult with = draw(desc, points);
+    desc.userWords = false;
+    desc.copyLayers = 0;
+    EXPECT_TRUE(draw(desc, points).pixels == with.pixels);
+  }
+}
+
 // Lists that find no room are left out whole, and the header says how much room they would take.
 TEST_P(ReadingTest, ListsThatFindNoRoomAreLeftOut) {
   HostDesc desc = hostDesc();

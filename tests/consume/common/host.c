@@ -148,11 +148,11 @@ static void printReason(VitrailLogSeverity severity, const char* message, void* 
 
 VitrailVkContext hostCreateContext(Host* host) {
   const VitrailVkContextDesc desc = {.instance = host->instance,
-                                   .physicalDevice = host->physicalDevice,
-                                   .device = host->device,
-                                   .getInstanceProcAddr = host->getInstanceProcAddr,
-                                   .log = printReason,
-                                   .logUser = host};
+                                     .physicalDevice = host->physicalDevice,
+                                     .device = host->device,
+                                     .getInstanceProcAddr = host->getInstanceProcAddr,
+                                     .log = printReason,
+                                     .logUser = host};
   VitrailVkContext context;
   hostCheck(host, vitrailVkCreateContext(&desc, &context), "vitrailVkCreateContext");
   return context;

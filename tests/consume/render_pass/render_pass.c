@@ -108,14 +108,14 @@ static void destroyFrame(const Host* host, Frame* frame) {
 static VitrailVkTarget createTarget(const Host* host, VitrailVkContext context, const Frame* frame) {
   const VkExtent2D extent = frame->color.extent;
   const VitrailVkTargetDesc desc = {.extent = extent,
-                                  .nodeCapacity = 3 * extent.width * extent.height,
-                                  .resolve = VITRAIL_RESOLVE_FRAGMENT,
-                                  .colorFormat = frame->color.format,
-                                  .scope = {.depthFormat = frame->depth.format,
-                                            .stencilFormat = frame->depth.format,
-                                            .renderPass = frame->resolvePass,
-                                            .stencilMark = VK_TRUE},
-                                  .debugName = "render_pass"};
+                                    .nodeCapacity = 3 * extent.width * extent.height,
+                                    .resolve = VITRAIL_RESOLVE_FRAGMENT,
+                                    .colorFormat = frame->color.format,
+                                    .scope = {.depthFormat = frame->depth.format,
+                                              .stencilFormat = frame->depth.format,
+                                              .renderPass = frame->resolvePass,
+                                              .stencilMark = VK_TRUE},
+                                    .debugName = "render_pass"};
   VitrailVkTarget target;
   hostCheck(host, vitrailVkCreateTarget(context, &desc, &target), "vitrailVkCreateTarget");
   return target;

@@ -62,11 +62,8 @@ Buffer::Buffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage
 }
 
 void cmdBarrier(VkCommandBuffer commands, const Access& before, const Access& after) {
-  auto barrier = zeroed<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
-  barrier.srcStageMask = before.stages;
-  barrier.srcAccessMask = before.accesses;
-  barrier.dstStageMask = after.stages;
-  barrier.dstAccessMask = after.accesses;
+  const VkMemoryBarrier2 barrier{
+      VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, before.stages, before.accesses, after.stages, after.accesses};
   auto info = zeroed<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
   info.memoryBarrierCount = 1;
   info.pMemoryBarriers = &barrier;
@@ -95,17 +92,18 @@ Image::Image(const Device& device, VkExtent2D extent, VkFormat format, VkSampleC
 
 void Image::cmdUse(VkCommandBuffer commands, VkImageLayout layout, const Access& access) {
   if (layout == layout_ && access == access_ && (access.accesses & ~kReads) == 0) return; // reading goes on
-  auto barrier = zeroed<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
-  barrier.srcStageMask = access_.stages;
-  barrier.srcAccessMask = access_.accesses;
-  barrier.dstStageMask = access.stages;
-  barrier.dstAccessMask = access.accesses;
-  barrier.oldLayout = layout_;
-  barrier.newLayout = layout;
-  barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.image = image_.get();
-  barrier.subresourceRange = {aspects_, 0, 1, 0, 1};
+  const VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                      nullptr,
+                                      access_.stages,
+                                      access_.accesses,
+                                      access.stages,
+                                      access.accesses,
+                                      layout_,
+                                      layout,
+                                      VK_QUEUE_FAMILY_IGNORED,
+                                      VK_QUEUE_FAMILY_IGNORED,
+                                      image_.get(),
+                                      {aspects_, 0, 1, 0, 1}};
   auto info = zeroed<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
   info.imageMemoryBarrierCount = 1;
   info.pImageMemoryBarriers = &barrier;

@@ -119,7 +119,8 @@ VkPipeline PointPipelines::opaque(std::uint32_t mask) {
 std::span<const std::uint32_t> PointPipelines::pointsShader() const {
   if (info_.shader == ShaderKind::Narrow) return shaders::points_narrow_frag;
   if (info_.shader == ShaderKind::ForCpu && !info_.postDepthCoverage) {
-    return info_.addresses ? std::span<const std::uint32_t>(shaders::points_cpu_address_frag) : shaders::points_cpu_frag;
+    return info_.addresses ? std::span<const std::uint32_t>(shaders::points_cpu_address_frag)
+                           : shaders::points_cpu_frag;
   }
   if (info_.postDepthCoverage && info_.addresses) return shaders::points_post_depth_address_frag;
   if (info_.postDepthCoverage) return shaders::points_post_depth_frag;

@@ -36,6 +36,14 @@ class RefusedTest : public VulkanTest {
     expectOneLine(word);
   }
 
+  // The same with a change to what would be right.
+  template <typename Change>
+  void expectRefused(const std::string& word, Change change) const {
+    VitrailVkTargetDesc desc = desc_;
+    change(desc);
+    expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, word);
+  }
+
   // Of a context that was told of no features.
   static Context& context() { return backend().context(0); }
 
@@ -64,37 +72,18 @@ TEST_F(RefusedTest, ContextsWithoutWhatTheyNeed) {
 }
 
 TEST_F(RefusedTest, WrongFields) {
+  using Desc = VitrailVkTargetDesc;
+  expectRefused("extent", [](Desc& desc) { desc.extent.width = 0; });
+  expectRefused("samples", [](Desc& desc) { desc.samples = static_cast<VkSampleCountFlagBits>(3); });
+  expectRefused("nodeFormat", [](Desc& desc) { desc.nodeFormat = static_cast<VitrailNodeFormat>(7); });
+  expectRefused("depthOrder", [](Desc& desc) { desc.depthOrder = static_cast<VitrailDepthOrder>(2); });
+  expectRefused("overflow", [](Desc& desc) { desc.overflow = static_cast<VitrailOverflow>(5); });
+  expectRefused("listBuild", [](Desc& desc) { desc.listBuild = static_cast<VitrailListBuild>(4); });
+  expectRefused("resolve", [](Desc& desc) { desc.resolve = static_cast<VitrailResolve>(9); });
+  expectRefused("msaaResolve", [](Desc& desc) { desc.msaaResolve = static_cast<VitrailMsaaResolve>(2); });
+  expectRefused("framesInFlight", [](Desc& desc) { desc.framesInFlight = VITRAIL_MAX_FRAMES_IN_FLIGHT + 1; });
+  expectRefused("next", [](Desc& desc) { desc.next = &desc; });
   VitrailVkTargetDesc desc = desc_;
-  desc.extent.width = 0;
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "extent");
-  desc = desc_;
-  desc.samples = static_cast<VkSampleCountFlagBits>(3);
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "samples");
-  desc = desc_;
-  desc.nodeFormat = static_cast<VitrailNodeFormat>(7);
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "nodeFormat");
-  desc = desc_;
-  desc.depthOrder = static_cast<VitrailDepthOrder>(2);
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "depthOrder");
-  desc = desc_;
-  desc.overflow = static_cast<VitrailOverflow>(5);
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "overflow");
-  desc = desc_;
-  desc.listBuild = static_cast<VitrailListBuild>(4);
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "listBuild");
-  desc = desc_;
-  desc.resolve = static_cast<VitrailResolve>(9);
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "resolve");
-  desc = desc_;
-  desc.framesInFlight = VITRAIL_MAX_FRAMES_IN_FLIGHT + 1;
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "framesInFlight");
-  desc = desc_;
-  desc.msaaResolve = static_cast<VitrailMsaaResolve>(2);
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "msaaResolve");
-  desc = desc_;
-  desc.next = &desc;
-  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "next");
-  desc = desc_;
   desc.colorFormat = VK_FORMAT_B8G8R8A8_SRGB;
   expectRefused(desc, VK_ERROR_FORMAT_NOT_SUPPORTED, "colorFormat");
 }
