@@ -128,35 +128,37 @@ bool vitrailKeepsWords() {
   return VITRAIL_USER_WORDS == 0xffffffffu ? vitrailParameters.userWords != 0u : VITRAIL_USER_WORDS != 0u;
 }
 
-// The nodes that this shader may write: none where it was specialized for another target.
+#ifdef VITRAIL_BUFFER_REFERENCE
+const uint VITRAIL_BY_ADDRESS = 1u;
+#else
+const uint VITRAIL_BY_ADDRESS = 0u;
+#endif
+
+// The nodes that this shader may write: none where it was specialized for another target, or does not reach the pool.
 uint vitrailCapacity() {
   VitrailLayout nodes = vitrailTargetLayout();
   uint number = VITRAIL_LAYOUT(nodes.format, nodes.samples, uint(vitrailKeepsSums()), uint(vitrailKeepsLoose()),
-                               uint(vitrailKeepsWords()));
+                               uint(vitrailKeepsWords()), VITRAIL_BY_ADDRESS);
   return vitrailParameters.capacities[number / 4u][number % 4u];
 }
 
 // Two flows for fragments that find no node. Their shader may not suit the target: it may have been specialized for
 // another one, or not reach the pool. It writes to no memory that it does not know then, and counts what is missing.
 #ifndef VITRAIL_CPU_DRIVER
-// The pixels of the area, as far as the first question goes: outside is also where the shader cannot reach the pool.
-uint vitrailWidth() { return vitrailReachedWidth(); }
-
-// For a fragment outside: whether that is why.
-void vitrailCountUnreached(uvec2 pixel) {
-  if (pixel.x < vitrailParameters.width && pixel.y < vitrailParameters.height) atomicAdd(vitrailControl.misfits, 1u);
-}
-
 // Takes a node: its index, or where there is none one from `capacity` on, which is the shader's own. Whether the shader
 // suits the target is not asked before: GPUs were seen to take longer for that.
 uint vitrailTakeNode(uint capacity) { return atomicAdd(vitrailControl.requested, 1u); }
 
-// For a fragment whose shader was specialized for another target. The node that it was given, if any, is left as one
-// that changes nothing: who builds lists later takes all nodes.
+// For a fragment whose shader does not suit the target. The node that it was given, if any, is left as one that changes
+// nothing: who builds lists later takes all nodes, unless one of them could not be reached.
 void vitrailTurnAway(uint index, uint pixelIndex) {
   if (index < vitrailParameters.capacity) {
     atomicAdd(vitrailControl.misfitNodes, 1u);
-    vitrailStoreEmpty(index, pixelIndex & VITRAIL_PIXEL_MASK, vitrailParameters.format);
+    if (vitrailReachesPool()) {
+      vitrailStoreEmpty(index, pixelIndex & VITRAIL_PIXEL_MASK, vitrailParameters.format);
+    } else {
+      vitrailControl.staleNodes = 1u;
+    }
   }
 }
 
@@ -177,13 +179,9 @@ void vitrailCountMissing(uint index, uint pixelIndex, uint capacity) {
 // For drivers that execute every branch and every loop's body once, for no fragment if need be, and are slow where
 // memory is reached: a fragment whose shader does not suit the target takes no index, and there is one atomic for all
 // else.
-uint vitrailWidth() { return vitrailParameters.width; }
-
-void vitrailCountUnreached(uvec2 pixel) {}
-
 uint vitrailTakeNode(uint capacity) {
   uint index = VITRAIL_END;
-  if (capacity != 0u && vitrailReachedWidth() != 0u) index = atomicAdd(vitrailControl.requested, 1u);
+  if (capacity != 0u) index = atomicAdd(vitrailControl.requested, 1u);
   return index;
 }
 
@@ -253,10 +251,7 @@ void vitrailCollect(vec4 color, uint blend, float depth, uint word) {
   vitrailKeepDeclarations();
   VitrailLayout nodes = vitrailTargetLayout();
   uvec2 pixel = vitrailAreaPixel(nodes.samples);
-  if (pixel.x >= vitrailWidth() || pixel.y >= vitrailParameters.height) { // also those left and above
-    vitrailCountUnreached(pixel);
-    return;
-  }
+  if (pixel.x >= vitrailParameters.width || pixel.y >= vitrailParameters.height) return; // also those left and above
   uint coverage = nodes.samples == 1u ? 1u : uint(gl_SampleMaskIn[0]) & ((1u << nodes.samples) - 1u);
   uvec4 node;
   bool changes;
@@ -271,7 +266,7 @@ void vitrailCollect(vec4 color, uint blend, float depth, uint word) {
 #endif
   if (!changes || coverage == 0u) return;
 
-  uint pixelIndex = pixel.y * vitrailWidth() + pixel.x;
+  uint pixelIndex = pixel.y * vitrailParameters.width + pixel.x;
   uint capacity = vitrailCapacity();
   uint index = vitrailTakeNode(capacity);
   if (index >= capacity) {

@@ -75,11 +75,12 @@ struct VitrailControl {
   uint requested;   // fragments that asked for a node: the index of the next one's, which may be beyond the pool
   uint wraps;       // VITRAIL_WRAP_STEP of them each are not in `requested`
   uint misfits;     // fragments whose shader cannot write to this target and that took no node: they are missing too
-  uint misfitNodes; // nodes that such fragments were given, and left empty
+  uint misfitNodes; // nodes that such fragments were given, and left empty where they reach them
   uint layersMax;   // this and the next three are written by the resolve
   uint coveredPixels[VITRAIL_COUNTERS];
   uint cutPixels; // lists that the driver did not let it finish
   uint approximatePixels;
+  uint staleNodes; // 1: some of those nodes were not reached, and hold what they held before
   VitrailListClass classes[VITRAIL_LIST_CLASSES];
   // The arguments of indirect commands, which follow from the first four (src/kernels/arguments.glsl). Of a frame
   // without a fragment all are 0 but for `plain`.
@@ -102,11 +103,12 @@ struct VitrailControl {
   uint plainFirstInstance;
 };
 
-// How nodes are collected, as a number: a shader that was specialized for another target must not write to this one.
-// Samples are 1, 2, 4 or 8, the others behind them 0 or 1.
-#define VITRAIL_LAYOUT(format, samples, keepSums, loose, userWords) \
-  (((((format)*4u + (samples) / 2u - (samples) / 8u) * 2u + (keepSums)) * 2u + (loose)) * 2u + (userWords))
-#define VITRAIL_LAYOUTS 96
+// How nodes are collected, as a number: a shader that was specialized for another target, or that cannot reach the pool,
+// must not write to it. Samples are 1, 2, 4 or 8, the others behind them 0 or 1.
+#define VITRAIL_LAYOUT(format, samples, keepSums, loose, userWords, byAddress) \
+  ((((((format)*4u + (samples) / 2u - (samples) / 8u) * 2u + (keepSums)) * 2u + (loose)) * 2u + (userWords)) * 2u + \
+   (byAddress))
+#define VITRAIL_LAYOUTS 192
 
 // What one vitrailVkCmdBegin sets (std140).
 struct VitrailParameters {
@@ -122,10 +124,8 @@ struct VitrailParameters {
   uint loose;        // 1: a compute pass builds the lists
   uint nodesLow;     // the address of the pool, where it is reached by address
   uint nodesHigh;
-  // `width` for collecting shaders that reach the whole pool by its binding, and for those that reach it by its address
-  // (VITRAIL_BUFFER_REFERENCE); 0 where they cannot. Asking whether a pixel is in the area asks both questions at once.
-  uint widthByBinding;
-  uint widthByAddress;
+  uint wholeByBinding; // 1: shaders reach the whole pool by its binding
+  uint wholeByAddress; // 1: and those that define VITRAIL_BUFFER_REFERENCE, by its address
   uint userWords; // 1: nodes carry a word of the host's
   uint _reserved;
   // The nodes for shaders of each VITRAIL_LAYOUT: `capacity` for those that suit the target, else 0. Asking whether a
@@ -173,15 +173,15 @@ static_assert(sizeof(VitrailNodeStandard) == 8);
 static_assert(sizeof(VitrailNodeCompact) == 8);
 static_assert(sizeof(VitrailNodeHdr) == 16);
 static_assert(sizeof(VitrailListClass) == 16);
-static_assert(sizeof(VitrailControl) == 208);
+static_assert(sizeof(VitrailControl) == 212);
 static_assert(offsetof(VitrailControl, wraps) == 4); // collect.glsl reaches both as words
 static_assert(offsetof(VitrailControl, misfits) == 8);
-static_assert(offsetof(VitrailControl, classes) == 92);
-static_assert(offsetof(VitrailControl, overflowGroupsX) == 140);
-static_assert(offsetof(VitrailControl, plainFirstInstance) == 204);
-static_assert(offsetof(VitrailParameters, widthByBinding) == 48);
+static_assert(offsetof(VitrailControl, classes) == 96);
+static_assert(offsetof(VitrailControl, overflowGroupsX) == 144);
+static_assert(offsetof(VitrailControl, plainFirstInstance) == 208);
+static_assert(offsetof(VitrailParameters, wholeByBinding) == 48);
 static_assert(offsetof(VitrailParameters, capacities) == 64);
-static_assert(sizeof(VitrailParameters) == 448);
+static_assert(sizeof(VitrailParameters) == 832);
 #define VITRAIL_CONSTANT constexpr uint
 #else
 #define VITRAIL_CONSTANT const uint

@@ -83,7 +83,7 @@ VitrailList vitrailOpenList(ivec2 pixel) {
   list.head = VITRAIL_END;
   if (inside) list.head = vitrailHeads[local.y * vitrailParameters.width + local.x];
   list.more = list.head < list.nodeCount;
-  bool reached = vitrailReachedWidth() != 0u;
+  bool reached = vitrailReachesPool();
 #ifdef VITRAIL_ONLY_FORMAT
   reached = reached && vitrailParameters.format == VITRAIL_ONLY_FORMAT;
 #endif

@@ -31,12 +31,12 @@ uvec2 vitrailPoolAddress() { return uvec2(vitrailParameters.nodesLow, vitrailPar
 #endif
 #include "pool.glsl"
 
-// The width of the area for shaders that reach the pool as this one does: 0 where it cannot.
-uint vitrailReachedWidth() {
+// Whether a shader that reaches the pool as this one does reaches all of it.
+bool vitrailReachesPool() {
 #ifdef VITRAIL_BUFFER_REFERENCE
-  return vitrailParameters.widthByAddress;
+  return vitrailParameters.wholeByAddress != 0u;
 #else
-  return vitrailParameters.widthByBinding;
+  return vitrailParameters.wholeByBinding != 0u;
 #endif
 }
 

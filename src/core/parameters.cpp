@@ -21,13 +21,17 @@ layout::VitrailParameters parametersOf(const TargetInfo& info, std::uint32_t nod
   parameters.loose = info.listBuild == VITRAIL_LIST_BUILD_COMPUTE ? 1 : 0;
   parameters.nodesLow = static_cast<std::uint32_t>(pool.address);
   parameters.nodesHigh = static_cast<std::uint32_t>(pool.address >> 32U);
-  parameters.widthByBinding = pool.wholeByBinding ? area.width : 0;
-  parameters.widthByAddress = pool.address != 0 ? area.width : 0;
+  parameters.wholeByBinding = pool.wholeByBinding ? 1 : 0;
+  parameters.wholeByAddress = pool.address != 0 ? 1 : 0;
   parameters.userWords = info.userWords ? 1 : 0;
   std::array<std::uint32_t, VITRAIL_LAYOUTS> capacities{};
   static_assert(sizeof(capacities) == sizeof(parameters.capacities));
-  capacities.at(VITRAIL_LAYOUT(parameters.format, parameters.samples, parameters.keepSums, parameters.loose,
-                               parameters.userWords)) = parameters.capacity;
+  const auto capacityOf = [&](std::uint32_t byAddress) -> std::uint32_t& {
+    return capacities.at(VITRAIL_LAYOUT(parameters.format, parameters.samples, parameters.keepSums, parameters.loose,
+                                        parameters.userWords, byAddress));
+  };
+  if (pool.wholeByBinding) capacityOf(0) = parameters.capacity;
+  if (pool.address != 0) capacityOf(1) = parameters.capacity;
   std::memcpy(parameters.capacities, capacities.data(), sizeof(capacities));
   return parameters;
 }

@@ -1,6 +1,7 @@
 // What the GPU leaves behind of a frame for the host, and how that is read.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "vitrail/layout.h"
@@ -13,7 +14,6 @@ struct FrameFacts {
   std::uint32_t nodeCapacity; // of the pool that the frame uses
   std::uint32_t misused;      // 1: calls were missing or wrong
   std::uint32_t sumsCleared;  // the number of the clear that its sums needed (sums_clear.h); 0 where it leaves them dirty
-  std::uint32_t reserved;
 };
 
 // The memory that one frame's counters are copied to. The tag is 0 from the start of a frame until its counters are
@@ -23,7 +23,7 @@ struct StatsSlot {
   FrameFacts facts;  // `sumsCleared` is read without the tag
   std::uint64_t tag; // frame + 1, so that a slot never written names no frame
 };
-static_assert(sizeof(StatsSlot) == sizeof(layout::VitrailControl) + 24);
+static_assert(offsetof(StatsSlot, tag) == sizeof(layout::VitrailControl) + sizeof(FrameFacts)); // no hidden gaps
 
 // One slot more than frames in flight: a host reads frame n - framesInFlight when it has waited for it, and by then it
 // may have recorded frame n.

@@ -99,7 +99,7 @@ void copyStatistics(VkCommandBuffer commandBuffer, const VitrailVkTarget_T& targ
   const VkBufferCopy region{storage.offset + storage.layout.control.offset, target.slotOffset(),
                             sizeof(layout::VitrailControl)};
   vk.CmdCopyBuffer(commandBuffer, storage.buffer, target.stats.buffer, 1, &region);
-  const FrameFacts facts{storage.needs.nodeCapacity, target.order.misused() ? 1U : 0U, target.sums.fact(), 0};
+  const FrameFacts facts{storage.needs.nodeCapacity, target.order.misused() ? 1U : 0U, target.sums.fact()};
   vk.CmdUpdateBuffer(commandBuffer, target.stats.buffer, target.slotOffset() + offsetof(StatsSlot, facts),
                      sizeof(facts), &facts);
 }

@@ -14,6 +14,10 @@ bool isTurnedAway(uvec4 node) { return (node.x | node.y | node.z | (node.w & ~VI
 
 void main() {
   if (gl_GlobalInvocationID.x == 0u) writeArguments();
+  if (vitrailControl.staleNodes != 0u) { // no telling which: the frame has no lists, and none of its nodes counts
+    if (gl_GlobalInvocationID.x == 0u) vitrailControl.misfitNodes = nodesInUse();
+    return;
+  }
   uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   uint nodes = nodesInUse();
   for (uint index = gl_GlobalInvocationID.x; index < nodes; index += threads) {

@@ -122,6 +122,7 @@ const Offsets& controlOffsets() {
       offsetof(VitrailControl, misfits),          offsetof(VitrailControl, misfitNodes),
       offsetof(VitrailControl, layersMax),        offsetof(VitrailControl, coveredPixels),
       offsetof(VitrailControl, cutPixels),        offsetof(VitrailControl, approximatePixels),
+      offsetof(VitrailControl, staleNodes),
       offsetof(VitrailControl, classes),          offsetof(VitrailControl, overflowGroupsX),
       offsetof(VitrailControl, overflowGroupsY),  offsetof(VitrailControl, overflowGroupsZ),
       offsetof(VitrailControl, pixelGroupsX),     offsetof(VitrailControl, pixelGroupsY),
@@ -155,8 +156,8 @@ const Offsets& parameterOffsets() {
                                   offsetof(VitrailParameters, loose),
                                   offsetof(VitrailParameters, nodesLow),
                                   offsetof(VitrailParameters, nodesHigh),
-                                  offsetof(VitrailParameters, widthByBinding),
-                                  offsetof(VitrailParameters, widthByAddress),
+                                  offsetof(VitrailParameters, wholeByBinding),
+                                  offsetof(VitrailParameters, wholeByAddress),
                                   offsetof(VitrailParameters, userWords),
                                   offsetof(VitrailParameters, _reserved),
                                   offsetof(VitrailParameters, capacities)};
