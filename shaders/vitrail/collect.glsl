@@ -25,7 +25,7 @@
 //   VITRAIL_CPU_DRIVER            for drivers that run shaders on the CPU, as Mesa's lavapipe: the same result, in a
 //                                 way that suits them
 //   VITRAIL_CONSTANT_ID           the first of five specialization constants, default 1700; see
-//                                 vitrailVkCollectSpecialization()
+//                                 vitrailVkCollectSpecialization(). The sixth is the shader's own
 //
 // and, to make the shader smaller where one kind of target is all that it is for, what that is. What others take is not
 // in the shader then; fragments on another target count as missing, as with the specialization constants, which are
@@ -89,6 +89,7 @@ layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_SUMS, std430) buffer Vitrail
 // The same memory again. Mesa's lavapipe waits before every draw until the draws before it are done where it sees that
 // the draw's shader writes a buffer; where a binding is declared more than once, as the pool's is, it does not look.
 // Draws need not wait: what they share is changed by atomics or set by all to one value, and a node has one writer.
+layout(constant_id = VITRAIL_CONSTANT_ID + 5) const uint VITRAIL_NEVER = 0u; // no host sets it
 layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_CONTROL, std430) buffer VitrailControlAgain {
   uint vitrailControlAgain[];
 };
@@ -217,10 +218,13 @@ void vitrailAddMissing(uint pixelIndex, uvec4 node, uint coverage, VitrailLayout
 // side of a write of the other for a hazard between draws.
 void vitrailKeepDeclarations() {
 #ifdef VITRAIL_CPU_DRIVER
-  if (VITRAIL_SAMPLES != 0xffffffffu) return; // a specialization constant, never so
+  if (VITRAIL_NEVER == 0u) return;
   atomicAdd(vitrailHeadsAgain[0], 0u);
 #if VITRAIL_ONLY_OVERFLOW == 0
   atomicAdd(vitrailPixelSumsAgain[0], 0u);
+#endif
+#ifndef VITRAIL_BUFFER_REFERENCE
+  vitrailLinks[0] = 0u; // one format may be declared alone (VITRAIL_ONLY_FORMAT)
 #endif
 #endif
 }

@@ -28,8 +28,8 @@
 // after 65,535 turns; vitrailListWasCut() then says so, from lists of about 1,000 fragments on.
 //
 // Define before the include VITRAIL_SET, and VITRAIL_BUFFER_REFERENCE where the pool is to be reached by its address,
-// as for vitrail/collect.glsl. It may stand beside that one in a shader. The set's layout offers three storage buffers
-// of those that a stage may have.
+// as for vitrail/collect.glsl. It may stand beside that one in a shader. It takes three of the storage buffers
+// that a stage may have.
 #ifndef VITRAIL_LIST_GLSL
 #define VITRAIL_LIST_GLSL
 
@@ -83,7 +83,11 @@ VitrailList vitrailOpenList(ivec2 pixel) {
   list.head = VITRAIL_END;
   if (inside) list.head = vitrailHeads[local.y * vitrailParameters.width + local.x];
   list.more = list.head < list.nodeCount;
-  if (vitrailReachedWidth() == 0u) list.nodeCount = 0u; // the pool is out of reach: what there is remains unseen
+  bool reached = vitrailReachedWidth() != 0u;
+#ifdef VITRAIL_ONLY_FORMAT
+  reached = reached && vitrailParameters.format == VITRAIL_ONLY_FORMAT;
+#endif
+  if (!reached) list.nodeCount = 0u; // what there is remains unseen
   return list;
 }
 
@@ -99,7 +103,8 @@ bool vitrailNextLayer(inout VitrailList list, out VitrailLayer layer) {
 }
 
 // Once vitrailNextLayer() has returned false, or a loop round it has ended: whether the list has more fragments,
-// because the driver ended the loop, or because this shader cannot reach the pool (VITRAIL_BUFFER_REFERENCE).
+// because the driver ended the loop, or because this shader cannot reach the pool (VITRAIL_BUFFER_REFERENCE) or is for
+// another node format (VITRAIL_ONLY_FORMAT).
 bool vitrailListWasCut(VitrailList list) { return list.left > 0u || list.more; }
 
 #endif

@@ -20,7 +20,7 @@ struct Contender {
 };
 
 // A scene whose settings are set up and warm.
-struct Stage {
+struct WarmScene {
   BenchRun run;
   std::uint64_t triangles = 0;
   std::vector<Contender> contenders;
@@ -77,20 +77,20 @@ std::vector<Contender> prepareAll(Gpu& gpu, const Scene& scene, const BenchRun& 
   return contenders;
 }
 
-Stage prepareStage(Gpu& gpu, const Scene& scene, const BenchRun& run, const std::string& place = {}) {
-  Stage stage{run, triangleCount(scene), {}, {}};
-  stage.contenders = prepareAll(gpu, scene, run, place, stage.skipped);
-  checkFragments(gpu, scene, run, stage.contenders);
-  return stage;
+WarmScene prepareScene(Gpu& gpu, const Scene& scene, const BenchRun& run, const std::string& place = {}) {
+  WarmScene warm{run, triangleCount(scene), {}, {}};
+  warm.contenders = prepareAll(gpu, scene, run, place, warm.skipped);
+  checkFragments(gpu, scene, run, warm.contenders);
+  return warm;
 }
 
 // Draws all rounds of scenes that are measured with as many. Every frame of a round is of another setting or scene.
-void drawRounds(std::vector<Stage>& stages) {
+void drawRounds(std::vector<WarmScene>& scenes) {
   std::vector<std::pair<Contender*, const BenchRun*>> all;
-  for (Stage& stage : stages) {
-    for (Contender& contender : stage.contenders) all.emplace_back(&contender, &stage.run);
+  for (WarmScene& warm : scenes) {
+    for (Contender& contender : warm.contenders) all.emplace_back(&contender, &warm.run);
   }
-  const BenchRun& first = stages.front().run;
+  const BenchRun& first = scenes.front().run;
   for (std::uint32_t round = 0; round < first.repeats; ++round) {
     if (first.progress) first.progress(fmt::format("round {} of {}", round + 1, first.repeats));
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -100,17 +100,17 @@ void drawRounds(std::vector<Stage>& stages) {
   }
 }
 
-SceneMeasurement finish(Stage& stage) {
+SceneMeasurement finish(WarmScene& warm) {
   SceneMeasurement result;
-  result.triangles = stage.triangles;
-  result.width = stage.run.picture.width;
-  result.height = stage.run.picture.height;
-  result.skipped = std::move(stage.skipped);
-  for (const Contender& contender : stage.contenders) {
-    if (stage.run.takePicture) stage.run.takePicture(contender.options, contender.renderer->render(stage.run.picture));
+  result.triangles = warm.triangles;
+  result.width = warm.run.picture.width;
+  result.height = warm.run.picture.height;
+  result.skipped = std::move(warm.skipped);
+  for (const Contender& contender : warm.contenders) {
+    if (warm.run.takePicture) warm.run.takePicture(contender.options, contender.renderer->render(warm.run.picture));
     result.measurements.push_back(summarize(contender.options, contender.report, contender.frames));
   }
-  compare(result.measurements, stage.run.bytesPerSecond);
+  compare(result.measurements, warm.run.bytesPerSecond);
   return result;
 }
 
@@ -133,23 +133,23 @@ std::uint64_t memoryToHold(const Gpu& gpu) {
 } // namespace
 
 SceneMeasurement measureScene(Gpu& gpu, const Scene& scene, const BenchRun& run) {
-  std::vector<Stage> stages;
-  stages.push_back(prepareStage(gpu, scene, run));
-  if (stages[0].contenders.empty()) throw GpuError(stages[0].skipped.front().reason);
-  drawRounds(stages);
-  return finish(stages[0]);
+  std::vector<WarmScene> scenes;
+  scenes.push_back(prepareScene(gpu, scene, run));
+  if (scenes[0].contenders.empty()) throw GpuError(scenes[0].skipped.front().reason);
+  drawRounds(scenes);
+  return finish(scenes[0]);
 }
 
 std::vector<SceneMeasurement> measureSteps(Gpu& gpu, std::size_t count,
                                            const std::function<BenchStep(std::size_t index)>& step) {
   std::vector<SceneMeasurement> results;
-  std::vector<Stage> waiting;
+  std::vector<WarmScene> waiting;
   for (std::size_t i = 0; i < count; ++i) {
     const BenchStep made = step(i);
-    waiting.push_back(prepareStage(gpu, made.scene, made.run, made.place));
+    waiting.push_back(prepareScene(gpu, made.scene, made.run, made.place));
     if (i + 1 < count && gpu.memoryHeld() < memoryToHold(gpu)) continue;
     drawRounds(waiting);
-    for (Stage& stage : waiting) results.push_back(finish(stage));
+    for (WarmScene& warm : waiting) results.push_back(finish(warm));
     waiting.clear();
   }
   requireOne(results);
