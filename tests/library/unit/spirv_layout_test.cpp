@@ -19,6 +19,7 @@
 #include "shaders/points_cpu_address.frag.h"
 #include "shaders/points_post_depth.frag.h"
 #include "shaders/points_post_depth_address.frag.h"
+#include "shaders/points_post_depth_cpu.frag.h"
 #include "shaders/points_simple.frag.h"
 #include "vitrail/bindings.h"
 #include "vitrail/layout.h"
@@ -242,6 +243,7 @@ TEST(SpirvLayout, CollectEqualsTheStructs) {
   expectLayout(shaders::points_cpu_address_frag, true);
   expectLayout(shaders::points_address_frag, true);
   expectLayout(shaders::points_post_depth_address_frag, true);
+  expectLayout(shaders::points_post_depth_cpu_frag, false);
 }
 
 // How many variables name a binding of set 0.
