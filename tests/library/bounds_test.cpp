@@ -24,6 +24,7 @@ TEST_P(BoundsTest, CapacitiesAroundTheNeedCountWhatIsMissing) {
       desc.samples = samples;
       desc.nodes = format;
       desc.listBuild = format == VITRAIL_NODE_COMPACT ? VITRAIL_LIST_BUILD_FRAGMENT : VITRAIL_LIST_BUILD_COMPUTE;
+      desc.shader = samples > 1 ? ShaderKind::ForCpu : ShaderKind::Usual;
       desc.guarded = true;
       PointVariety variety;
       variety.coverage = samples > 1;

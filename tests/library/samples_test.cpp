@@ -47,6 +47,7 @@ class SamplesTest : public BackendTest {
           desc.nodes = format;
           desc.specialized = format != VITRAIL_NODE_STANDARD;
           desc.behindSamples = colorsBySample(samples);
+          desc.shader = format == VITRAIL_NODE_STANDARD ? ShaderKind::ForCpu : ShaderKind::Usual;
           apply(way, desc);
           test(desc);
         }

@@ -4,6 +4,7 @@
 #include <spirv/unified1/spirv.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -18,6 +19,7 @@
 #include "shaders/points_cpu_address.frag.h"
 #include "shaders/points_post_depth.frag.h"
 #include "shaders/points_post_depth_address.frag.h"
+#include "shaders/points_post_depth_cpu.frag.h"
 #include "shaders/points_simple.frag.h"
 #include "vitrail/bindings.h"
 #include "vitrail/layout.h"
@@ -214,8 +216,9 @@ void expectShared(const Module& module) {
     expectControl(module, type);
     ++structs;
   }
-  for (const std::uint32_t binding : {VITRAIL_BINDING_CONTROL, VITRAIL_BINDING_HEADS, VITRAIL_BINDING_SUMS,
-                                      VITRAIL_BINDING_MEDIUM_LISTS, VITRAIL_BINDING_LONG_LISTS}) {
+  constexpr std::array<std::uint32_t, 5> kWords{VITRAIL_BINDING_CONTROL, VITRAIL_BINDING_HEADS, VITRAIL_BINDING_SUMS,
+                                                VITRAIL_BINDING_MEDIUM_LISTS, VITRAIL_BINDING_LONG_LISTS};
+  for (const std::uint32_t binding : kWords) {
     for (const std::uint32_t array : blockMembers(module, binding)) {
       if (module.structs.contains(array)) continue;
       const bool groups = blockMembers(module, VITRAIL_BINDING_MEDIUM_LISTS).size() > 0;
@@ -241,6 +244,7 @@ TEST(SpirvLayout, CollectEqualsTheStructs) {
   expectLayout(shaders::points_cpu_address_frag, true);
   expectLayout(shaders::points_address_frag, true);
   expectLayout(shaders::points_post_depth_address_frag, true);
+  expectLayout(shaders::points_post_depth_cpu_frag, false);
 }
 
 // How many variables name a binding of set 0.
@@ -252,7 +256,8 @@ std::size_t declarations(const Module& module, std::uint32_t binding) {
 
 // vitrail/collect.glsl says why, and where.
 TEST(SpirvLayout, CollectDeclaresTheBuffersThatItWritesTwiceForCpuDrivers) {
-  for (const std::uint32_t binding : {VITRAIL_BINDING_CONTROL, VITRAIL_BINDING_HEADS, VITRAIL_BINDING_SUMS}) {
+  constexpr std::array<std::uint32_t, 3> kWritten{VITRAIL_BINDING_CONTROL, VITRAIL_BINDING_HEADS, VITRAIL_BINDING_SUMS};
+  for (const std::uint32_t binding : kWritten) {
     EXPECT_GT(declarations(parse(shaders::points_cpu_frag), binding), 1U) << "binding " << binding;
     EXPECT_GT(declarations(parse(shaders::points_cpu_address_frag), binding), 1U) << "binding " << binding;
     EXPECT_EQ(declarations(parse(shaders::points_simple_frag), binding), 1U) << "binding " << binding;

@@ -12,6 +12,7 @@
 #include "shaders/points_narrow.frag.h"
 #include "shaders/points_post_depth.frag.h"
 #include "shaders/points_post_depth_address.frag.h"
+#include "shaders/points_post_depth_cpu.frag.h"
 #include "shaders/points_simple.frag.h"
 
 namespace vitrail::tests::vulkan {
@@ -117,14 +118,14 @@ VkPipeline PointPipelines::opaque(std::uint32_t mask) {
 }
 
 std::span<const std::uint32_t> PointPipelines::pointsShader() const {
+  const bool cpu = info_.shader == ShaderKind::ForCpu;
   if (info_.shader == ShaderKind::Narrow) return shaders::points_narrow_frag;
-  if (info_.shader == ShaderKind::ForCpu && !info_.postDepthCoverage) {
-    return info_.addresses ? std::span<const std::uint32_t>(shaders::points_cpu_address_frag)
-                           : shaders::points_cpu_frag;
-  }
   if (info_.postDepthCoverage && info_.addresses) return shaders::points_post_depth_address_frag;
+  if (info_.postDepthCoverage && cpu) return shaders::points_post_depth_cpu_frag;
   if (info_.postDepthCoverage) return shaders::points_post_depth_frag;
+  if (info_.addresses && cpu) return shaders::points_cpu_address_frag;
   if (info_.addresses) return shaders::points_address_frag;
+  if (cpu) return shaders::points_cpu_frag;
   return shaders::points_simple_frag;
 }
 
