@@ -149,13 +149,23 @@ uint vitrailCapacity() {
 // suits the target is not asked before: GPUs were seen to take longer for that.
 uint vitrailTakeNode(uint capacity) { return atomicAdd(vitrailControl.requested, 1u); }
 
+// Whether this shader could write to the target's nodes, whatever else it does not suit.
+bool vitrailReachesNodes() {
+#ifdef VITRAIL_ONLY_FORMAT
+  if (vitrailParameters.format != VITRAIL_ONLY_FORMAT) return false;
+#endif
+  return vitrailReachesPool();
+}
+
 // For a fragment whose shader does not suit the target. The node that it was given, if any, is left as one that changes
-// nothing: who builds lists later takes all nodes, unless one of them could not be reached.
+// nothing: who builds lists later takes all nodes, unless one of them could not be reached. Every word here costs: GPUs
+// give all fragments the registers that it takes.
 void vitrailTurnAway(uint index, uint pixelIndex) {
   if (index < vitrailParameters.capacity) {
     atomicAdd(vitrailControl.misfitNodes, 1u);
-    if (vitrailReachesPool()) {
-      vitrailStoreEmpty(index, pixelIndex & VITRAIL_PIXEL_MASK, vitrailParameters.format);
+    if (vitrailReachesNodes()) {
+      VitrailLayout target = VitrailLayout(vitrailParameters.format, vitrailParameters.samples, false);
+      vitrailStoreNode(index, uvec4(0u, 0u, 0u, pixelIndex & VITRAIL_PIXEL_MASK), target);
     } else {
       vitrailControl.staleNodes = 1u;
     }

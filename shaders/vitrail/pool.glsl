@@ -133,23 +133,4 @@ void vitrailStoreWord(uint index, uint word, VitrailLayout nodes) {
 }
 uint vitrailLoadWord(uint index, VitrailLayout nodes) { return VITRAIL_WORD(index, vitrailNodeWords(nodes)); }
 
-// Leaves a node of any format empty but for one word, in the place of `next`: what a shader does that is made for
-// another format.
-void vitrailStoreEmpty(uint index, uint next, uint format) {
-  uint perNode = format == VITRAIL_FORMAT_HDR ? 4u : 2u; // of those that lie together
-#ifdef VITRAIL_BUFFER_REFERENCE
-  VitrailWords node = VitrailWords(vitrailWordsAddress(index, perNode));
-#define VITRAIL_NODE_WORD(i) node.words[i]
-#else
-#define VITRAIL_NODE_WORD(i) vitrailLinks[perNode * index + i]
-#endif
-  for (uint i = 0u; i < perNode; ++i) VITRAIL_NODE_WORD(i) = 0u;
-  if (format == VITRAIL_FORMAT_STANDARD) {
-    VITRAIL_LINK(index) = next;
-  } else {
-    VITRAIL_NODE_WORD(perNode - 1u) = next;
-  }
-#undef VITRAIL_NODE_WORD
-}
-
 #endif
