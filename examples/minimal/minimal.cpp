@@ -187,7 +187,8 @@ void draw(const char* path) {
   const auto check = [&](VkResult result) {
     if (result != VK_SUCCESS) throw std::runtime_error(reason);
   };
-  VitrailVkContextDesc contextDesc{.instance = *gpu.instance, .physicalDevice = gpu.physicalDevice, .device = *gpu.device};
+  VitrailVkContextDesc contextDesc{
+      .instance = *gpu.instance, .physicalDevice = gpu.physicalDevice, .device = *gpu.device};
   contextDesc.getInstanceProcAddr = vkGetInstanceProcAddr;
   contextDesc.log = [](VitrailLogSeverity, const char* message, void* user) {
     *static_cast<std::string*>(user) = message;

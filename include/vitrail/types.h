@@ -3,7 +3,8 @@
  *
  * In every descriptor a field that is zero means its documented default. Every descriptor begins with `next`, through
  * which later versions add fields (as Vulkan's pNext does): it is null in this version, and anything else is refused.
- * Structures that the library fills in begin with `next` too: set it to null, or zero the structure, before the call. */
+ * Structures that the library fills in begin with `next` too: set it to null, or zero the structure, before the call.
+ */
 #ifndef VITRAIL_TYPES_H
 #define VITRAIL_TYPES_H
 
@@ -24,7 +25,8 @@ extern "C" {
 #define VITRAIL_VERSION_MINOR 4
 #define VITRAIL_VERSION_PATCH 0
 /* Versions as numbers that grow: major << 22 | minor << 12 | patch. */
-#define VITRAIL_MAKE_VERSION(major, minor, patch) (((uint32_t)(major) << 22) | ((uint32_t)(minor) << 12) | (uint32_t)(patch))
+#define VITRAIL_MAKE_VERSION(major, minor, patch) \
+  (((uint32_t)(major) << 22) | ((uint32_t)(minor) << 12) | (uint32_t)(patch))
 #define VITRAIL_VERSION VITRAIL_MAKE_VERSION(VITRAIL_VERSION_MAJOR, VITRAIL_VERSION_MINOR, VITRAIL_VERSION_PATCH)
 
 /* The version of the library that the program runs with: VITRAIL_VERSION is that of the header it was compiled with.
@@ -205,9 +207,10 @@ VITRAIL_API uint64_t vitrailNodePoolSize(VitrailNodeFormat format, uint32_t node
 typedef struct VitrailMemory {
   void* next; /* null */
   uint32_t nodeCapacity;
-  uint64_t nodeBytes;    /* the node pool */
-  uint64_t headBytes;    /* 4 bytes a pixel of the area */
-  uint64_t otherBytes;   /* lists of deep pixels, sums for overflow, room to copy lists, counters, parameters, statistics */
+  uint64_t nodeBytes; /* the node pool */
+  uint64_t headBytes; /* 4 bytes a pixel of the area */
+  uint64_t
+      otherBytes; /* lists of deep pixels, sums for overflow, room to copy lists, counters, parameters, statistics */
   uint64_t retiredBytes; /* memory that was replaced and that frames in flight still use */
   uint64_t totalBytes;   /* all of these, the host's own buffer included */
 } VitrailMemory;

@@ -24,12 +24,13 @@
  * (vitrailVkCmd*) allocate nothing, wait for nothing and cannot fail. The library never submits, never waits, and keeps
  * no global state.
  *
- * Out of order: a recording call that may not come at its place in the frame (before vitrailVkCmdBegin, twice, a resolve
- * of lists that were not collected) records nothing and logs one error, and the frame's statistics are never exact.
+ * Out of order: a recording call that may not come at its place in the frame (before vitrailVkCmdBegin, twice, a
+ * resolve of lists that were not collected) records nothing and logs one error, and the frame's statistics are never
+ * exact.
  *
- * Null: a pointer or handle that is not said to be optional is required. Where one is null, calls that return a VkResult
- * return VK_ERROR_INITIALIZATION_FAILED, calls that return something else return zero, and the others do nothing; what
- * is to be filled in is zeroed where it is there, and the context's log, where there is one, gets a line.
+ * Null: a pointer or handle that is not said to be optional is required. Where one is null, calls that return a
+ * VkResult return VK_ERROR_INITIALIZATION_FAILED, calls that return something else return zero, and the others do
+ * nothing; what is to be filled in is zeroed where it is there, and the context's log, where there is one, gets a line.
  *
  * This header needs <vulkan/vulkan_core.h> and no prototypes: define VK_NO_PROTOTYPES freely. */
 #ifndef VITRAIL_VULKAN_H
@@ -79,8 +80,8 @@ typedef struct VitrailVkContextDesc {
 } VitrailVkContextDesc;
 
 /* Builds what the targets of a device share. Errors: VK_ERROR_INITIALIZATION_FAILED for a missing required field or an
- * unknown feature bit, VK_ERROR_FEATURE_NOT_PRESENT where the physical device lacks fragmentStoresAndAtomics, Vulkan 1.2
- * or a feature that `features` names, or what Vulkan returned. On error *context is null. */
+ * unknown feature bit, VK_ERROR_FEATURE_NOT_PRESENT where the physical device lacks fragmentStoresAndAtomics,
+ * Vulkan 1.2 or a feature that `features` names, or what Vulkan returned. On error *context is null. */
 VITRAIL_API VkResult vitrailVkCreateContext(const VitrailVkContextDesc* desc, VitrailVkContext* context);
 
 /* Destroys the context. Its targets are destroyed before; where some are left the log says so, no new ones can be made,
@@ -111,8 +112,8 @@ typedef struct VitrailVkScope {
   VkRenderPass renderPass; /* default: dynamic rendering, which the host has enabled */
   uint32_t subpass;
   /* Early rejection by stencil: the scope's stencil holds 0 where no transparent fragment was drawn, because the host's
-   * collecting pipelines increment it (vitrailVkStencilMark), and pixels or samples whose stencil & stencilMask is 0 are
-   * rejected before the resolve's shader. Default mask: 0xff. Not for per-pixel resolves of several samples. */
+   * collecting pipelines increment it (vitrailVkStencilMark), and pixels or samples whose stencil & stencilMask is 0
+   * are rejected before the resolve's shader. Default mask: 0xff. Not for per-pixel resolves of several samples. */
   VkBool32 stencilMark;
   uint32_t stencilMask;
 } VitrailVkScope;
@@ -308,8 +309,8 @@ VITRAIL_API uint64_t vitrailVkTargetFrame(VitrailVkTarget target);
 
 /* Ends the collect pass. Once a frame, outside a rendering scope, after all draws that collect. Makes the lists that
  * fragment shaders wrote visible to the resolve. With VITRAIL_LIST_BUILD_COMPUTE it builds the lists, and for
- * VITRAIL_RESOLVE_FRAGMENT it sorts the lists that are longer than 16 fragments, in place. Binds compute pipelines and a
- * set. */
+ * VITRAIL_RESOLVE_FRAGMENT it sorts the lists that are longer than 16 fragments, in place. Binds compute pipelines and
+ * a set. */
 VITRAIL_API void vitrailVkCmdCollected(VkCommandBuffer commandBuffer, VitrailVkTarget target);
 
 typedef struct VitrailVkResolveInfo {
@@ -365,7 +366,8 @@ typedef struct VitrailVkCopyHeader {
 } VitrailVkCopyHeader;
 
 typedef struct VitrailVkCopiedList {
-  uint32_t first; /* of the layers; 0xffffffff where the list was left out, for want of room or in a frame that overflowed */
+  uint32_t
+      first; /* of the layers; 0xffffffff where the list was left out, for want of room or in a frame that overflowed */
   uint32_t count; /* of the layers that the pixel has */
 } VitrailVkCopiedList;
 
@@ -407,12 +409,12 @@ VITRAIL_API void vitrailVkBarriers(VitrailVkTarget target, VitrailVkBarrierPoint
 
 /* ---- Statistics ------------------------------------------------------------------------------------------------- */
 
-/* Reads what the GPU reported about a frame. Frame 0, where the host leaves the numbers to the library (frame 0 in every
- * vitrailVkCmdBegin): the newest frame that has finished; VitrailStats::frame tells which. Never blocks: VK_NOT_READY until the frame's vitrailVkCmdEnd() has
- * executed, and once a frame has begun to execute that is more than framesInFlight later: a host reads frame
- * n - framesInFlight when it has waited for its fence, before or after it records frame n. The values are complete once
- * the host has seen the frame's fence or semaphore; a host that polls earlier gets VK_NOT_READY or the complete
- * values. */
+/* Reads what the GPU reported about a frame. Frame 0, where the host leaves the numbers to the library (frame 0 in
+ * every vitrailVkCmdBegin): the newest frame that has finished; VitrailStats::frame tells which. Never blocks:
+ * VK_NOT_READY until the frame's vitrailVkCmdEnd() has executed, and once a frame has begun to execute that is more
+ * than framesInFlight later: a host reads frame n - framesInFlight when it has waited for its fence, before or after it
+ * records frame n. The values are complete once the host has seen the frame's fence or semaphore; a host that polls
+ * earlier gets VK_NOT_READY or the complete values. */
 VITRAIL_API VkResult vitrailVkReadStats(VitrailVkTarget target, uint64_t frame, VitrailStats* stats);
 
 /* ---- Tiles ------------------------------------------------------------------------------------------------------ */

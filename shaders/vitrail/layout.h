@@ -103,9 +103,9 @@ struct VitrailControl {
   uint plainFirstInstance;
 };
 
-// How nodes are collected, as a number: a shader that was specialized for another target, or that cannot reach the pool,
-// must not write to it. Samples are 1, 2, 4 or 8, the others behind them 0 or 1.
-#define VITRAIL_LAYOUT(format, samples, keepSums, loose, userWords, byAddress) \
+// How nodes are collected, as a number: a shader that was specialized for another target, or that cannot reach the
+// pool, must not write to it. Samples are 1, 2, 4 or 8, the others behind them 0 or 1.
+#define VITRAIL_LAYOUT(format, samples, keepSums, loose, userWords, byAddress)                                      \
   ((((((format)*4u + (samples) / 2u - (samples) / 8u) * 2u + (keepSums)) * 2u + (loose)) * 2u + (userWords)) * 2u + \
    (byAddress))
 #define VITRAIL_LAYOUTS 192
@@ -126,7 +126,7 @@ struct VitrailParameters {
   uint nodesHigh;
   uint wholeByBinding; // 1: shaders reach the whole pool by its binding
   uint wholeByAddress; // 1: and those that define VITRAIL_BUFFER_REFERENCE, by its address
-  uint userWords; // 1: nodes carry a word of the host's
+  uint userWords;      // 1: nodes carry a word of the host's
   uint _reserved;
   // The nodes for shaders of each VITRAIL_LAYOUT: `capacity` for those that suit the target, else 0. Asking whether a
   // fragment's node is one of them asks both questions at once.

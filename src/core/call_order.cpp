@@ -12,8 +12,9 @@ bool CallOrder::allowsEnd(const Log& log, const char* prefix) {
   if (state_ == State::Ended) return refuse(log, prefix, "End", "without a frame that was begun");
   // The counters are still of use. A frame that has had its line needs no second one.
   if (state_ != State::Resolved && !misused_) {
-    log.error("%sEnd() of a frame that was not resolved: its fragments are in no picture, and it does not count as exact",
-              prefix);
+    log.error(
+        "%sEnd() of a frame that was not resolved: its fragments are in no picture, and it does not count as exact",
+        prefix);
   }
   misused_ = misused_ || state_ != State::Resolved;
   state_ = State::Ended;
@@ -23,7 +24,8 @@ bool CallOrder::allowsEnd(const Log& log, const char* prefix) {
 bool CallOrder::allows(Call call, const Log& log, const char* prefix) {
   switch (call) {
     case Call::Begin:
-      if (begun()) log.warn("%sBegin() of a frame while another was not ended: that one is taken to be dropped", prefix);
+      if (begun())
+        log.warn("%sBegin() of a frame while another was not ended: that one is taken to be dropped", prefix);
       state_ = State::Begun;
       misused_ = false;
       return true;

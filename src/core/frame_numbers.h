@@ -1,5 +1,5 @@
-// The numbers of a target's frames, and when memory that they use is free again. The host says by beginning frame n that
-// frame n - framesInFlight has finished; the library waits for nothing.
+// The numbers of a target's frames, and when memory that they use is free again. The host says by beginning frame n
+// that frame n - framesInFlight has finished; the library waits for nothing.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,9 @@ namespace vitrail {
 class FrameNumbers {
  public:
   // The number that a frame has for which the host says `given`: 0 is the one after the last, and first 0.
-  [[nodiscard]] std::uint64_t numberOf(std::uint64_t given) const { return given != 0 ? given : any_ ? newest_ + 1 : 0; }
+  [[nodiscard]] std::uint64_t numberOf(std::uint64_t given) const {
+    return given != 0 ? given : any_ ? newest_ + 1 : 0;
+  }
 
   // Begins a frame. True: the host begins its own number a second time, which says that the first one was dropped.
   bool begin(std::uint64_t given) {

@@ -18,23 +18,20 @@ constexpr PassAccesses shaders(std::uint32_t stages) { return lists({stages, kSh
 constexpr PassAccesses kCompute = shaders(kStageCompute);
 constexpr PassAccesses kIndirect =
     lists({kStageIndirect | kStageCompute, kAccessIndirectRead | kShaderReadsWrites.accesses});
-constexpr PassAccesses kPicture = {Accesses{kStageIndirect | kStageCompute,
-                                            kAccessIndirectRead | kShaderReadsWrites.accesses},
-                                   Accesses{},
-                                   Accesses{kStageCompute, kAccessShaderRead | kAccessShaderWrite}};
+constexpr PassAccesses kPicture = {
+    Accesses{kStageIndirect | kStageCompute, kAccessIndirectRead | kShaderReadsWrites.accesses}, Accesses{},
+    Accesses{kStageCompute, kAccessShaderRead | kAccessShaderWrite}};
 constexpr PassAccesses kTriangle =
     lists({kStageIndirect | kStageFragment, kAccessIndirectRead | kShaderReadsWrites.accesses});
-constexpr PassAccesses kPlainTriangle = lists({kStageIndirect | kStageFragment, kAccessIndirectRead | kAccessUniformRead});
-constexpr PassAccesses kClearing = {Accesses{kStageTransfer, kAccessTransferWrite},
-                                    Accesses{kStageTransfer, kAccessTransferWrite},
-                                    {}};
-constexpr PassAccesses kCopying = {Accesses{kStageTransfer, kAccessTransferRead},
-                                   Accesses{kStageTransfer, kAccessTransferWrite},
-                                   {}};
+constexpr PassAccesses kPlainTriangle =
+    lists({kStageIndirect | kStageFragment, kAccessIndirectRead | kAccessUniformRead});
+constexpr PassAccesses kClearing = {
+    Accesses{kStageTransfer, kAccessTransferWrite}, Accesses{kStageTransfer, kAccessTransferWrite}, {}};
+constexpr PassAccesses kCopying = {
+    Accesses{kStageTransfer, kAccessTransferRead}, Accesses{kStageTransfer, kAccessTransferWrite}, {}};
 // The counters are visible to the host before the tag is written that says so.
-constexpr PassAccesses kTagging = {Accesses{},
-                                   Accesses{kStageTransfer | kStageHost, kAccessTransferWrite | kAccessHostRead},
-                                   {}};
+constexpr PassAccesses kTagging = {
+    Accesses{}, Accesses{kStageTransfer | kStageHost, kAccessTransferWrite | kAccessHostRead}, {}};
 
 // ---- The passes
 
@@ -136,9 +133,9 @@ Barrier barrierBetween(const Accesses& before, const Accesses& after) {
   return {{before.stages & kDeviceStages, before.accesses & kWrites}, after};
 }
 
-// The barrier before each pass of a call, on what the call's own passes did since the last one. Draws have none: they are
-// in the host's rendering scope, and only one of them draws anything. Nor do the host's own reads make anything wait here:
-// they are not within the call.
+// The barrier before each pass of a call, on what the call's own passes did since the last one. Draws have none: they
+// are in the host's rendering scope, and only one of them draws anything. Nor do the host's own reads make anything
+// wait here: they are not within the call.
 void deriveWithin(std::vector<Pass>& passes, Call call) {
   PassAccesses since{};
   for (Pass& pass : passes) {
@@ -183,7 +180,8 @@ FramePlan::FramePlan(std::uint32_t facts) {
     deriveWithin(passes_, call);
     // Of a frame's calls any may be missing that come before this one; of the frame before it, too, which the first
     // call waits for, and the draws, whose writes go to other places than the first call's.
-    PassAccesses earlier = usesOf(passes_, Call::Begin, call <= Call::Draws ? Call::End : static_cast<Call>(number - 1));
+    PassAccesses earlier =
+        usesOf(passes_, Call::Begin, call <= Call::Draws ? Call::End : static_cast<Call>(number - 1));
     if (call == Call::CopyLists) earlier = usesOf(passes_, Call::Begin, Call::Resolve); // any number of them, anywhere
     const PassAccesses here = usesOf(passes_, call, call);
     for (std::uint32_t r = 0; r < kResources; ++r) {

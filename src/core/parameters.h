@@ -19,7 +19,8 @@ layout::VitrailParameters parametersOf(const TargetInfo& info, std::uint32_t nod
                                        const VitrailRect& area);
 
 // The area of a frame for which the host asks for these pixels (an extent of 0: for everything): inside the target, and
-// never more than there are head pointers for. Where that leaves something out `whole` becomes false, and the log says so.
+// never more than there are head pointers for. Where that leaves something out `whole` becomes false, and the log says
+// so.
 VitrailRect areaOfFrame(const TargetInfo& info, const Log& log, std::int64_t x, std::int64_t y, std::uint32_t width,
                         std::uint32_t height, bool& whole);
 

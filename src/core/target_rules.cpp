@@ -86,9 +86,10 @@ VitrailResult checkBudget(const DeviceLimits& limits, const Log& log, const Targ
 
 VitrailResult checkCapacity(const DeviceLimits& limits, const Log& log, const TargetInfo& info) {
   if (info.nodeCapacity == 0) {
-    return log.fail(VITRAIL_ERROR_INVALID,
-                    "nodeCapacity and memoryBudget are both 0: say how many fragments the pool holds, or the bytes that it "
-                    "may grow to");
+    return log.fail(
+        VITRAIL_ERROR_INVALID,
+        "nodeCapacity and memoryBudget are both 0: say how many fragments the pool holds, or the bytes that it "
+        "may grow to");
   }
   const std::uint32_t most = maxNodeCapacity(limits, info.nodeFormat, info.samples, info.userWords);
   if (info.nodeCapacity > most) {
@@ -142,8 +143,7 @@ VitrailResult checkBuffer(const DeviceLimits& limits, const Log& log, const Targ
   }
   const std::uint64_t total = layoutStorage(storageNeeds(limits, info)).total;
   if (info.bufferSize < total) {
-    return log.fail(VITRAIL_ERROR_INVALID,
-                    "bufferSize %llu: the target needs %llu bytes from bufferOffset on",
+    return log.fail(VITRAIL_ERROR_INVALID, "bufferSize %llu: the target needs %llu bytes from bufferOffset on",
                     print(info.bufferSize), print(total));
   }
   return VITRAIL_SUCCESS;
@@ -207,7 +207,9 @@ VitrailResult checkViews(const Log& log, const TargetInfo& info, const ViewsInfo
   }
   if (views.count == 0 && (views.color || views.opaque || views.depth)) {
     return log.fail(VITRAIL_ERROR_INVALID, "views.count is 0, and views.%s is given: say how many views there are",
-                    views.color ? "color" : views.opaque ? "opaque" : "depth");
+                    views.color    ? "color"
+                    : views.opaque ? "opaque"
+                                   : "depth");
   }
   if (views.nullName != nullptr) {
     return log.fail(VITRAIL_ERROR_INVALID, "views.%s[%u] is a null handle", views.nullName, views.nullIndex);
@@ -238,8 +240,7 @@ StorageNeeds storageNeeds(const DeviceLimits& limits, const TargetInfo& info) {
   return needs;
 }
 
-std::uint32_t maxNodeCapacity(const DeviceLimits& limits, std::uint32_t format, std::uint32_t samples,
-                              bool userWords) {
+std::uint32_t maxNodeCapacity(const DeviceLimits& limits, std::uint32_t format, std::uint32_t samples, bool userWords) {
   const std::uint32_t bytes = nodeBytes(format, userWords);
   if (bytes == 0) return 0;
   std::uint64_t most = std::min(limits.allocationSize, limits.heapSize);

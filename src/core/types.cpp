@@ -1,6 +1,6 @@
 // What types.h declares and no other file is about.
-#include "core/pool.h"
 #include "vitrail/types.h"
+#include "core/pool.h"
 
 extern "C" uint32_t vitrailVersion(void) { return VITRAIL_VERSION; }
 

@@ -78,10 +78,9 @@ VkResult findPipelines(VitrailVkTarget_T& target) {
 
 VkResult createStats(VitrailVkTarget_T& target) {
   constexpr VkMemoryPropertyFlags kHost = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const VkResult result = target.stats.create(*target.context, statisticsBytes(target.info.framesInFlight),
-                                              VK_BUFFER_USAGE_TRANSFER_DST_BIT, kHost,
-                                              VK_MEMORY_PROPERTY_HOST_CACHED_BIT, target.debugName.c_str(),
-                                              "statistics");
+  const VkResult result = target.stats.create(
+      *target.context, statisticsBytes(target.info.framesInFlight), VK_BUFFER_USAGE_TRANSFER_DST_BIT, kHost,
+      VK_MEMORY_PROPERTY_HOST_CACHED_BIT, target.debugName.c_str(), "statistics");
   if (result != VK_SUCCESS) return result;
   for (StatsSlot& slot : target.slots()) new (&slot) StatsSlot{};
   return VK_SUCCESS;

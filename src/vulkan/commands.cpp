@@ -62,8 +62,8 @@ bool canCopy(const VitrailVkTarget_T& target, const VitrailVkCopyInfo& info) {
               copied.extent.width, copied.extent.height, copied.offset.x, copied.offset.y, area.width, area.height,
               area.x, area.y);
   } else if (pixels > target.info.copyLayers) {
-    log.error("vitrailVkCmdCopyLists: %llu pixels; copyLayers %u is the most",
-              static_cast<unsigned long long>(pixels), target.info.copyLayers);
+    log.error("vitrailVkCmdCopyLists: %llu pixels; copyLayers %u is the most", static_cast<unsigned long long>(pixels),
+              target.info.copyLayers);
   } else if (info.buffer == VK_NULL_HANDLE || info.offset % 4 != 0) {
     log.error("vitrailVkCmdCopyLists needs a buffer, and an offset that is a multiple of 4");
   } else {

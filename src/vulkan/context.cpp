@@ -124,7 +124,8 @@ VkResult createSetLayouts(VitrailVkContext_T& context) {
   std::array<VkDescriptorSetLayoutBinding, VITRAIL_VIEW_BINDINGS> images{};
   for (std::uint32_t i = 0; i < VITRAIL_VIEW_BINDINGS; ++i) {
     images[i].binding = i;
-    images[i].descriptorType = i == VITRAIL_VIEW_BINDING_COLOR ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    images[i].descriptorType =
+        i == VITRAIL_VIEW_BINDING_COLOR ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
     images[i].descriptorCount = 1;
     images[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
     if (i != VITRAIL_VIEW_BINDING_COLOR) images[i].stageFlags |= VK_SHADER_STAGE_FRAGMENT_BIT;
@@ -224,9 +225,10 @@ extern "C" void vitrailVkDestroyContext(VitrailVkContext context) {
   if (context == nullptr) return;
   const std::uint32_t targets = context->owners.load() - 1;
   if (targets > 0) {
-    context->log.error("vitrailVkDestroyContext: %u targets are left: destroy them first; the context is freed with the "
-                       "last of them, which its device must outlive",
-                       targets);
+    context->log.error(
+        "vitrailVkDestroyContext: %u targets are left: destroy them first; the context is freed with the "
+        "last of them, which its device must outlive",
+        targets);
   }
   context->destroyed = true;
   vitrail::releaseContext(context);

@@ -125,8 +125,7 @@ VkResult createFragmentPipeline(const VitrailVkContext_T& context, const Fragmen
   Module fragmentShader(context);
   VkResult result = vertexShader.create(vertexCode(), "resolve vertex");
   if (result == VK_SUCCESS) {
-    result =
-        fragmentShader.create(fragmentCode(info.resolve, info.byAddress, info.networks), "resolve fragment");
+    result = fragmentShader.create(fragmentCode(info.resolve, info.byAddress, info.networks), "resolve fragment");
   }
   if (result != VK_SUCCESS) return context.log.fail(result, "the fragment resolve's shaders could not be created");
   const VkSpecializationInfo constants = specializationInfo(info.constants);

@@ -106,8 +106,8 @@ void copyStatistics(VkCommandBuffer commandBuffer, const VitrailVkTarget_T& targ
 
 void finishStatistics(VkCommandBuffer commandBuffer, const VitrailVkTarget_T& target) {
   const std::uint64_t tag = target.frames.newest() + 1;
-  target.context->vk.CmdUpdateBuffer(commandBuffer, target.stats.buffer,
-                                     target.slotOffset() + offsetof(StatsSlot, tag), sizeof(tag), &tag);
+  target.context->vk.CmdUpdateBuffer(commandBuffer, target.stats.buffer, target.slotOffset() + offsetof(StatsSlot, tag),
+                                     sizeof(tag), &tag);
 }
 
 void beginCopy(VkCommandBuffer commandBuffer, const VitrailVkTarget_T& target, const VitrailRect& area) {
@@ -137,9 +137,9 @@ void bindSets(VkCommandBuffer commandBuffer, const VitrailVkTarget_T& target, co
   const bool draws = pass.action != Action::Dispatch;
   const bool images = pass.call == Call::Resolve && view < storage.viewCount;
   const std::array<VkDescriptorSet, 2> sets = {storage.set, images ? storage.viewSets[view] : VK_NULL_HANDLE};
-  target.context->vk.CmdBindDescriptorSets(
-      commandBuffer, draws ? VK_PIPELINE_BIND_POINT_GRAPHICS : VK_PIPELINE_BIND_POINT_COMPUTE,
-      target.context->resolveLayout, 0, images ? 2 : 1, sets.data(), 0, nullptr);
+  target.context->vk.CmdBindDescriptorSets(commandBuffer,
+                                           draws ? VK_PIPELINE_BIND_POINT_GRAPHICS : VK_PIPELINE_BIND_POINT_COMPUTE,
+                                           target.context->resolveLayout, 0, images ? 2 : 1, sets.data(), 0, nullptr);
 }
 
 std::uint32_t groupsFor(std::uint32_t pixels) { return (pixels + kGroupSide - 1) / kGroupSide; }

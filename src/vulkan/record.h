@@ -7,8 +7,8 @@ namespace vitrail {
 
 // What a call's passes need beyond the target.
 struct CallInfo {
-  std::uint32_t view = 0;             // of a resolve
-  VitrailRect copied{};               // of a copy of lists
+  std::uint32_t view = 0; // of a resolve
+  VitrailRect copied{};   // of a copy of lists
   VkBuffer copyBuffer = VK_NULL_HANDLE;
   VkDeviceSize copyOffset = 0;
 };

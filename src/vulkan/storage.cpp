@@ -52,7 +52,8 @@ void writeBufferSet(const VitrailVkContext_T& context, const Storage& storage) {
   context.vk.UpdateDescriptorSets(context.device, VITRAIL_BINDINGS, writes.data(), 0, nullptr);
 }
 
-void writeViewSet(const VitrailVkContext_T& context, VkDescriptorSet set, const VitrailVkViews& views, std::uint32_t view) {
+void writeViewSet(const VitrailVkContext_T& context, VkDescriptorSet set, const VitrailVkViews& views,
+                  std::uint32_t view) {
   std::array<VkDescriptorImageInfo, VITRAIL_VIEW_BINDINGS> images{};
   std::array<VkWriteDescriptorSet, VITRAIL_VIEW_BINDINGS> writes{};
   std::uint32_t count = 0;
@@ -68,7 +69,8 @@ void writeViewSet(const VitrailVkContext_T& context, VkDescriptorSet set, const 
     ++count;
   };
   if (views.color != nullptr) add(VITRAIL_VIEW_BINDING_COLOR, views.color[view], VK_IMAGE_LAYOUT_GENERAL);
-  if (views.opaque != nullptr) add(VITRAIL_VIEW_BINDING_OPAQUE, views.opaque[view], VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  if (views.opaque != nullptr)
+    add(VITRAIL_VIEW_BINDING_OPAQUE, views.opaque[view], VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   if (views.depth != nullptr) {
     add(VITRAIL_VIEW_BINDING_DEPTH, views.depth[view], VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
   } else if (views.opaque != nullptr) { // nobody looks at it, but shaders name it

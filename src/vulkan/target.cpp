@@ -151,8 +151,8 @@ extern "C" VkResult vitrailVkResizeTarget(VitrailVkTarget target, const VitrailV
     return context.log.fail(VK_ERROR_INITIALIZATION_FAILED,
                             "a target in the host's memory cannot be resized: make another one");
   }
-  TargetInfo wanted = resized(target->info, target->storage.needs.nodeCapacity, info->extent.width,
-                              info->extent.height, info->nodeCapacity, info->areaPixels);
+  TargetInfo wanted = resized(target->info, target->storage.needs.nodeCapacity, info->extent.width, info->extent.height,
+                              info->nodeCapacity, info->areaPixels);
   result = toVk(checkTarget(context.limits, context.log, wanted));
   if (result == VK_SUCCESS) result = toVk(checkViews(context.log, wanted, viewsInfo(info->views)));
   if (result != VK_SUCCESS) return result;
@@ -205,8 +205,7 @@ extern "C" void vitrailVkCollectSpecialization(VitrailVkContext context, const V
   if (specialization != nullptr) *specialization = {};
   if (context == nullptr || desc == nullptr || specialization == nullptr) return;
   constexpr std::uint32_t kFirstId = 1700; // VITRAIL_CONSTANT_ID of shaders/vitrail/collect.glsl
-  const vitrail::TargetInfo info =
-      vitrail::withDefaults(context->limits, vitrail::targetInfo(*context, *desc));
+  const vitrail::TargetInfo info = vitrail::withDefaults(context->limits, vitrail::targetInfo(*context, *desc));
   specialization->data[0] = info.nodeFormat;
   specialization->data[1] = info.samples;
   specialization->data[2] = info.keepsSums() ? 1 : 0;
@@ -244,7 +243,6 @@ extern "C" VkResult vitrailVkReadStats(VitrailVkTarget target, uint64_t frame, V
     return nullArgument(target != nullptr ? target->context : nullptr, "vitrailVkReadStats");
   }
   const bool newest = frame == 0 && !target->frames.areGiven();
-  const bool read =
-      newest ? readNewest(*target, target->frames.newest(), *stats) : readFrame(*target, frame, *stats);
+  const bool read = newest ? readNewest(*target, target->frames.newest(), *stats) : readFrame(*target, frame, *stats);
   return read ? VK_SUCCESS : VK_NOT_READY;
 }
