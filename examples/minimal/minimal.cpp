@@ -1,10 +1,12 @@
 // The smallest complete host: a cube of glass panes over a floor, drawn without a window. Every pane cuts through
 // others: there is no order in which to draw them. What concerns Vitrail is in draw() and record().
 //
-//   minimal PICTURE.png
+//   minimal PICTURE.png          draws it
+//   minimal PICTURE.png X Y      and lists the panes under that pixel of the file, front to back
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -134,7 +136,26 @@ struct Frame {
   vk::UniquePipeline glass;
 };
 
-void record(vk::CommandBuffer commands, const vitrail::vulkan::Target& target, const Frame& frame) {
+// A buffer that the host reads.
+struct Readback {
+  vk::UniqueDeviceMemory memory;
+  vk::UniqueBuffer buffer;
+
+  Readback(const Gpu& gpu, vk::DeviceSize size) {
+    vk::BufferCreateInfo info{.usage = vk::BufferUsageFlagBits::eTransferDst};
+    buffer = gpu.device->createBufferUnique(info.setSize(size));
+    using Memory = vk::MemoryPropertyFlagBits;
+    memory =
+        gpu.allocate(gpu.device->getBufferMemoryRequirements(*buffer), Memory::eHostVisible | Memory::eHostCoherent);
+    gpu.device->bindBufferMemory(*buffer, *memory, 0);
+  }
+
+  [[nodiscard]] const void* map(vk::Device device) const { return device.mapMemory(*memory, 0, VK_WHOLE_SIZE); }
+};
+
+// `pixel`: whose list is copied to `list`.
+void record(vk::CommandBuffer commands, const vitrail::vulkan::Target& target, const Frame& frame,
+            const VkOffset2D& pixel, vk::Buffer list) {
   const std::array kSky{0.70F, 0.77F, 0.84F, 1.0F};
   const vk::ClearValue clears[] = {vk::ClearColorValue{kSky}, vk::ClearDepthStencilValue{.depth = 1.0F}};
   vk::RenderPassBeginInfo begin{.renderPass = *frame.pass, .framebuffer = *frame.framebuffer};
@@ -149,11 +170,12 @@ void record(vk::CommandBuffer commands, const vitrail::vulkan::Target& target, c
   commands.draw(4, 9, 0, 1); // nine panes, in any order
   commands.endRenderPass();
   target.collected(commands);
+  target.copyLists(commands, {.area = {pixel, {1, 1}}, .buffer = list});
   target.resolve(commands);
   target.end(commands);
 }
 
-// Writer: the resolve. Reader: the copy, whose reader is savePng().
+// Writer: the resolve. Reader: the copy. Its reader, and that of the list that was copied before, is the host.
 void recordCopy(vk::CommandBuffer commands, vk::Image color, vk::Buffer copy) {
   using Stage = vk::PipelineStageFlagBits;
   using Access = vk::AccessFlagBits;
@@ -181,7 +203,18 @@ void savePng(const float* pixels, const char* path) {
   }
 }
 
-void draw(const char* path) {
+// A copy of one pixel's list: the header, where its layers are, the layers. A pane has two, one behind the other.
+void printPanes(const void* copy) {
+  const auto* header = static_cast<const VitrailVkCopyHeader*>(copy);
+  const auto* list = reinterpret_cast<const VitrailVkCopiedList*>(header + 1);
+  const auto* layers = reinterpret_cast<const VitrailLayer*>(list + 1) + list->first;
+  for (uint32_t i = 0; i < list->count; ++i) {
+    if (i == 0 || layers[i].word != layers[i - 1].word)
+      std::printf("pane %u at depth %.6f\n", layers[i].word, layers[i].depth);
+  }
+}
+
+void draw(const char* path, const VkOffset2D* place) {
   const Gpu gpu;
   std::string reason;
   const auto check = [&](VkResult result) {
@@ -201,7 +234,7 @@ void draw(const char* path) {
   const Image color = createImage(gpu, kColorFormat, Usage::eColorAttachment | Usage::eStorage | Usage::eTransferSrc);
   const Image depth = createImage(gpu, kDepthFormat, Usage::eDepthStencilAttachment);
   const VkImageView colorView = *color.view;
-  VitrailVkTargetDesc targetDesc{.extent = kExtent, .nodeCapacity = 8'000'000};
+  VitrailVkTargetDesc targetDesc{.extent = kExtent, .userWords = VK_TRUE, .nodeCapacity = 8'000'000, .copyLayers = 100};
   targetDesc.colorFormat = static_cast<VkFormat>(kColorFormat);
   targetDesc.views = {.count = 1, .color = &colorView};
   vitrail::vulkan::Target target;
@@ -218,17 +251,14 @@ void draw(const char* path) {
   frame.floor = createPipeline(device, *frame.layout, *frame.pass, kFloorCode, true);
   frame.glass = createPipeline(device, *frame.layout, *frame.pass, kGlassCode, false);
 
-  vk::BufferCreateInfo copyInfo{.usage = vk::BufferUsageFlagBits::eTransferDst};
-  const auto copy = device.createBufferUnique(copyInfo.setSize(vk::DeviceSize{16} * kExtent.width * kExtent.height));
-  using Memory = vk::MemoryPropertyFlagBits;
-  const auto memory =
-      gpu.allocate(device.getBufferMemoryRequirements(*copy), Memory::eHostVisible | Memory::eHostCoherent);
-  device.bindBufferMemory(*copy, *memory, 0);
+  const Readback picture(gpu, vk::DeviceSize{16} * kExtent.width * kExtent.height);
+  const Readback list(gpu, target.copySize(1, 1));
+  const VkOffset2D pixel = place != nullptr ? VkOffset2D{2 * place->x + 1, 2 * place->y + 1} : VkOffset2D{0, 0};
   const vk::UniqueCommandPool pool = device.createCommandPoolUnique({.queueFamilyIndex = gpu.family});
   const vk::CommandBuffer commands = device.allocateCommandBuffers({.commandPool = *pool, .commandBufferCount = 1})[0];
   commands.begin(vk::CommandBufferBeginInfo{});
-  record(commands, target, frame);
-  recordCopy(commands, *color.image, *copy);
+  record(commands, target, frame, pixel, *list.buffer);
+  recordCopy(commands, *color.image, *picture.buffer);
   commands.end();
   device.getQueue(gpu.family, 0).submit(vk::SubmitInfo{}.setCommandBuffers(commands));
   device.waitIdle();
@@ -236,15 +266,21 @@ void draw(const char* path) {
   VitrailStats stats{};
   check(target.readStats(0, stats));
   if (stats.exact == 0) throw std::runtime_error("the node pool is too small for the frame");
-  savePng(static_cast<const float*>(device.mapMemory(*memory, 0, VK_WHOLE_SIZE)), path);
+  savePng(static_cast<const float*>(picture.map(device)), path);
+  if (place != nullptr) printPanes(list.map(device));
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
   try {
-    if (argc != 2) throw std::runtime_error("usage: minimal PICTURE.png");
-    draw(argv[1]);
+    const bool lists = argc == 4;
+    if (argc != 2 && !lists) throw std::runtime_error("usage: minimal PICTURE.png [X Y]");
+    const VkOffset2D place = lists ? VkOffset2D{std::atoi(argv[2]), std::atoi(argv[3])} : VkOffset2D{};
+    if (place.x < 0 || place.y < 0 || place.x >= int(kExtent.width / 2) || place.y >= int(kExtent.height / 2)) {
+      throw std::runtime_error("the picture has 800 by 600 pixels");
+    }
+    draw(argv[1], lists ? &place : nullptr);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "minimal: error: %s\n", error.what());
     return 1;

@@ -12,12 +12,11 @@
 //   }
 //   if (vitrailListWasCut(list)) ... // there is more
 //
-// When: between vitrailVkCmdCollected() and the target's next vitrailVkCmdBegin(), before the resolve or after it. The
-// host's barrier makes visible what was written at VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT (lists are built, and sorted by
-// the resolve) and VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT (fragments are collected) with VK_ACCESS_SHADER_WRITE_BIT, to
-// the host's stage with VK_ACCESS_SHADER_READ_BIT and VK_ACCESS_UNIFORM_READ_BIT; a barrier on all memory is as good as
-// one on the target's buffer. Another, on execution alone, stands before the resolve where lists are walked before it:
-// it relinks long lists. Lists are not walked while it runs.
+// When: between vitrailVkCmdCollected() and the target's next vitrailVkCmdBegin(), before the resolve or after it. That
+// call makes the lists visible to fragment and compute shaders. A resolve by compute relinks long lists: a shader that
+// walks them after it waits for what it wrote (VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT), and
+// the resolve waits for a shader that walked them before it (execution alone); both barriers are the host's. Lists are
+// not walked while it runs.
 //
 // What: every fragment that vitrailCollect() stored, behind each other by depth; at the same depth in the order that
 // the resolve blends them in (docs/resolve.md), and those that are alike in all that is stored by the host's word. Of a

@@ -95,7 +95,8 @@ constexpr std::array kRows = {
     dispatch(Call::CopyLists, Kernel::CopyLists, Extent::Copied, 0, kCompute, kCopiesLists),
     action(Call::CopyLists, Action::FinishCopy, lists({kStageTransfer, kAccessTransferRead}), kCopiesLists),
 
-    action(Call::Resolve, Action::HostReads, lists({kStageFragment | kStageCompute, kAccessShaderRead})),
+    action(Call::Resolve, Action::HostReads,
+           lists({kStageFragment | kStageCompute, kAccessUniformRead | kAccessShaderRead})),
     dispatch(Call::Resolve, Kernel::Resolve, Extent::Indirect, kPixelArguments, kPicture, kResolvesByCompute),
     dispatch(Call::Resolve, Kernel::ResolveMedium, Extent::Indirect, classArguments(VITRAIL_CLASS_MEDIUM), kPicture,
              kResolvesByCompute | kNetworks, kCapped),

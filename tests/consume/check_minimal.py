@@ -130,12 +130,20 @@ def pixel_color(x, y):
     return [255.0 * min(c, 1.0) for c in curve], len(corners[0][1][1])
 
 
-def draw(program, path):
+def under(x, y):
+    """The numbers of the panes under the lower right quarter of a pixel, the nearest first; None where a pane ends near."""
+    lists = [[3 * axis + round(offset / 0.62) + 1 for _, axis, offset, _ in reversed(panes_along(ray_through(u, v)))]
+             for u in (x + 0.5, x + 1.0) for v in (y + 0.5, y + 1.0)]
+    return lists[0] if all(one == lists[0] for one in lists) else None
+
+
+def draw(program, path, *place):
     environment = dict(os.environ, VK_INSTANCE_LAYERS="VK_LAYER_KHRONOS_validation",
                        VK_LAYER_ENABLES="VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT")
-    done = subprocess.run([program, path], env=environment, capture_output=True, text=True)
-    if done.returncode != 0 or done.stdout or done.stderr:
+    done = subprocess.run([program, path, *map(str, place)], env=environment, capture_output=True, text=True)
+    if done.returncode != 0 or (done.stdout and not place) or done.stderr:
         fail(f"{program} ended with {done.returncode} and said: {done.stdout}{done.stderr}")
+    return [int(line.split()[1]) for line in done.stdout.splitlines()]
 
 
 def main():
@@ -143,6 +151,10 @@ def main():
         path = os.path.join(folder, "minimal.png")
         draw(sys.argv[1], path)
         rows = read_png(path)
+        for place in ((400, 300), (330, 250), (500, 420), (10, 10)):
+            panes, right = draw(sys.argv[1], path, *place), under(*place)
+            if right is None or panes != right:
+                fail(f"under pixel {place} are panes {right}, and the program lists {panes}")
     checked, deepest = 0, 0
     for y in range(20, HEIGHT, 20):
         for x in range(20, WIDTH, 20):

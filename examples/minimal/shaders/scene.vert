@@ -7,9 +7,10 @@
 layout(location = 0) out vec3 position;
 layout(location = 1) out vec2 place; // in the square, -1 to 1
 layout(location = 2) flat out int axis;
+layout(location = 3) flat out int pane; // 0 to 8; -1 is the floor
 
 void main() {
-  int pane = gl_InstanceIndex - 1;
+  pane = gl_InstanceIndex - 1;
   axis = pane < 0 ? 1 : pane / 3;
   place = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0 - 1.0;
   position[axis] = pane < 0 ? -1.0 : 0.62 * float(pane % 3 - 1);
