@@ -182,7 +182,7 @@ TEST_P(BoundsTest, AFrameThatIsNeverSubmittedLeavesNothingBehind) {
   }
 }
 
-// A fragment is encoded where it is linked, or where it is added to the sums if it found no node: the same bits.
+// A fragment is encoded where its list is built, or where it is added to the sums if it found no node: the same bits.
 TEST_P(BoundsTest, ColoursBetweenStepsOverflowAlike) {
   for (const bool addresses : {false, true}) {
     if (addresses && !features().addresses) continue;
