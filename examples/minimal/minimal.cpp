@@ -170,7 +170,7 @@ void record(vk::CommandBuffer commands, const vitrail::vulkan::Target& target, c
   commands.draw(4, 9, 0, 1); // nine panes, in any order
   commands.endRenderPass();
   target.collected(commands);
-  target.copyLists(commands, {.area = {pixel, {1, 1}}, .buffer = list});
+  target.copyLists(commands, {.area = {pixel, {1, 1}}, .buffer = list, .size = target.copySize(1, 1)});
   target.resolve(commands);
   target.end(commands);
 }

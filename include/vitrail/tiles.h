@@ -69,7 +69,8 @@ VITRAIL_API uint32_t vitrailNextTile(VitrailTilePlan plan, VitrailRect* tile);
 
 /* Tells what became of the tile that vitrailNextTile() gave last. One that overflowed (fragmentsMissing > 0) is
  * split, and its parts are drawn next. VITRAIL_ERROR_OUT_OF_MEMORY: it was a single pixel; the log has the bytes that
- * it needs. VITRAIL_ERROR_INVALID for a null argument. */
+ * it needs. VITRAIL_ERROR_INVALID for a null argument, for a frame that was misused, and for fragments that are missing
+ * though the pool had room for them: no splitting helps there. */
 VITRAIL_API VitrailResult vitrailFinishTile(VitrailTilePlan plan, const VitrailStats* stats);
 
 /* The smallest rectangle of whole pixels that contains the projections of the boxes, clipped to a picture of that

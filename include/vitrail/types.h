@@ -2,9 +2,9 @@
  * API. What depends on one says so in its name: vulkan.h has VitrailVk* and vitrailVk*.
  *
  * In every descriptor a field that is zero means its documented default. Every descriptor begins with `next`, through
- * which later versions add fields (as Vulkan's pNext does): it is null in this version, and anything else is refused.
- * Structures that the library fills in begin with `next` too: set it to null, or zero the structure, before the call.
- */
+ * which later versions add fields (as Vulkan's pNext does): it is null in this version, and a descriptor with anything
+ * else is refused. Structures that the library fills in begin with `next` too, which it leaves as it is: set it to
+ * null, or zero the structure, before the call. */
 #ifndef VITRAIL_TYPES_H
 #define VITRAIL_TYPES_H
 
@@ -46,7 +46,8 @@ typedef enum VitrailResult {
 /* ---- Log -------------------------------------------------------------------------------------------------------- */
 
 typedef enum VitrailLogSeverity {
-  /* The call returns an error, or was recorded out of order and has recorded nothing: the frame is not exact. */
+  /* The call could not do what it was asked for: it returns an error, or has recorded nothing of it, or less than the
+   * frame needs, and then the frame is not exact. */
   VITRAIL_LOG_ERROR = 1,
   /* The call goes on, as the text says. */
   VITRAIL_LOG_WARNING = 2,
@@ -209,8 +210,8 @@ typedef struct VitrailMemory {
   uint32_t nodeCapacity;
   uint64_t nodeBytes; /* the node pool */
   uint64_t headBytes; /* 4 bytes a pixel of the area */
-  uint64_t
-      otherBytes; /* lists of deep pixels, sums for overflow, room to copy lists, counters, parameters, statistics */
+  /* Lists of deep pixels, sums for overflow, room to copy lists, counters, parameters, statistics. */
+  uint64_t otherBytes;
   uint64_t retiredBytes; /* memory that was replaced and that frames in flight still use */
   uint64_t totalBytes;   /* all of these, the host's own buffer included */
 } VitrailMemory;

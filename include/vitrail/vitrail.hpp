@@ -124,7 +124,7 @@ class Target {
     return memory;
   }
 
-  // Both change the descriptor set.
+  // A resize changes the descriptor set, and an update may.
   VkResult update(std::uint64_t frame = 0) { return vitrailVkUpdateTarget(handle_, frame); }
   VkResult resize(const VitrailVkResizeInfo& info) { return vitrailVkResizeTarget(handle_, &info); }
 

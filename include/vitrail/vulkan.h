@@ -75,7 +75,7 @@ typedef struct VitrailVkContextDesc {
   uint32_t features;                             /* VitrailVkFeatureBits that the device was created with */
   VkPipelineCache cache;                         /* optional; outlives the context */
   const VkAllocationCallbacks* allocator;        /* optional; outlives the context and its targets */
-  VitrailLog log;                                /* optional; default: silence */
+  VitrailLog log;                                /* optional; default: silence; outlives the context and its targets */
   void* logUser;
 } VitrailVkContextDesc;
 
@@ -151,7 +151,7 @@ typedef struct VitrailVkTargetDesc {
   /* Pixels that can be collected at once: VitrailVkBeginInfo::area may cover that many. Default: the whole extent. A
    * target that is drawn in tiles needs head pointers for one tile only. */
   uint32_t areaPixels;
-  /* Layers that one vitrailVkCmdCopyLists() can copy, 32 bytes each; default 0: it is not used. */
+  /* Layers, and pixels, that one vitrailVkCmdCopyLists() can copy, 40 bytes each; default 0: it is not used. */
   uint32_t copyLayers;
   /* Optional: the host's own memory, as vitrailVkTargetRequirements() asks for. It outlives the target, and nobody else
    * writes to it, between frames neither. Excludes memoryBudget and vitrailVkResizeTarget(). Default: the target
@@ -193,7 +193,7 @@ typedef struct VitrailVkRequirements {
 } VitrailVkRequirements;
 
 /* Errors: those of vitrailVkCreateTarget for the fields that matter here (extent, samples, nodeFormat, overflow,
- * listBuild, nodeCapacity, areaPixels, copyLayers). */
+ * listBuild, userWords, nodeCapacity, areaPixels, copyLayers). */
 VITRAIL_API VkResult vitrailVkTargetRequirements(VitrailVkContext context, const VitrailVkTargetDesc* desc,
                                                  VitrailVkRequirements* requirements);
 
@@ -217,7 +217,8 @@ VITRAIL_API VitrailListBuild vitrailVkTargetListBuild(VitrailVkTarget target);
 /* The most nodes that one pool can have on this device at that sample count (the node's next index, the largest
  * allocation and heap, and maxStorageBufferRange: of the lists of deep pixels and, without
  * VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS, of the pool). An upper bound: head pointers, sums and lists lie in the same
- * allocation, so a target of many pixels holds fewer. A memoryBudget of the device's size finds how many. */
+ * allocation, so a target of many pixels holds fewer, and so does one whose nodes carry words. A memoryBudget of the
+ * device's size finds how many. */
 VITRAIL_API uint32_t vitrailVkMaxNodeCapacity(VitrailVkContext context, VitrailNodeFormat format,
                                               VkSampleCountFlagBits samples);
 
@@ -269,8 +270,9 @@ VITRAIL_API VkDescriptorSet vitrailVkTargetDescriptorSet(VitrailVkTarget target)
  * sides of every branch repay most. A shader that was specialized for another target stores nothing, and its fragments
  * count as missing. */
 typedef struct VitrailVkSpecialization {
-  VkSpecializationMapEntry entries[5]; /* ids VITRAIL_CONSTANT_ID (default 1700) and the next four */
-  uint32_t data[5];
+  uint32_t count;                      /* of those below that are in use */
+  VkSpecializationMapEntry entries[8]; /* ids VITRAIL_CONSTANT_ID (default 1700) and the next ones */
+  uint32_t data[8];
 } VitrailVkSpecialization;
 
 VITRAIL_API void vitrailVkCollectSpecialization(VitrailVkContext context, const VitrailVkTargetDesc* desc,
@@ -288,8 +290,8 @@ typedef struct VitrailVkBeginInfo {
    * frame n only when frame n - framesInFlight has finished on the GPU. Default (0): the number after the last frame's;
    * the first frame is 0 then. vitrailVkTargetFrame() tells. */
   uint64_t frame;
-  /* The pixels that are collected and resolved; fragments outside are ignored. At most areaPixels of them, inside the
-   * extent. Default (an extent of 0): the whole target. */
+  /* The pixels that are collected and resolved; fragments outside are ignored. At most areaPixels of them. What lies
+   * outside the extent is left out, with a warning. Default (an extent of 0): the whole target. */
   VkRect2D area;
 } VitrailVkBeginInfo;
 
@@ -300,7 +302,8 @@ typedef struct VitrailVkBeginInfo {
  *
  * Frames are submitted in the order of recording. One that is not submitted after all (a swapchain out of date) is
  * dropped whole, from here to vitrailVkCmdEnd(): it leaves nothing behind, has no statistics, and the next one may have
- * its number or go on. */
+ * its number or go on; a host that goes on has waited for frame n - framesInFlight all the same. A target that is
+ * resized, or given another pool, before the frame was ended drops it, and logs a warning. */
 VITRAIL_API void vitrailVkCmdBegin(VkCommandBuffer commandBuffer, VitrailVkTarget target,
                                    const VitrailVkBeginInfo* info);
 
@@ -342,8 +345,9 @@ VITRAIL_API void vitrailVkCmdEnd(VkCommandBuffer commandBuffer, VitrailVkTarget 
 
 /* Shaders of the host's read lists where they lie: shaders/vitrail/list.glsl, with the set of
  * vitrailVkTargetDescriptorSet(), after vitrailVkCmdCollected() and before the target's next vitrailVkCmdBegin().
- * vitrailVkCmdCollected() makes the lists visible to (FRAGMENT_SHADER | COMPUTE_SHADER, SHADER_READ). A resolve by
- * compute relinks long lists in place: a reader after it waits for (COMPUTE_SHADER, SHADER_WRITE).
+ * vitrailVkCmdCollected() makes the lists visible to (FRAGMENT_SHADER | COMPUTE_SHADER, SHADER_READ); with hostBarriers
+ * the barrier of VITRAIL_VK_BARRIER_RESOLVE does. A resolve by compute, and vitrailVkCmdCopyLists(), relink long lists
+ * in place: a reader after them waits for (COMPUTE_SHADER, SHADER_WRITE), and they wait for a reader before them.
  *
  * The host's memory gets them, sorted, by a call: */
 typedef struct VitrailVkCopyInfo {
@@ -351,6 +355,7 @@ typedef struct VitrailVkCopyInfo {
   VkRect2D area;       /* the pixels, in the picture; inside the frame's area, at least one */
   VkBuffer buffer;     /* required; with VK_BUFFER_USAGE_TRANSFER_DST_BIT */
   VkDeviceSize offset; /* a multiple of 4 */
+  VkDeviceSize size;   /* bytes of the buffer from offset on; required, at least vitrailVkCopySize() */
 } VitrailVkCopyInfo;
 
 /* What such a copy begins with. Behind it are one VitrailVkCopiedList a pixel, row by row, and then the layers of all
@@ -366,8 +371,9 @@ typedef struct VitrailVkCopyHeader {
 } VitrailVkCopyHeader;
 
 typedef struct VitrailVkCopiedList {
-  uint32_t
-      first; /* of the layers; 0xffffffff where the list was left out, for want of room or in a frame that overflowed */
+  /* Of the layers. 0xffffffff where the list was left out: for want of room, in a frame that overflowed, or where the
+   * driver did not let it be sorted. */
+  uint32_t first;
   uint32_t count; /* of the layers that the pixel has */
 } VitrailVkCopiedList;
 
@@ -378,7 +384,8 @@ VITRAIL_API VkDeviceSize vitrailVkCopySize(VitrailVkTarget target, uint32_t widt
  * after vitrailVkCmdCollected() and before vitrailVkCmdEnd(); of fragments as deep as each other in all their bits, the
  * one with the lower word comes first. For a target made with copyLayers. The buffer was last written by (TRANSFER,
  * TRANSFER_WRITE): the host's next barrier names that as its source. Binds a compute pipeline and sets. An area that is
- * not inside the frame's, or larger than areaPixels, records nothing and logs an error. */
+ * not inside the frame's or has more pixels than copyLayers, and a buffer that is too small, record nothing, log an
+ * error, and leave the frame not exact. */
 VITRAIL_API void vitrailVkCmdCopyLists(VkCommandBuffer commandBuffer, VitrailVkTarget target,
                                        const VitrailVkCopyInfo* info);
 
@@ -420,7 +427,7 @@ VITRAIL_API VkResult vitrailVkReadStats(VitrailVkTarget target, uint64_t frame, 
 /* ---- Tiles ------------------------------------------------------------------------------------------------------ */
 
 /* What the device can hold, for VitrailTilePlanDesc::limits (tiles.h). Errors: VK_ERROR_INITIALIZATION_FAILED for an
- * unknown format or sample count, VK_ERROR_FORMAT_NOT_SUPPORTED for a format without nodes at that sample count. */
+ * unknown format, VK_ERROR_FORMAT_NOT_SUPPORTED for a format without nodes at that sample count. */
 VITRAIL_API VkResult vitrailVkTileLimits(VitrailVkContext context, VitrailNodeFormat format,
                                          VkSampleCountFlagBits samples, VitrailTileLimits* limits);
 

@@ -60,23 +60,35 @@ layout(constant_id = VITRAIL_CONSTANT_ID) const uint VITRAIL_NODE_FORMAT = 0xfff
 #endif
 #ifdef VITRAIL_ONLY_SAMPLES
 const uint VITRAIL_SAMPLES = VITRAIL_ONLY_SAMPLES;
+#if VITRAIL_ONLY_SAMPLES != 1 && VITRAIL_ONLY_SAMPLES != 2 && VITRAIL_ONLY_SAMPLES != 4 && VITRAIL_ONLY_SAMPLES != 8
+#error VITRAIL_ONLY_SAMPLES is none of 1, 2, 4 and 8
+#endif
 #else
 layout(constant_id = VITRAIL_CONSTANT_ID + 1) const uint VITRAIL_SAMPLES = 0u;
 #endif
 #ifdef VITRAIL_ONLY_OVERFLOW
 const uint VITRAIL_KEEP_SUMS = 1u - VITRAIL_ONLY_OVERFLOW;
+#if VITRAIL_ONLY_OVERFLOW != 0 && VITRAIL_ONLY_OVERFLOW != 1
+#error VITRAIL_ONLY_OVERFLOW is none of the values of VitrailOverflow
+#endif
 #else
 #define VITRAIL_ONLY_OVERFLOW 0 // as far as code is concerned
 layout(constant_id = VITRAIL_CONSTANT_ID + 2) const uint VITRAIL_KEEP_SUMS = 0xffffffffu; // 0 or 1
 #endif
 #ifdef VITRAIL_ONLY_LIST_BUILD
 const uint VITRAIL_LOOSE = VITRAIL_ONLY_LIST_BUILD - 1u;
+#if VITRAIL_ONLY_LIST_BUILD != 1 && VITRAIL_ONLY_LIST_BUILD != 2
+#error VITRAIL_ONLY_LIST_BUILD is neither 1 (fragment) nor 2 (compute)
+#endif
 #else
 #define VITRAIL_ONLY_LIST_BUILD 0
 layout(constant_id = VITRAIL_CONSTANT_ID + 3) const uint VITRAIL_LOOSE = 0xffffffffu; // 0 or 1
 #endif
 #ifdef VITRAIL_ONLY_USER_WORDS
 const uint VITRAIL_USER_WORDS = VITRAIL_ONLY_USER_WORDS;
+#if VITRAIL_ONLY_USER_WORDS != 0 && VITRAIL_ONLY_USER_WORDS != 1
+#error VITRAIL_ONLY_USER_WORDS is neither 0 nor 1
+#endif
 #else
 #define VITRAIL_ONLY_USER_WORDS 1
 layout(constant_id = VITRAIL_CONSTANT_ID + 4) const uint VITRAIL_USER_WORDS = 0xffffffffu; // 0 or 1
@@ -134,11 +146,17 @@ const uint VITRAIL_BY_ADDRESS = 1u;
 const uint VITRAIL_BY_ADDRESS = 0u;
 #endif
 
+#ifdef VITRAIL_POST_DEPTH_COVERAGE
+const uint VITRAIL_POST_DEPTH = 1u;
+#else
+const uint VITRAIL_POST_DEPTH = 0u;
+#endif
+
 // The nodes that this shader may write: none where it was specialized for another target, or does not reach the pool.
 uint vitrailCapacity() {
   VitrailLayout nodes = vitrailTargetLayout();
   uint number = VITRAIL_LAYOUT(nodes.format, nodes.samples, uint(vitrailKeepsSums()), uint(vitrailKeepsLoose()),
-                               uint(vitrailKeepsWords()), VITRAIL_BY_ADDRESS);
+                               uint(vitrailKeepsWords()), VITRAIL_BY_ADDRESS, VITRAIL_POST_DEPTH);
   return vitrailParameters.capacities[number / 4u][number % 4u];
 }
 

@@ -103,12 +103,15 @@ struct VitrailControl {
   uint plainFirstInstance;
 };
 
-// How nodes are collected, as a number: a shader that was specialized for another target, or that cannot reach the
-// pool, must not write to it. Samples are 1, 2, 4 or 8, the others behind them 0 or 1.
-#define VITRAIL_LAYOUT(format, samples, keepSums, loose, userWords, byAddress)                                      \
-  ((((((format)*4u + (samples) / 2u - (samples) / 8u) * 2u + (keepSums)) * 2u + (loose)) * 2u + (userWords)) * 2u + \
-   (byAddress))
-#define VITRAIL_LAYOUTS 192
+// How nodes are collected, as a number: a shader that was specialized for another target, that cannot reach the pool,
+// or whose coverage has not passed the depth test that the target takes it to have passed, must not write to it.
+// Samples are 1, 2, 4 or 8, the others behind them 0 or 1.
+#define VITRAIL_LAYOUT(format, samples, keepSums, loose, userWords, byAddress, postDepth)                            \
+  (((((((format)*4u + (samples) / 2u - (samples) / 8u) * 2u + (keepSums)) * 2u + (loose)) * 2u + (userWords)) * 2u + \
+    (byAddress)) *                                                                                                   \
+       2u +                                                                                                          \
+   (postDepth))
+#define VITRAIL_LAYOUTS 384
 
 // What one vitrailVkCmdBegin sets (std140).
 struct VitrailParameters {
@@ -145,7 +148,7 @@ struct VitrailLayer {
 
 // Copied lists: a buffer that holds, one behind the other,
 //
-//   VitrailCopyHeader   written by the host before the copy, with 0 layers
+//   VitrailCopyHeader   written by the library before the copy, with 0 layers
 //   VitrailCopiedList   one a pixel of the rectangle, row by row
 //   VitrailLayer        `capacity` of them. Those of a list lie together in order, nearest first; fragments that are
 //                       alike in all else are in the order of their words. Lists follow each other in any order.
@@ -181,7 +184,7 @@ static_assert(offsetof(VitrailControl, overflowGroupsX) == 144);
 static_assert(offsetof(VitrailControl, plainFirstInstance) == 208);
 static_assert(offsetof(VitrailParameters, wholeByBinding) == 48);
 static_assert(offsetof(VitrailParameters, capacities) == 64);
-static_assert(sizeof(VitrailParameters) == 832);
+static_assert(sizeof(VitrailParameters) == 1600);
 #define VITRAIL_CONSTANT constexpr uint
 #else
 #define VITRAIL_CONSTANT const uint

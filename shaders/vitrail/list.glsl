@@ -18,7 +18,7 @@
 // the resolve waits for a shader that walked them before it (execution alone); both barriers are the host's. Lists are
 // not walked while it runs.
 //
-// What: every fragment that vitrailCollect() stored, behind each other by depth; at the same depth in the order that
+// What: every fragment that vitrailCollect() stored, in order of depth; at the same depth in the order that
 // the resolve blends them in (docs/resolve.md), and those that are alike in all that is stored by the host's word. Of a
 // frame that overflowed (VitrailStats) it is what found a node.
 //

@@ -21,11 +21,17 @@ bool CallOrder::allowsEnd(const Log& log, const char* prefix) {
   return true;
 }
 
+void CallOrder::drop(const Log& log, const char* why) {
+  if (!begun()) return;
+  log.warn("%s while a frame was begun and not ended: that frame is taken to be dropped", why);
+  state_ = State::Ended;
+}
+
 bool CallOrder::allows(Call call, const Log& log, const char* prefix) {
   switch (call) {
     case Call::Begin:
       if (begun())
-        log.warn("%sBegin() of a frame while another was not ended: that one is taken to be dropped", prefix);
+        log.warn("%sBegin() while a frame was begun and not ended: that frame is taken to be dropped", prefix);
       state_ = State::Begun;
       misused_ = false;
       return true;

@@ -17,6 +17,11 @@ class CallOrder {
   // begin with, "vitrailVkCmd"), and the frame counts as out of order.
   bool allows(Call call, const Log& log, const char* prefix);
 
+  // The memory that an open frame uses is about to be replaced: what was recorded of it may not be submitted any more.
+  void drop(const Log& log, const char* why);
+
+  [[nodiscard]] bool collected() const { return state_ == State::Collected || state_ == State::Resolved; }
+
   // Whether a call of this frame was missing, came at the wrong place, or could not do what it was asked for.
   [[nodiscard]] bool misused() const { return misused_; }
   void setMisused() { misused_ = true; }

@@ -13,10 +13,13 @@ class FrameNumbers {
     return given != 0 ? given : any_ ? newest_ + 1 : 0;
   }
 
-  // Begins a frame. True: the host begins its own number a second time, which says that the first one was dropped.
-  bool begin(std::uint64_t given) {
-    const std::uint64_t number = numberOf(given);
-    const bool again = any_ && given != 0 && newestWasGiven_ && number == newest_;
+  // Begins a frame. `open`: the last one was not ended. True: this one has the number of the last one, which was
+  // dropped: the host says so by giving its own number a second time, or leaves the number of an open frame to the
+  // library.
+  bool begin(std::uint64_t given, bool open) {
+    const bool reused = any_ && given == 0 && open;
+    const std::uint64_t number = reused ? newest_ : numberOf(given);
+    const bool again = reused || (any_ && given != 0 && newestWasGiven_ && number == newest_);
     any_ = true;
     newestWasGiven_ = given != 0;
     given_ = given_ || given != 0;
@@ -24,6 +27,7 @@ class FrameNumbers {
     return again;
   }
 
+  [[nodiscard]] bool any() const { return any_; }
   [[nodiscard]] std::uint64_t newest() const { return newest_; }
   // Whether the host numbers frames itself: where it does not, 0 names none of them.
   [[nodiscard]] bool areGiven() const { return given_; }

@@ -21,7 +21,7 @@ constexpr double kRounding = 1e-6; // what a device's sums may be off, as a shar
 constexpr double kMargin = 1.0;    // pixels
 
 // Bounds of pixels; empty as it starts.
-struct Extent {
+struct PixelBounds {
   double left = std::numeric_limits<double>::infinity();
   double right = -std::numeric_limits<double>::infinity();
   double top = std::numeric_limits<double>::infinity();
@@ -64,7 +64,7 @@ bool isOutside(const Corners& corners, double slack) {
          all(corners, [&](const ClipPoint& p) { return p.w < -slack; });
 }
 
-void addBox(Extent& extent, const ClipBox& box, double width, double height) {
+void addBox(PixelBounds& extent, const ClipBox& box, double width, double height) {
   double magnitude = 0.0;
   const Corners corners = toClip(box, magnitude);
   const double slack = kRounding * magnitude;
@@ -88,7 +88,7 @@ void addBox(Extent& extent, const ClipBox& box, double width, double height) {
 } // namespace
 
 Rectangle projectBounds(std::span<const ClipBox> boxes, std::uint32_t width, std::uint32_t height) {
-  Extent extent;
+  PixelBounds extent;
   for (const ClipBox& box : boxes) {
     const bool empty = box.min[0] > box.max[0] || box.min[1] > box.max[1] || box.min[2] > box.max[2];
     if (!empty) addBox(extent, box, width, height);

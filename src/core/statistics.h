@@ -13,8 +13,8 @@ namespace vitrail {
 struct FrameFacts {
   std::uint32_t nodeCapacity; // of the pool that the frame uses
   std::uint32_t misused;      // 1: calls were missing or wrong
-  std::uint32_t
-      sumsCleared; // the number of the clear that its sums needed (sums_clear.h); 0 where it leaves them dirty
+  // The number of the clear that its sums needed (sums_clear.h); 0 where it leaves them dirty.
+  std::uint32_t sumsCleared;
 };
 
 // The memory that one frame's counters are copied to. The tag is 0 from the start of a frame until its counters are

@@ -48,7 +48,11 @@ TilePlanInfo planInfo(const VitrailTilePlanDesc& desc) {
   info.memoryBudget = std::min(desc.memoryBudget - kBeside, desc.limits.memoryBytes);
   info.areaPixelsLimit = std::min<std::uint32_t>(desc.limits.areaPixels, VITRAIL_LIST_BUILD_COMPUTE_MAX_PIXELS);
   info.alignment = desc.limits.alignment;
-  info.nodeCapacityLimit = std::min(desc.limits.nodeCapacity, maxNodeIndexCount(desc.nodeFormat, info.samples));
+  // The device's limit is one of bytes, and is told for nodes without words.
+  const std::uint64_t nodes =
+      std::uint64_t{desc.limits.nodeCapacity} * nodeBytes(desc.nodeFormat) / nodeBytes(desc.nodeFormat, info.userWords);
+  info.nodeCapacityLimit =
+      std::min(static_cast<std::uint32_t>(nodes), maxNodeIndexCount(desc.nodeFormat, info.samples));
   info.expectedFragments = desc.expectedFragments;
   return info;
 }
@@ -122,6 +126,16 @@ extern "C" uint32_t vitrailNextTile(VitrailTilePlan plan, VitrailRect* tile) {
 extern "C" VitrailResult vitrailFinishTile(VitrailTilePlan plan, const VitrailStats* stats) {
   if (plan == nullptr) return VITRAIL_ERROR_INVALID;
   if (stats == nullptr) return plan->log.fail(VITRAIL_ERROR_INVALID, "vitrailFinishTile: stats is null");
+  if (stats->misused != 0) {
+    return plan->log.fail(VITRAIL_ERROR_INVALID,
+                          "vitrailFinishTile: the tile's frame was recorded wrongly, see the log");
+  }
+  if (stats->fragmentsMissing > 0 && stats->fragmentsRequested <= stats->nodeCapacity) {
+    return plan->log.fail(
+        VITRAIL_ERROR_INVALID,
+        "vitrailFinishTile: fragments are missing though the pool had room: their shader does not suit "
+        "the target");
+  }
   if (plan->plan.finish(stats->fragmentsRequested, stats->fragmentsMissing, stats->nodeCapacity)) {
     return VITRAIL_SUCCESS;
   }

@@ -7,7 +7,7 @@
 
 namespace vitrail {
 
-// What a log line says of a descriptor whose `next` is not null; VK_SUCCESS where it is.
+// Refuses, with a log line, a descriptor whose `next` is not null.
 VkResult checkNext(const Log& log, const void* next, const char* structure);
 
 // Zeroes a structure that the library fills in; its `next` is the host's.

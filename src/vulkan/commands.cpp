@@ -9,6 +9,15 @@ namespace {
 
 constexpr const char* kPrefix = "vitrailVkCmd";
 
+// Whether a call has what it needs; logs what not.
+bool isThere(VitrailVkTarget target, VkCommandBuffer commandBuffer, const char* call) {
+  if (target == nullptr) return false;
+  if (commandBuffer != VK_NULL_HANDLE) return true;
+  nullArgument(target->context, call);
+  target->order.setMisused();
+  return false;
+}
+
 bool allows(VitrailVkTarget target, Call call) { return target->order.allows(call, target->context->log, kPrefix); }
 
 // Barriers between the calls are the host's where it says so.
@@ -23,8 +32,14 @@ bool nextIsNull(VitrailVkTarget target, const void* next, const char* structure)
 }
 
 // Starts the frame on the host's side: its number, its memory, its area.
-void beginFrame(VitrailVkTarget_T& target, const VitrailVkBeginInfo& info) {
-  if (target.frames.begin(info.frame)) { // a second time: the first one was never submitted
+void beginFrame(VitrailVkTarget_T& target, const VitrailVkBeginInfo& info, bool open) {
+  if (target.frames.any() && info.frame != 0 && info.frame < target.frames.newest()) {
+    target.context->log.warn("frame %llu is begun after frame %llu: frame numbers rise",
+                             static_cast<unsigned long long>(info.frame),
+                             static_cast<unsigned long long>(target.frames.newest()));
+    target.growth.forget(); // what was read of later frames is no news any more
+  }
+  if (target.frames.begin(info.frame, open)) { // a second time: the first one was never submitted
     for (Storage& storage : target.retired) storage.use.drop(target.frames.newest());
   }
   target.storage.use.add(target.frames.newest());
@@ -66,6 +81,10 @@ bool canCopy(const VitrailVkTarget_T& target, const VitrailVkCopyInfo& info) {
               target.info.copyLayers);
   } else if (info.buffer == VK_NULL_HANDLE || info.offset % 4 != 0) {
     log.error("vitrailVkCmdCopyLists needs a buffer, and an offset that is a multiple of 4");
+  } else if (info.size < copyBytes(pixels, target.info.copyLayers)) {
+    log.error("vitrailVkCmdCopyLists: size %llu; %llu bytes are written, as vitrailVkCopySize says",
+              static_cast<unsigned long long>(info.size),
+              static_cast<unsigned long long>(copyBytes(pixels, target.info.copyLayers)));
   } else {
     return true;
   }
@@ -79,11 +98,12 @@ bool canCopy(const VitrailVkTarget_T& target, const VitrailVkCopyInfo& info) {
 extern "C" void vitrailVkCmdBegin(VkCommandBuffer commandBuffer, VitrailVkTarget target,
                                   const VitrailVkBeginInfo* info) {
   using namespace vitrail;
-  if (commandBuffer == VK_NULL_HANDLE || target == nullptr) return;
+  if (!isThere(target, commandBuffer, "vitrailVkCmdBegin")) return;
+  const bool open = target->order.begun();
   allows(target, Call::Begin);
   const VitrailVkBeginInfo given = info != nullptr ? *info : VitrailVkBeginInfo{};
   nextIsNull(target, given.next, "VitrailVkBeginInfo");
-  beginFrame(*target, given);
+  beginFrame(*target, given, open);
   boundary(commandBuffer, *target, Call::Begin);
   recordCall(commandBuffer, *target, Call::Begin);
   boundary(commandBuffer, *target, Call::Draws);
@@ -91,7 +111,7 @@ extern "C" void vitrailVkCmdBegin(VkCommandBuffer commandBuffer, VitrailVkTarget
 
 extern "C" void vitrailVkCmdCollected(VkCommandBuffer commandBuffer, VitrailVkTarget target) {
   using namespace vitrail;
-  if (commandBuffer == VK_NULL_HANDLE || target == nullptr || !allows(target, Call::Collected)) return;
+  if (!isThere(target, commandBuffer, "vitrailVkCmdCollected") || !allows(target, Call::Collected)) return;
   boundary(commandBuffer, *target, Call::Collected);
   recordCall(commandBuffer, *target, Call::Collected);
   // Here and not in the resolve, which may be in a rendering scope; shaders of the host that walk lists need it, too.
@@ -101,15 +121,19 @@ extern "C" void vitrailVkCmdCollected(VkCommandBuffer commandBuffer, VitrailVkTa
 extern "C" void vitrailVkCmdCopyLists(VkCommandBuffer commandBuffer, VitrailVkTarget target,
                                       const VitrailVkCopyInfo* info) {
   using namespace vitrail;
-  if (commandBuffer == VK_NULL_HANDLE || target == nullptr || info == nullptr) return;
-  if (!allows(target, Call::CopyLists) || !nextIsNull(target, info->next, "VitrailVkCopyInfo")) return;
-  if (!canCopy(*target, *info)) return;
+  if (!isThere(target, commandBuffer, "vitrailVkCmdCopyLists") || !allows(target, Call::CopyLists)) return;
+  if (info == nullptr) {
+    nullArgument(target->context, "vitrailVkCmdCopyLists");
+    return target->order.setMisused();
+  }
+  if (!nextIsNull(target, info->next, "VitrailVkCopyInfo")) return;
+  if (!canCopy(*target, *info)) return target->order.setMisused(); // what is in the host's buffer is of another frame
   CallInfo call;
   call.copied = {static_cast<std::uint32_t>(info->area.offset.x), static_cast<std::uint32_t>(info->area.offset.y),
                  info->area.extent.width, info->area.extent.height};
   call.copyBuffer = info->buffer;
   call.copyOffset = info->offset;
-  recordBoundary(commandBuffer, *target, Call::CopyLists); // no point of a frame's that a render graph knows
+  recordBoundary(commandBuffer, *target, Call::CopyLists); // not one of the points that vitrailVkBarriers() names
   recordCall(commandBuffer, *target, Call::CopyLists, call);
   recordBoundary(commandBuffer, *target, Call::Resolve); // the copy relinks long lists
 }
@@ -117,7 +141,7 @@ extern "C" void vitrailVkCmdCopyLists(VkCommandBuffer commandBuffer, VitrailVkTa
 extern "C" void vitrailVkCmdResolve(VkCommandBuffer commandBuffer, VitrailVkTarget target,
                                     const VitrailVkResolveInfo* info) {
   using namespace vitrail;
-  if (commandBuffer == VK_NULL_HANDLE || target == nullptr || !allows(target, Call::Resolve)) return;
+  if (!isThere(target, commandBuffer, "vitrailVkCmdResolve") || !allows(target, Call::Resolve)) return;
   if (info != nullptr) nextIsNull(target, info->next, "VitrailVkResolveInfo");
   CallInfo call;
   call.view = viewOf(*target, info);
@@ -128,16 +152,23 @@ extern "C" void vitrailVkCmdResolve(VkCommandBuffer commandBuffer, VitrailVkTarg
 
 extern "C" void vitrailVkCmdEnd(VkCommandBuffer commandBuffer, VitrailVkTarget target) {
   using namespace vitrail;
-  if (commandBuffer == VK_NULL_HANDLE || target == nullptr || !allows(target, Call::End)) return;
+  if (!isThere(target, commandBuffer, "vitrailVkCmdEnd")) return;
+  const bool collected = target->order.collected();
+  if (!allows(target, Call::End)) return;
   boundary(commandBuffer, *target, Call::End);
-  if (target->info.resolve == VITRAIL_RESOLVE_FRAGMENT) target->sums.cleaned();
+  // The dispatch that cleans up has its arguments from the call that was to collect.
+  if (target->info.resolve == VITRAIL_RESOLVE_FRAGMENT && collected) target->sums.cleaned();
   recordCall(commandBuffer, *target, Call::End);
 }
 
 extern "C" void vitrailVkBarriers(VitrailVkTarget target, VitrailVkBarrierPoint point, VitrailVkBarriers* barriers) {
   using namespace vitrail;
   if (barriers != nullptr) clearKeepingNext(*barriers);
-  if (target == nullptr || barriers == nullptr) return;
+  if (target == nullptr) return;
+  if (barriers == nullptr) {
+    nullArgument(target->context, "vitrailVkBarriers");
+    return;
+  }
   switch (point) {
     case VITRAIL_VK_BARRIER_BEGIN:
       return boundaryOf(*target, Call::Begin, *barriers);

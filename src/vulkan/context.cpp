@@ -92,6 +92,11 @@ VkResult checkDevice(VitrailVkContext_T& context) {
                             device.deviceName, VK_API_VERSION_MAJOR(device.apiVersion),
                             VK_API_VERSION_MINOR(device.apiVersion));
   }
+  constexpr std::uint32_t kStorageBuffers = VITRAIL_BINDINGS - 1; // that a kernel binds; Vulkan asks for 4 of a device
+  if (device.limits.maxPerStageDescriptorStorageBuffers < kStorageBuffers) {
+    return context.log.fail(VK_ERROR_FEATURE_NOT_PRESENT, "%s binds %u storage buffers to a shader; Vitrail needs %u",
+                            device.deviceName, device.limits.maxPerStageDescriptorStorageBuffers, kStorageBuffers);
+  }
   readLimits(context, device, maintenance3.maxMemoryAllocationSize);
   context.limits.exchangesInGroups = exchangesInGroups(subgroups);
   return checkFeatures(context, device.deviceName);
@@ -226,7 +231,7 @@ extern "C" void vitrailVkDestroyContext(VitrailVkContext context) {
   const std::uint32_t targets = context->owners.load() - 1;
   if (targets > 0) {
     context->log.error(
-        "vitrailVkDestroyContext: %u targets are left: destroy them first; the context is freed with the "
+        "vitrailVkDestroyContext: targets are left (%u): destroy them first; the context is freed with the "
         "last of them, which its device must outlive",
         targets);
   }

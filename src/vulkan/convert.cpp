@@ -5,6 +5,19 @@
 
 namespace vitrail {
 
+namespace {
+
+template <class Table>
+VkFlags flagsOf(std::uint32_t bits, const Table& table) {
+  VkFlags flags = 0;
+  for (const auto& [bit, flag] : table) {
+    if ((bits & bit) != 0) flags |= flag;
+  }
+  return flags;
+}
+
+} // namespace
+
 VkResult toVk(VitrailResult result) {
   switch (result) {
     case VITRAIL_SUCCESS:
@@ -29,11 +42,7 @@ VkPipelineStageFlags toVkStages(std::uint32_t stages) {
       std::pair<std::uint32_t, VkPipelineStageFlags>{kStageCompute, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT},
       std::pair<std::uint32_t, VkPipelineStageFlags>{kStageTransfer, VK_PIPELINE_STAGE_TRANSFER_BIT},
       std::pair<std::uint32_t, VkPipelineStageFlags>{kStageHost, VK_PIPELINE_STAGE_HOST_BIT}};
-  VkPipelineStageFlags flags = 0;
-  for (const auto& [stage, flag] : kStages) {
-    if ((stages & stage) != 0) flags |= flag;
-  }
-  return flags;
+  return flagsOf(stages, kStages);
 }
 
 VkAccessFlags toVkAccess(std::uint32_t accesses) {
@@ -45,11 +54,7 @@ VkAccessFlags toVkAccess(std::uint32_t accesses) {
       std::pair<std::uint32_t, VkAccessFlags>{kAccessTransferRead, VK_ACCESS_TRANSFER_READ_BIT},
       std::pair<std::uint32_t, VkAccessFlags>{kAccessTransferWrite, VK_ACCESS_TRANSFER_WRITE_BIT},
       std::pair<std::uint32_t, VkAccessFlags>{kAccessHostRead, VK_ACCESS_HOST_READ_BIT}};
-  VkAccessFlags flags = 0;
-  for (const auto& [access, flag] : kAccesses) {
-    if ((accesses & access) != 0) flags |= flag;
-  }
-  return flags;
+  return flagsOf(accesses, kAccesses);
 }
 
 } // namespace vitrail

@@ -107,6 +107,17 @@ VkPipelineDepthStencilStateCreateInfo stencilState(const VitrailVkScope& scope) 
   return info;
 }
 
+// Where the scope is no render pass. Points into `info`.
+VkPipelineRenderingCreateInfo renderingInfo(const FragmentInfo& info) {
+  VkPipelineRenderingCreateInfo rendering{};
+  rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
+  rendering.colorAttachmentCount = 1;
+  rendering.pColorAttachmentFormats = &info.colorFormat;
+  rendering.depthAttachmentFormat = info.scope.depthFormat;
+  rendering.stencilAttachmentFormat = info.scope.stencilFormat;
+  return rendering;
+}
+
 } // namespace
 
 VkResult computePipeline(VitrailVkContext_T& context, const ComputeKey& key, VkPipeline* pipeline) {
@@ -159,12 +170,7 @@ VkResult createFragmentPipeline(const VitrailVkContext_T& context, const Fragmen
   dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
   dynamic.dynamicStateCount = kDynamic.size();
   dynamic.pDynamicStates = kDynamic.data();
-  VkPipelineRenderingCreateInfo rendering{};
-  rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-  rendering.colorAttachmentCount = 1;
-  rendering.pColorAttachmentFormats = &info.colorFormat;
-  rendering.depthAttachmentFormat = info.scope.depthFormat;
-  rendering.stencilAttachmentFormat = info.scope.stencilFormat;
+  const VkPipelineRenderingCreateInfo rendering = renderingInfo(info);
 
   VkGraphicsPipelineCreateInfo create{};
   create.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;

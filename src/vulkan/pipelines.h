@@ -12,7 +12,7 @@
 
 namespace vitrail {
 
-// The specialization constants of src/kernels/entry/target.glsl, in the order of their ids.
+// The specialization constants of src/kernels/target.glsl, in the order of their ids.
 struct Specialization {
   std::uint32_t format = 0;
   std::uint32_t samples = 1;

@@ -23,8 +23,8 @@ VkBufferMemoryBarrier bufferBarrier(const VitrailVkTarget_T& target, Resource re
   buffer.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   const bool lists = resource == Resource::Lists;
   buffer.buffer = lists ? target.storage.buffer : target.stats.buffer;
-  buffer.offset = lists ? target.storage.offset : target.slotOffset();
-  buffer.size = lists ? target.storage.layout.total : sizeof(StatsSlot);
+  buffer.offset = lists ? target.storage.offset : 0; // of statistics all: hosts ask before the frame has its slot
+  buffer.size = lists ? target.storage.layout.total : target.stats.size;
   return buffer;
 }
 

@@ -54,12 +54,18 @@ bool readNewest(const VitrailVkTarget_T& target, std::uint64_t frame, VitrailSta
 } // namespace vitrail
 
 extern "C" VitrailResolve vitrailVkDefaultResolve(VitrailVkContext context, const VitrailVkTargetDesc* desc) {
-  if (context == nullptr || desc == nullptr) return VITRAIL_RESOLVE_DEFAULT;
+  if (context == nullptr || desc == nullptr) {
+    vitrail::nullArgument(context, "vitrailVkDefaultResolve");
+    return VITRAIL_RESOLVE_DEFAULT;
+  }
   return vitrail::defaultResolve(vitrail::targetInfo(*context, *desc));
 }
 
 extern "C" VitrailListBuild vitrailVkDefaultListBuild(VitrailVkContext context, const VitrailVkTargetDesc* desc) {
-  if (context == nullptr || desc == nullptr) return VITRAIL_LIST_BUILD_DEFAULT;
+  if (context == nullptr || desc == nullptr) {
+    vitrail::nullArgument(context, "vitrailVkDefaultListBuild");
+    return VITRAIL_LIST_BUILD_DEFAULT;
+  }
   return vitrail::defaultListBuild(context->limits, vitrail::targetInfo(*context, *desc));
 }
 
@@ -123,7 +129,8 @@ extern "C" void vitrailVkDestroyTarget(VitrailVkTarget target) {
 extern "C" VkResult vitrailVkUpdateTarget(VitrailVkTarget target, uint64_t frame) {
   using namespace vitrail;
   if (target == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
-  const std::uint64_t number = target->frames.numberOf(frame);
+  // A number that is too large says nothing of frames that were never begun.
+  const std::uint64_t number = std::min(target->frames.numberOf(frame), target->frames.numberOf(0));
   freeRetired(*target, number);
   if (target->info.memoryBudget == 0) return VK_SUCCESS;
   VitrailStats stats{};
@@ -132,6 +139,7 @@ extern "C" VkResult vitrailVkUpdateTarget(VitrailVkTarget target, uint64_t frame
   const std::uint32_t wanted =
       target->growth.wanted(stats, target->storage.needs.nodeCapacity, budgetCapacity(limits, target->info));
   if (wanted == target->storage.needs.nodeCapacity) return VK_SUCCESS;
+  target->order.drop(target->context->log, "vitrailVkUpdateTarget() gives the target another pool");
   StorageNeeds needs = target->storage.needs;
   needs.nodeCapacity = wanted;
   const VkResult result = replaceStorage(*target, needs, target->views);
@@ -157,6 +165,7 @@ extern "C" VkResult vitrailVkResizeTarget(VitrailVkTarget target, const VitrailV
   if (result == VK_SUCCESS) result = toVk(checkViews(context.log, wanted, viewsInfo(info->views)));
   if (result != VK_SUCCESS) return result;
   wanted.nodeCapacity = capacityWithin(context.limits, wanted);
+  target->order.drop(context.log, "vitrailVkResizeTarget()");
   result = replaceStorage(*target, storageNeeds(context.limits, wanted), info->views);
   if (result != VK_SUCCESS) return result;
   target->info = wanted;
@@ -184,7 +193,10 @@ extern "C" uint64_t vitrailVkTargetFrame(VitrailVkTarget target) {
 
 extern "C" void vitrailVkTargetMemory(VitrailVkTarget target, VitrailMemory* memory) {
   if (memory != nullptr) vitrail::clearKeepingNext(*memory);
-  if (target == nullptr || memory == nullptr) return;
+  if (target == nullptr || memory == nullptr) {
+    vitrail::nullArgument(target != nullptr ? target->context : nullptr, "vitrailVkTargetMemory");
+    return;
+  }
   const vitrail::Storage& storage = target->storage;
   memory->nodeCapacity = storage.needs.nodeCapacity;
   memory->nodeBytes = storage.layout.nodes.size;
@@ -203,7 +215,10 @@ extern "C" VkDeviceSize vitrailVkCopySize(VitrailVkTarget target, uint32_t width
 extern "C" void vitrailVkCollectSpecialization(VitrailVkContext context, const VitrailVkTargetDesc* desc,
                                                VitrailVkSpecialization* specialization) {
   if (specialization != nullptr) *specialization = {};
-  if (context == nullptr || desc == nullptr || specialization == nullptr) return;
+  if (context == nullptr || desc == nullptr || specialization == nullptr) {
+    vitrail::nullArgument(context, "vitrailVkCollectSpecialization");
+    return;
+  }
   constexpr std::uint32_t kFirstId = 1700; // VITRAIL_CONSTANT_ID of shaders/vitrail/collect.glsl
   const vitrail::TargetInfo info = vitrail::withDefaults(context->limits, vitrail::targetInfo(*context, *desc));
   specialization->data[0] = info.nodeFormat;
@@ -211,7 +226,8 @@ extern "C" void vitrailVkCollectSpecialization(VitrailVkContext context, const V
   specialization->data[2] = info.keepsSums() ? 1 : 0;
   specialization->data[3] = info.listBuild == VITRAIL_LIST_BUILD_COMPUTE ? 1 : 0;
   specialization->data[4] = info.userWords ? 1 : 0;
-  for (std::uint32_t i = 0; i < std::size(specialization->data); ++i) {
+  specialization->count = 5;
+  for (std::uint32_t i = 0; i < specialization->count; ++i) {
     specialization->entries[i] = {kFirstId + i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)),
                                   sizeof(std::uint32_t)};
   }

@@ -68,6 +68,7 @@ struct HostDesc {
   bool postDepthCoverage = true;       // where there are several samples and the device has it
   bool dualSourceBlending = true;      // where the device has it
   bool addresses = false;              // the pool is reached by its address
+  std::optional<bool> shaderPostDepth; // whether the collecting shader's coverage has; default: as the target takes it
   std::optional<bool> shaderByAddress; // whether the collecting shader does, too; default: it suits the pool
   bool stencilMark = false;
   bool specialized = false; // the collecting shader is, for this target or, if given, for one that differs in these

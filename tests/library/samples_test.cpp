@@ -193,6 +193,28 @@ TEST_P(SamplesTest, PixelsWithoutFragmentsAreFiltered) {
   }
 }
 
+// A target that takes coverage to have passed the depth test stores none that has not; the other way round it tests
+// again.
+TEST_P(SamplesTest, CoverageThatWasNotTestedIsNotTakenForTested) {
+  if (!features().postDepthCoverage) GTEST_SKIP() << "the device has no post-depth coverage";
+  for (const std::uint32_t samples : sampleCounts(features())) {
+    if (samples == 1) continue;
+    HostDesc desc;
+    desc.samples = samples;
+    const std::vector<Point> points = randomLists(desc, {3, 1}, 5);
+    desc.capacity = static_cast<std::uint32_t>(points.size());
+    const PointResult right = draw(desc, points);
+    desc.shaderPostDepth = false;
+    const PointResult wrong = draw(desc, points);
+    EXPECT_EQ(wrong.stats.exact, 0U);
+    EXPECT_EQ(wrong.stats.fragmentsStored, 0U);
+    EXPECT_EQ(wrong.stats.fragmentsMissing, right.stats.fragmentsStored);
+    desc.postDepthCoverage = false;
+    desc.shaderPostDepth = true;
+    EXPECT_TRUE(draw(desc, points).pixels == right.pixels);
+  }
+}
+
 TEST_P(SamplesTest, AFragmentWithoutCoverageIsNotStored) {
   for (const std::uint32_t samples : features().multisampled) {
     HostDesc desc;

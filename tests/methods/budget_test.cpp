@@ -109,7 +109,8 @@ TEST_F(BudgetTest, ALargePictureOfEightLayersIsDrawnInTiles) {
   EXPECT_EQ(different, 0U);
 }
 
-// A pool beyond what one binding reaches on Mesa's CPU driver, 128 MiB, and beyond the threads that put its nodes on lists.
+// A pool beyond what one binding reaches on Mesa's CPU driver, 128 MiB, and beyond the threads that put its nodes on
+// lists.
 TEST_F(BudgetTest, APictureMayHaveMoreNodesThanABindingHolds) {
   MethodOptions method;
   method.listBuild = VITRAIL_LIST_BUILD_COMPUTE;

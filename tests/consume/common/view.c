@@ -16,8 +16,8 @@ View viewCreate(const Host* host, VitrailVkContext context, const VitrailVkTarge
 
   VitrailVkSpecialization constants;
   vitrailVkCollectSpecialization(context, &complete, &constants);
-  const VkSpecializationInfo specialization = {sizeof constants.entries / sizeof *constants.entries, constants.entries,
-                                               sizeof constants.data, constants.data};
+  const VkSpecializationInfo specialization = {constants.count, constants.entries, sizeof constants.data,
+                                               constants.data};
   view.painter = sceneCreatePainter(host, &(PainterDesc){.extent = desc->extent,
                                                          .colorFormat = view.color.format,
                                                          .depthFormat = view.depth.format,

@@ -91,6 +91,34 @@ TEST_F(TilePlanTest, APixelThatFitsNoBudgetIsAnErrorWithTheBytes) {
   expectOneLine("100000");
 }
 
+// What no splitting mends is no tile that overflowed, and none that is done.
+TEST_F(TilePlanTest, TilesThatWentWrongOtherwiseAreRefused) {
+  TilePlan plan;
+  ASSERT_EQ(TilePlan::create(desc_, plan), VITRAIL_SUCCESS);
+  VitrailRect tile{};
+  ASSERT_TRUE(plan.next(tile));
+  VitrailStats stats{};
+  stats.nodeCapacity = 4000;
+  stats.misused = 1;
+  EXPECT_EQ(plan.finish(stats), VITRAIL_ERROR_INVALID);
+  expectOneLine("recorded wrongly");
+  stats.misused = 0;
+  stats.fragmentsRequested = 10;
+  stats.fragmentsMissing = 10;
+  EXPECT_EQ(plan.finish(stats), VITRAIL_ERROR_INVALID);
+  expectOneLine("suit");
+}
+
+// A pool whose nodes carry words has fewer of them in the same bytes.
+TEST_F(TilePlanTest, WordsTakeOfTheDevicesLimit) {
+  desc_.memoryBudget = 1 << 30;
+  desc_.limits.nodeCapacity = 120000;
+  desc_.userWords = 1;
+  TilePlan plan;
+  ASSERT_EQ(TilePlan::create(desc_, plan), VITRAIL_SUCCESS);
+  EXPECT_EQ(plan.nodeCapacity(), 90000U);
+}
+
 TEST_F(TilePlanTest, NullArgumentsAreSafe) {
   VitrailTilePlan plan = nullptr;
   EXPECT_EQ(vitrailCreateTilePlan(nullptr, &plan), VITRAIL_ERROR_INVALID);

@@ -109,7 +109,7 @@ TEST_F(LifetimeTest, AContextMayBeDestroyedBeforeItsTargets) {
   ASSERT_EQ(vitrailVkCreateTarget(context, &desc, &first), VK_SUCCESS);
   ASSERT_EQ(vitrailVkCreateTarget(context, &desc, &second), VK_SUCCESS);
   vitrailVkDestroyContext(context);
-  expectOneLine("2 targets");
+  expectOneLine("targets are left (2)");
   VitrailVkTarget third = nullptr;
   EXPECT_EQ(vitrailVkCreateTarget(context, &desc, &third), VK_ERROR_INITIALIZATION_FAILED);
   EXPECT_EQ(third, nullptr);

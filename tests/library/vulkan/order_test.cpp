@@ -192,7 +192,43 @@ TEST_F(OrderTest, AreasAndViewsThatAreNotThereAreTakenFromWhatIs) {
   EXPECT_EQ(stats.exact, 0U);
 }
 
-// A copy of lists that cannot be had records nothing and says why; the frame is what it is.
+// Memory that is replaced in the middle of a frame is not the frame's: it is dropped, and says so.
+TEST_F(OrderTest, AResizeInAFrameDropsIt) {
+  HostDesc desc;
+  desc.capacity = 4;
+  VulkanHost host(backend(), desc);
+  const std::vector<Point> points = {{0, 0, 0.5F, {1.0F, 1.0F, 1.0F, 0.5F}}};
+  const PointResult before = host.draw(points);
+  VitrailVkResizeInfo resize{};
+  resize.extent = {desc.width, desc.height};
+  resize.views = host.targetDesc().views;
+  Commands recorded(backend().device());
+  recorded.run([&](VkCommandBuffer commands) {
+    host.target().begin(commands);
+    EXPECT_EQ(host.target().resize(resize), VK_SUCCESS);
+    expectOneLine("dropped");
+    host.target().collected(commands);
+    expectOneLine("without a frame");
+  });
+  const PointResult after = host.draw(points);
+  EXPECT_EQ(after.stats.exact, 1U);
+  EXPECT_TRUE(after.pixels == before.pixels);
+}
+
+// Sums of a frame that overflowed and was not collected are not added to those of the next one.
+TEST_F(OrderTest, SumsOfAFrameThatWasNotCollectedAreGone) {
+  HostDesc desc;
+  desc.capacity = 2;
+  desc.resolve = VITRAIL_RESOLVE_FRAGMENT;
+  const std::vector<Point> points = std::vector<Point>(10, {0, 0, 0.5F, {1.0F, 0.5F, 0.25F, 0.5F}});
+  const PointResult alone = VulkanHost(backend(), desc).draw(points);
+  VulkanHost host(backend(), desc);
+  host.drawSteps(points, std::array{Step::Begin, Step::End});
+  backend().takeLog();
+  EXPECT_TRUE(host.draw(points).pixels == alone.pixels);
+}
+
+// A copy of lists that cannot be had records nothing and says why; the frame does not count as exact.
 TEST_F(OrderTest, CopiesThatCannotBeHadAreRefused) {
   HostDesc desc;
   desc.capacity = 4;
@@ -212,6 +248,7 @@ TEST_F(OrderTest, CopiesThatCannotBeHadAreRefused) {
     info.area = area;
     info.buffer = into;
     info.offset = offset;
+    info.size = into != VK_NULL_HANDLE && word != "size" ? buffer.size() - offset : 16;
     target.copyLists(commands, info);
     expectOneLine(word);
   };
@@ -227,6 +264,7 @@ TEST_F(OrderTest, CopiesThatCannotBeHadAreRefused) {
     refuse(commands, target, {{0, 0}, {0, 4}}, buffer.get(), 0, "inside");
     refuse(commands, target, {{0, 0}, {4, 4}}, VK_NULL_HANDLE, 0, "buffer");
     refuse(commands, target, {{0, 0}, {4, 4}}, buffer.get(), 2, "offset");
+    refuse(commands, target, {{0, 0}, {4, 4}}, buffer.get(), 0, "size");
     target.resolve(commands);
     target.end(commands);
     other.target().begin(commands);
@@ -235,6 +273,7 @@ TEST_F(OrderTest, CopiesThatCannotBeHadAreRefused) {
     other.target().resolve(commands);
     other.target().end(commands);
   });
+  EXPECT_EQ(host.stats(host.target().frame())->exact, 0U);
   const auto* bytes = static_cast<const std::uint8_t*>(buffer.mapped());
   EXPECT_TRUE(std::all_of(bytes, bytes + buffer.size(), [](std::uint8_t byte) { return byte == 0x5a; }));
   EXPECT_EQ(host.draw(points).stats.exact, 1U);

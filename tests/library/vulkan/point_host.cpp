@@ -159,7 +159,7 @@ PointPipelines& VulkanHost::pipelinesFor(VitrailVkTargetDesc target, bool specia
   info.colorFormat = PointImages::colorFormat(desc_);
   info.depthFormat = PointImages::depthFormat(desc_);
   info.nearestIsOne = desc_.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
-  info.postDepthCoverage = postDepthCoverage_;
+  info.postDepthCoverage = desc_.shaderPostDepth.value_or(postDepthCoverage_);
   info.addresses = desc_.shaderByAddress.value_or(desc_.addresses);
   info.shader = desc_.shader;
   if (specialized) {
@@ -169,7 +169,7 @@ PointPipelines& VulkanHost::pipelinesFor(VitrailVkTargetDesc target, bool specia
     const VitrailVkSpecialization constants = context_->collectSpecialization(target);
     info.specialized = true;
     info.firstConstant = constants.entries[0].constantID;
-    std::copy(std::begin(constants.data), std::end(constants.data), info.constants.begin());
+    std::copy_n(std::begin(constants.data), constants.count, info.constants.begin());
   }
   return backend_.pipelines(info);
 }
@@ -445,6 +445,7 @@ void VulkanHost::recordRead(VkCommandBuffer commands, const VitrailRect& area, L
   VitrailVkCopyInfo info{};
   info.area = {{static_cast<std::int32_t>(area.x), static_cast<std::int32_t>(area.y)}, {area.width, area.height}};
   info.buffer = copy.get();
+  info.size = copy.size();
   target_.copyLists(commands, info);
   // Writer: the library's copy. Reader: the host.
   cmdBarrier(commands, kTransferWrite, kHostAccess);

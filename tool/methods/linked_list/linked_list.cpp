@@ -194,7 +194,7 @@ void LinkedList::makeSurfaces() {
     if (coverage && !address) info.fragmentShader = shaders::collect_coverage_frag;
     if (!coverage && address) info.fragmentShader = shaders::collect_address_frag;
     if (!coverage && !address) info.fragmentShader = shaders::collect_frag;
-    for (std::size_t i = 0; i < std::size(specialization.entries); ++i) {
+    for (std::size_t i = 0; i < specialization.count; ++i) {
       info.constants.emplace_back(specialization.entries[i].constantID, specialization.data[i]);
     }
     info.constants.emplace_back(kDepthFromW, kind.depthFromW ? VK_TRUE : VK_FALSE);
