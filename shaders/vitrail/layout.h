@@ -80,6 +80,7 @@ struct VitrailControl {
   uint coveredPixels[VITRAIL_COUNTERS];
   uint cutPixels; // lists that the driver did not let it finish
   uint approximatePixels;
+  uint collected;  // `requested` when the lists were built or found: fragments that came later are on none
   uint staleNodes; // 1: some of those nodes were not reached, and hold what they held before
   VitrailListClass classes[VITRAIL_LIST_CLASSES];
   // The arguments of indirect commands, which follow from the first four (src/kernels/arguments.glsl). Of a frame
@@ -130,7 +131,7 @@ struct VitrailParameters {
   uint wholeByBinding; // 1: shaders reach the whole pool by its binding
   uint wholeByAddress; // 1: and those that define VITRAIL_BUFFER_REFERENCE, by its address
   uint userWords;      // 1: nodes carry a word of the host's
-  uint _reserved;
+  uint frame;          // the low bits of its number, which its statistics are to have again
   // The nodes for shaders of each VITRAIL_LAYOUT: `capacity` for those that suit the target, else 0. Asking whether a
   // fragment's node is one of them asks both questions at once.
   uvec4 capacities[VITRAIL_LAYOUTS / 4];
@@ -176,12 +177,12 @@ static_assert(sizeof(VitrailNodeStandard) == 8);
 static_assert(sizeof(VitrailNodeCompact) == 8);
 static_assert(sizeof(VitrailNodeHdr) == 16);
 static_assert(sizeof(VitrailListClass) == 16);
-static_assert(sizeof(VitrailControl) == 212);
+static_assert(sizeof(VitrailControl) == 216);
 static_assert(offsetof(VitrailControl, wraps) == 4); // collect.glsl reaches both as words
 static_assert(offsetof(VitrailControl, misfits) == 8);
-static_assert(offsetof(VitrailControl, classes) == 96);
-static_assert(offsetof(VitrailControl, overflowGroupsX) == 144);
-static_assert(offsetof(VitrailControl, plainFirstInstance) == 208);
+static_assert(offsetof(VitrailControl, classes) == 100);
+static_assert(offsetof(VitrailControl, overflowGroupsX) == 148);
+static_assert(offsetof(VitrailControl, plainFirstInstance) == 212);
 static_assert(offsetof(VitrailParameters, wholeByBinding) == 48);
 static_assert(offsetof(VitrailParameters, capacities) == 64);
 static_assert(sizeof(VitrailParameters) == 1600);

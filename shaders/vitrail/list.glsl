@@ -56,7 +56,9 @@ void vitrailFillBatch(inout VitrailList list) {
     uvec4 node = vitrailLoadNode(index, list.nodes);
     VitrailEntry entry = VitrailEntry(vitrailKey(node, list.nodes), index, 0u);
     if (vitrailParameters.userWords != 0u) entry.word = vitrailLoadWord(index, list.nodes);
-    index = node.w & vitrailNextMask(list.nodes);
+    uint next = node.w & vitrailNextMask(list.nodes);
+    if (next == index) break; // no node: idle lanes of CPU drivers read zeros, and would walk on for all
+    index = next;
     ++count;
     if (VITRAIL_BEFORE(list.last, entry)) {
       vitrailInsert(list.batch, entry);

@@ -3,7 +3,8 @@
 namespace vitrail {
 
 bool CallOrder::refuse(const Log& log, const char* prefix, const char* call, const char* reason) {
-  log.error("%s%s() %s: it records nothing, and the frame does not count as exact", prefix, call, reason);
+  const char* frame = begun() ? ", and the frame does not count as exact" : "";
+  log.error("%s%s() %s: it records nothing%s", prefix, call, reason, frame);
   misused_ = true;
   return false;
 }

@@ -21,6 +21,7 @@ class FrameNumbers {
     const std::uint64_t number = reused ? newest_ : numberOf(given);
     const bool again = reused || (any_ && given != 0 && newestWasGiven_ && number == newest_);
     any_ = true;
+    if (!again) ++begun_;
     newestWasGiven_ = given != 0;
     given_ = given_ || given != 0;
     newest_ = number;
@@ -28,37 +29,40 @@ class FrameNumbers {
   }
 
   [[nodiscard]] bool any() const { return any_; }
+  // Frames that were begun, without those that were dropped and begun again: the last one has this place among them.
+  [[nodiscard]] std::uint64_t begun() const { return begun_; }
   [[nodiscard]] std::uint64_t newest() const { return newest_; }
   // Whether the host numbers frames itself: where it does not, 0 names none of them.
   [[nodiscard]] bool areGiven() const { return given_; }
 
  private:
   std::uint64_t newest_ = 0;
+  std::uint64_t begun_ = 0;
   bool any_ = false;
   bool given_ = false;
   bool newestWasGiven_ = false; // by the host: numbers of the library's own are never dropped and given again
 };
 
-// Which frames some memory was used by.
+// Which frames some memory was used by, by their places among those that were begun.
 class FrameUse {
  public:
-  void add(std::uint64_t frame) {
-    if (used_ && frame == last_) return;
+  void add(std::uint64_t place) {
+    if (used_ && place == last_) return;
     before_ = last_;
     usedBefore_ = used_;
-    last_ = frame;
+    last_ = place;
     used_ = true;
   }
 
   // That frame was recorded and never submitted.
-  void drop(std::uint64_t frame) {
-    if (!used_ || frame != last_) return;
+  void drop(std::uint64_t place) {
+    if (!used_ || place != last_) return;
     last_ = before_;
     used_ = usedBefore_;
     usedBefore_ = false;
   }
 
-  // Whether no frame uses it any more, when the host records frame `now`.
+  // Whether no frame uses it any more, when the host records the frame at place `now`.
   [[nodiscard]] bool isFree(std::uint64_t now, std::uint32_t framesInFlight) const {
     return !used_ || (now >= framesInFlight && last_ <= now - framesInFlight);
   }

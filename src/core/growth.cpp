@@ -10,7 +10,7 @@ constexpr std::uint32_t kLowFrames = 120; // in a row, before the pool shrinks
 
 // With room for frames that need somewhat more than this one.
 std::uint32_t withRoom(std::uint64_t nodes, std::uint32_t numerator, std::uint32_t denominator, std::uint32_t most) {
-  return static_cast<std::uint32_t>(std::min<std::uint64_t>(nodes * numerator / denominator + 1024, most));
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(nodes * numerator / denominator + kSpareNodes, most));
 }
 
 } // namespace

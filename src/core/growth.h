@@ -7,6 +7,9 @@
 
 namespace vitrail {
 
+// Nodes that a pool has beyond what its frames need and the room for somewhat more.
+constexpr std::uint32_t kSpareNodes = 1024;
+
 class Growth {
  public:
   // Whether the statistics of a frame are news.

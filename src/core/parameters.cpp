@@ -7,7 +7,7 @@
 namespace vitrail {
 
 layout::VitrailParameters parametersOf(const TargetInfo& info, std::uint32_t nodeCapacity, const PoolAccess& pool,
-                                       const VitrailRect& area) {
+                                       const VitrailRect& area, std::uint64_t frame) {
   layout::VitrailParameters parameters{};
   parameters.x = area.x;
   parameters.y = area.y;
@@ -24,6 +24,7 @@ layout::VitrailParameters parametersOf(const TargetInfo& info, std::uint32_t nod
   parameters.wholeByBinding = pool.wholeByBinding ? 1 : 0;
   parameters.wholeByAddress = pool.address != 0 ? 1 : 0;
   parameters.userWords = info.userWords ? 1 : 0;
+  parameters.frame = static_cast<std::uint32_t>(frame);
   std::array<std::uint32_t, VITRAIL_LAYOUTS> capacities{};
   static_assert(sizeof(capacities) == sizeof(parameters.capacities));
   const auto suit = [&](std::uint32_t byAddress, std::uint32_t postDepth) {

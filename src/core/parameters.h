@@ -16,7 +16,7 @@ struct PoolAccess {
 
 // `area` lies inside the target, with at most areaPixels pixels; `info` has its defaults.
 layout::VitrailParameters parametersOf(const TargetInfo& info, std::uint32_t nodeCapacity, const PoolAccess& pool,
-                                       const VitrailRect& area);
+                                       const VitrailRect& area, std::uint64_t frame);
 
 // The area of a frame for which the host asks for these pixels (an extent of 0: for everything): inside the target, and
 // never more than there are head pointers for. Where that leaves something out `whole` becomes false, and the log says

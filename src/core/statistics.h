@@ -21,10 +21,12 @@ struct FrameFacts {
 // there: a slot whose tag is right, before and after the counters are read, is whole.
 struct StatsSlot {
   layout::VitrailControl control;
+  std::uint32_t
+      begunFrame;    // VitrailParameters::frame as the GPU has it: another one's if this frame's begin did not run
   FrameFacts facts;  // `sumsCleared` is read without the tag
   std::uint64_t tag; // frame + 1, so that a slot never written names no frame
 };
-static_assert(offsetof(StatsSlot, tag) == sizeof(layout::VitrailControl) + sizeof(FrameFacts)); // no hidden gaps
+static_assert(offsetof(StatsSlot, tag) == sizeof(layout::VitrailControl) + 4 + sizeof(FrameFacts)); // no hidden gaps
 
 // One slot more than frames in flight: a host reads frame n - framesInFlight when it has waited for it, and by then it
 // may have recorded frame n.

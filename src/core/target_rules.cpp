@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "growth.h"
 #include "statistics.h"
 
 namespace vitrail {
@@ -211,6 +212,9 @@ VitrailResult checkViews(const Log& log, const TargetInfo& info, const ViewsInfo
                     : views.opaque ? "opaque"
                                    : "depth");
   }
+  if (views.count != 0 && !views.color && !views.opaque && !views.depth) {
+    return log.fail(VITRAIL_ERROR_INVALID, "views.count is %u, and no array of views is given", views.count);
+  }
   if (views.nullName != nullptr) {
     return log.fail(VITRAIL_ERROR_INVALID, "views.%s[%u] is a null handle", views.nullName, views.nullIndex);
   }
@@ -271,8 +275,9 @@ TargetInfo resized(const TargetInfo& info, std::uint32_t present, std::uint32_t 
   wanted.nodeCapacity = nodeCapacity != 0 ? nodeCapacity : present;
   if (nodeCapacity == 0 && info.memoryBudget != 0) {
     // The same layers on every pixel: the first frames of the new size are as likely to fit as the last of the old.
-    const double layers = static_cast<double>(present) / std::max(info.areaPixels, 1U);
-    const double nodes = layers * wanted.areaPixels;
+    // What a pool has whatever its frames need is no part of that.
+    const double layers = static_cast<double>(present - std::min(present, kSpareNodes)) / std::max(info.areaPixels, 1U);
+    const double nodes = layers * wanted.areaPixels + std::min(present, kSpareNodes);
     wanted.nodeCapacity = static_cast<std::uint32_t>(std::clamp(nodes, 1.0, static_cast<double>(kMost32)));
   }
   return wanted;

@@ -7,6 +7,7 @@
 // By one invocation, once all fragments have been collected.
 void writeArguments() {
   bool any = (vitrailControl.requested | vitrailControl.wraps | vitrailControl.misfits) != 0u;
+  vitrailControl.collected = vitrailControl.requested;
   uvec2 groups = (uvec2(vitrailParameters.width, vitrailParameters.height) + 7u) / 8u; // of 8 by 8 pixels
   if (any) {
     vitrailControl.pixelGroupsX = groups.x;

@@ -131,9 +131,9 @@ VkResult replaceStorage(VitrailVkTarget_T& target, const StorageNeeds& needs, co
   return VK_SUCCESS;
 }
 
-void freeRetired(VitrailVkTarget_T& target, std::uint64_t frame) {
+void freeRetired(VitrailVkTarget_T& target, std::uint64_t place) {
   std::erase_if(target.retired, [&](Storage& storage) {
-    if (!storage.use.isFree(frame, target.info.framesInFlight)) return false;
+    if (!storage.use.isFree(place, target.info.framesInFlight)) return false;
     storage.destroy(*target.context);
     return true;
   });

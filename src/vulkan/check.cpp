@@ -49,6 +49,11 @@ VkResult checkColorFormat(const VitrailVkContext_T& context, VkFormat format, bo
                             "VK_FORMAT_R32G32B32A32_SFLOAT",
                             format);
   }
+  constexpr VkFormat kLastOfCore = VK_FORMAT_ASTC_12x12_SRGB_BLOCK;
+  constexpr int kFirstOfExtensions = 1000000000;
+  if (format > kLastOfCore && static_cast<int>(format) < kFirstOfExtensions) {
+    return context.log.fail(VK_ERROR_INITIALIZATION_FAILED, "colorFormat %d is none of VkFormat", format);
+  }
   const VkFormatFeatureFlags needed =
       compute ? VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT : VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
   if ((featuresOf(context, format) & needed) == 0) {
@@ -66,6 +71,16 @@ VkResult checkScope(const VitrailVkContext_T& context, const VitrailVkScope& sco
   if (scope.stencilFormat != VK_FORMAT_UNDEFINED && !hasStencil(scope.stencilFormat)) {
     return context.log.fail(VK_ERROR_INITIALIZATION_FAILED, "scope.stencilFormat %d is no stencil format",
                             scope.stencilFormat);
+  }
+  if (scope.depthFormat != VK_FORMAT_UNDEFINED && scope.stencilFormat != VK_FORMAT_UNDEFINED &&
+      scope.depthFormat != scope.stencilFormat) {
+    return context.log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                            "scope.depthFormat %d and stencilFormat %d: a scope has one image of both, of one format",
+                            scope.depthFormat, scope.stencilFormat);
+  }
+  if (scope.stencilMask != 0 && (scope.stencilMask & 0xffU) == 0) {
+    return context.log.fail(VK_ERROR_INITIALIZATION_FAILED, "scope.stencilMask 0x%x: a stencil has 8 bits",
+                            scope.stencilMask);
   }
   return VK_SUCCESS;
 }

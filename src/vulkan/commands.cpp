@@ -33,6 +33,8 @@ bool nextIsNull(VitrailVkTarget target, const void* next, const char* structure)
 
 // Starts the frame on the host's side: its number, its memory, its area.
 void beginFrame(VitrailVkTarget_T& target, const VitrailVkBeginInfo& info, bool open) {
+  // Begun over an open one, what it has may be what the host meant for that one; the same number says otherwise.
+  if (open && (info.frame == 0 || info.frame != target.frames.newest())) target.order.setMisused();
   if (target.frames.any() && info.frame != 0 && info.frame < target.frames.newest()) {
     target.context->log.warn("frame %llu is begun after frame %llu: frame numbers rise",
                              static_cast<unsigned long long>(info.frame),
@@ -40,10 +42,10 @@ void beginFrame(VitrailVkTarget_T& target, const VitrailVkBeginInfo& info, bool 
     target.growth.forget(); // what was read of later frames is no news any more
   }
   if (target.frames.begin(info.frame, open)) { // a second time: the first one was never submitted
-    for (Storage& storage : target.retired) storage.use.drop(target.frames.newest());
+    for (Storage& storage : target.retired) storage.use.drop(target.frames.begun());
   }
-  target.storage.use.add(target.frames.newest());
-  freeRetired(target, target.frames.newest());
+  target.storage.use.add(target.frames.begun());
+  freeRetired(target, target.frames.begun());
   const VkRect2D& wanted = info.area;
   bool whole = true;
   target.area = areaOfFrame(target.info, target.context->log, wanted.offset.x, wanted.offset.y, wanted.extent.width,

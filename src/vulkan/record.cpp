@@ -81,7 +81,7 @@ void clear(VkCommandBuffer commandBuffer, VitrailVkTarget_T& target) {
     if (bytes > 0) vk.CmdFillBuffer(commandBuffer, storage.buffer, storage.offset + part.offset, bytes, value);
   };
   const layout::VitrailParameters parameters =
-      parametersOf(target.info, storage.needs.nodeCapacity, storage.pool, target.area);
+      parametersOf(target.info, storage.needs.nodeCapacity, storage.pool, target.area, target.frames.newest());
   vk.CmdUpdateBuffer(commandBuffer, storage.buffer, storage.offset + storage.layout.parameters.offset,
                      sizeof(parameters), &parameters);
   fill(storage.layout.heads, headBytes(parameters.width * parameters.height), layout::VITRAIL_END);
@@ -96,9 +96,12 @@ void clear(VkCommandBuffer commandBuffer, VitrailVkTarget_T& target) {
 void copyStatistics(VkCommandBuffer commandBuffer, const VitrailVkTarget_T& target) {
   const Functions& vk = target.context->vk;
   const Storage& storage = target.storage;
-  const VkBufferCopy region{storage.offset + storage.layout.control.offset, target.slotOffset(),
-                            sizeof(layout::VitrailControl)};
-  vk.CmdCopyBuffer(commandBuffer, storage.buffer, target.stats.buffer, 1, &region);
+  const std::array regions = {
+      VkBufferCopy{storage.offset + storage.layout.control.offset, target.slotOffset(), sizeof(layout::VitrailControl)},
+      VkBufferCopy{storage.offset + storage.layout.parameters.offset + offsetof(layout::VitrailParameters, frame),
+                   target.slotOffset() + offsetof(StatsSlot, begunFrame), sizeof(StatsSlot::begunFrame)}};
+  vk.CmdCopyBuffer(commandBuffer, storage.buffer, target.stats.buffer, static_cast<std::uint32_t>(regions.size()),
+                   regions.data());
   const FrameFacts facts{storage.needs.nodeCapacity, target.order.misused() ? 1U : 0U, target.sums.fact()};
   vk.CmdUpdateBuffer(commandBuffer, target.stats.buffer, target.slotOffset() + offsetof(StatsSlot, facts),
                      sizeof(facts), &facts);

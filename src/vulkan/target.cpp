@@ -131,7 +131,9 @@ extern "C" VkResult vitrailVkUpdateTarget(VitrailVkTarget target, uint64_t frame
   if (target == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
   // A number that is too large says nothing of frames that were never begun.
   const std::uint64_t number = std::min(target->frames.numberOf(frame), target->frames.numberOf(0));
-  freeRetired(*target, number);
+  const bool again = target->frames.any() && number == target->frames.newest() && frame != 0;
+  const std::uint64_t place = target->frames.begun() + (again ? 0 : 1); // of the frame that is about to be recorded
+  freeRetired(*target, place);
   if (target->info.memoryBudget == 0) return VK_SUCCESS;
   VitrailStats stats{};
   if (!readNewest(*target, number, stats) || !target->growth.isNews(stats.frame)) return VK_SUCCESS;
@@ -143,7 +145,7 @@ extern "C" VkResult vitrailVkUpdateTarget(VitrailVkTarget target, uint64_t frame
   StorageNeeds needs = target->storage.needs;
   needs.nodeCapacity = wanted;
   const VkResult result = replaceStorage(*target, needs, target->views);
-  freeRetired(*target, number); // at once where no frame was begun with it
+  freeRetired(*target, place); // at once where no frame was begun with it
   return result;
 }
 
@@ -171,7 +173,7 @@ extern "C" VkResult vitrailVkResizeTarget(VitrailVkTarget target, const VitrailV
   target->info = wanted;
   keepViews(*target, info->views);
   target->growth.forget();
-  freeRetired(*target, target->frames.newest());
+  freeRetired(*target, target->frames.begun());
   return VK_SUCCESS;
 }
 

@@ -67,7 +67,7 @@ VkResult replaceStorage(VitrailVkTarget_T& target, const StorageNeeds& needs, co
 // Keeps copies of what the host gave.
 void keepViews(VitrailVkTarget_T& target, const VitrailVkViews& views);
 
-// Frees memory that only frames used that have finished when `frame` is recorded.
-void freeRetired(VitrailVkTarget_T& target, std::uint64_t frame);
+// Frees memory that only frames used that have finished when the frame at that place (FrameNumbers) is recorded.
+void freeRetired(VitrailVkTarget_T& target, std::uint64_t place);
 
 } // namespace vitrail

@@ -120,20 +120,20 @@ Offsets offsetsOf(const Module& module, std::uint32_t type) {
 const Offsets& controlOffsets() {
   using layout::VitrailControl;
   static const Offsets offsets = {
-      offsetof(VitrailControl, requested),         offsetof(VitrailControl, wraps),
-      offsetof(VitrailControl, misfits),           offsetof(VitrailControl, misfitNodes),
-      offsetof(VitrailControl, layersMax),         offsetof(VitrailControl, coveredPixels),
-      offsetof(VitrailControl, cutPixels),         offsetof(VitrailControl, approximatePixels),
-      offsetof(VitrailControl, staleNodes),        offsetof(VitrailControl, classes),
-      offsetof(VitrailControl, overflowGroupsX),   offsetof(VitrailControl, overflowGroupsY),
-      offsetof(VitrailControl, overflowGroupsZ),   offsetof(VitrailControl, pixelGroupsX),
-      offsetof(VitrailControl, pixelGroupsY),      offsetof(VitrailControl, pixelGroupsZ),
-      offsetof(VitrailControl, plainGroupsX),      offsetof(VitrailControl, plainGroupsY),
-      offsetof(VitrailControl, plainGroupsZ),      offsetof(VitrailControl, drawVertices),
-      offsetof(VitrailControl, drawInstances),     offsetof(VitrailControl, drawFirstVertex),
-      offsetof(VitrailControl, drawFirstInstance), offsetof(VitrailControl, plainVertices),
-      offsetof(VitrailControl, plainInstances),    offsetof(VitrailControl, plainFirstVertex),
-      offsetof(VitrailControl, plainFirstInstance)};
+      offsetof(VitrailControl, requested),        offsetof(VitrailControl, wraps),
+      offsetof(VitrailControl, misfits),          offsetof(VitrailControl, misfitNodes),
+      offsetof(VitrailControl, layersMax),        offsetof(VitrailControl, coveredPixels),
+      offsetof(VitrailControl, cutPixels),        offsetof(VitrailControl, approximatePixels),
+      offsetof(VitrailControl, collected),        offsetof(VitrailControl, staleNodes),
+      offsetof(VitrailControl, classes),          offsetof(VitrailControl, overflowGroupsX),
+      offsetof(VitrailControl, overflowGroupsY),  offsetof(VitrailControl, overflowGroupsZ),
+      offsetof(VitrailControl, pixelGroupsX),     offsetof(VitrailControl, pixelGroupsY),
+      offsetof(VitrailControl, pixelGroupsZ),     offsetof(VitrailControl, plainGroupsX),
+      offsetof(VitrailControl, plainGroupsY),     offsetof(VitrailControl, plainGroupsZ),
+      offsetof(VitrailControl, drawVertices),     offsetof(VitrailControl, drawInstances),
+      offsetof(VitrailControl, drawFirstVertex),  offsetof(VitrailControl, drawFirstInstance),
+      offsetof(VitrailControl, plainVertices),    offsetof(VitrailControl, plainInstances),
+      offsetof(VitrailControl, plainFirstVertex), offsetof(VitrailControl, plainFirstInstance)};
   return offsets;
 }
 
@@ -161,7 +161,7 @@ const Offsets& parameterOffsets() {
                                   offsetof(VitrailParameters, wholeByBinding),
                                   offsetof(VitrailParameters, wholeByAddress),
                                   offsetof(VitrailParameters, userWords),
-                                  offsetof(VitrailParameters, _reserved),
+                                  offsetof(VitrailParameters, frame),
                                   offsetof(VitrailParameters, capacities)};
   return offsets;
 }
