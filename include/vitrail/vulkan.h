@@ -323,7 +323,7 @@ typedef struct VitrailVkResolveInfo {
 
 /* Sorts every list and blends it over the opaque scene, in linear light with premultiplied alpha: a pixel or sample d
  * becomes C + T * d, where (C, T) composes its fragments front to back. Once a frame. `info` may be null (view 0). A
- * frame without fragments costs next to nothing.
+ * frame without fragments costs next to nothing, but for the mean of several samples that a resolve per pixel writes.
  *
  * VITRAIL_RESOLVE_COMPUTE: outside a rendering scope, after vitrailVkCmdCollected(). Binds compute pipelines and
  * descriptor sets; the host's compute bindings are lost, the graphics ones are not. Earlier writes to the views are

@@ -6,6 +6,7 @@
 int main(void) {
   Host host;
   hostOpen(&host, "plain_c", vkGetInstanceProcAddr, VK_API_VERSION_1_3);
+  if (vitrailVersion() != VITRAIL_VERSION) hostFail(&host, "the library has not the version of its headers");
   VitrailVkContext context = hostCreateContext(&host);
   const VitrailVkTargetDesc desc = {
       .extent = {64, 48}, .colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT, .nodeCapacity = 3 * 64 * 48};
