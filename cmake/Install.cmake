@@ -24,7 +24,8 @@ set_target_properties(
              INTERFACE_LINK_LIBRARIES
              "$<INSTALL_INTERFACE:vitrail::vulkan_headers;$<$<LINK_LANGUAGE:C>:${vitrail_runtime}>>")
 if(vitrail_type STREQUAL SHARED_LIBRARY)
-  target_compile_definitions(vitrail PRIVATE VITRAIL_SHARED) # the public functions are exported
+  target_compile_definitions(vitrail PRIVATE VITRAIL_SHARED) # the public functions are exported,
+  target_compile_definitions(vitrail_core PRIVATE VITRAIL_SHARED) # those that need no graphics API too
 endif()
 
 # The folder for glslc -I, by the name that the installed package gives it.
