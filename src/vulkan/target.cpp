@@ -141,12 +141,13 @@ extern "C" VkResult vitrailVkUpdateTarget(VitrailVkTarget target, uint64_t frame
   const std::uint32_t wanted =
       target->growth.wanted(stats, target->storage.needs.nodeCapacity, budgetCapacity(limits, target->info));
   if (wanted == target->storage.needs.nodeCapacity) return VK_SUCCESS;
-  target->order.drop(target->context->log, "vitrailVkUpdateTarget() gives the target another pool");
   StorageNeeds needs = target->storage.needs;
   needs.nodeCapacity = wanted;
   const VkResult result = replaceStorage(*target, needs, target->views);
+  if (result != VK_SUCCESS) return result;
+  target->order.drop(target->context->log, "vitrailVkUpdateTarget() gives the target another pool");
   freeRetired(*target, place); // at once where no frame was begun with it
-  return result;
+  return VK_SUCCESS;
 }
 
 extern "C" VkResult vitrailVkResizeTarget(VitrailVkTarget target, const VitrailVkResizeInfo* info) {
@@ -167,9 +168,9 @@ extern "C" VkResult vitrailVkResizeTarget(VitrailVkTarget target, const VitrailV
   if (result == VK_SUCCESS) result = toVk(checkViews(context.log, wanted, viewsInfo(info->views)));
   if (result != VK_SUCCESS) return result;
   wanted.nodeCapacity = capacityWithin(context.limits, wanted);
-  target->order.drop(context.log, "vitrailVkResizeTarget()");
   result = replaceStorage(*target, storageNeeds(context.limits, wanted), info->views);
   if (result != VK_SUCCESS) return result;
+  target->order.drop(context.log, "vitrailVkResizeTarget()");
   target->info = wanted;
   keepViews(*target, info->views);
   target->growth.forget();
