@@ -52,6 +52,7 @@ struct BenchReport : Machine {
   MethodLimits limits;
   double bytesPerSecond = 0.0; // bandwidth.h
   std::vector<SceneMeasurement> scenes;
+  std::vector<std::string> warnings; // of the scenes
 };
 
 // What a setting's frames say, all of which have the same passes. There is at least one. Ratios and rates are filled in

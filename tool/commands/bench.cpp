@@ -145,9 +145,16 @@ BenchReport measure(const BenchArguments& arguments) {
   const std::size_t count = arguments.model.empty() ? arguments.scenes.size() : 1;
   std::vector<Subject> subjects;
   for (std::size_t i = 0; i < count; ++i) subjects.push_back(openSubject(arguments, i));
+  progress.show("");
+  std::vector<std::string> warnings;
+  for (const Subject& subject : subjects) {
+    warnings.insert(warnings.end(), subject.scene.warnings.begin(), subject.scene.warnings.end());
+  }
+  reportWarnings(warnings, arguments);
 
   Gpu gpu({arguments.device});
   BenchReport report = describeRun(arguments, gpu);
+  report.warnings = std::move(warnings);
   report.bytesPerSecond = measureBandwidth(gpu);
   if (arguments.sweeps.empty()) measureScenes(gpu, arguments, subjects, progress, report);
   for (const SweepKind kind : arguments.sweeps) measureSweep(gpu, arguments, kind, subjects[0], progress, report);

@@ -59,6 +59,8 @@ Where to:
   --json FILE           everything that was measured; the file appears whole or not at all
   --csv FILE            one row for each measurement
   --quiet               print nothing but errors
+  --strict              fail where there would be a warning: where the picture lacks something
+                        that the file has, or shows nothing
 
 Which device:
   --device D            a number or a part of a name from `vitrail info`, or cpu
@@ -112,7 +114,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
   addList<SweepKind>(command, "--sweep", arguments.sweeps, "a sweep: layers, triangles, resolution or samples",
                      sweepNamed);
   command.add_option("--device", arguments.device);
-  command.add_flag("--quiet", arguments.quiet);
+  addWarningOptions(command, arguments);
   addSize(command, arguments.width, arguments.height);
   addOpacity(command, arguments.opacity);
   addFrames(command, "--repeat", arguments.repeats);

@@ -10,10 +10,11 @@
 
 #include "../bench/matrix.h"
 #include "../bench/sweep.h"
+#include "warnings.h"
 
 namespace vitrail::tool {
 
-struct BenchArguments {
+struct BenchArguments : WarningOptions {
   std::string model; // empty: built-in scenes
   std::vector<std::string> scenes;
   std::vector<std::uint32_t> counts; // none, one for all scenes, or one each
@@ -28,7 +29,6 @@ struct BenchArguments {
   std::string json;   // empty: no report
   std::string csv;    // empty: none
   std::string folder; // empty: no page
-  bool quiet = false;
 };
 
 // Adds the options to a command. Texts that cannot be understood end the parse with a CLI::ValidationError.

@@ -29,6 +29,8 @@ Comparison measure(const CompareArguments& arguments) {
   const Progress progress(!arguments.quiet);
   progress.show("preparing");
   const Scene scene = openScene(arguments);
+  progress.show("");
+  reportWarnings(scene.warnings, arguments);
   Gpu gpu({arguments.device, arguments.validate});
   const Machine machine = machineOf(gpu);
   ComparisonRun run;
@@ -44,6 +46,7 @@ Comparison measure(const CompareArguments& arguments) {
   comparison.scene =
       arguments.scene.empty() ? std::filesystem::path(arguments.model).filename().string() : arguments.scene;
   comparison.count = arguments.count;
+  comparison.warnings = scene.warnings;
   closeValidated(gpu);
   return comparison;
 }

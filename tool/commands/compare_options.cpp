@@ -40,6 +40,8 @@ Where to:
   --heatmap FILE        of two pictures: the FLIP error of each pixel as a .png, dark to bright
   --json FILE           everything that was measured
   --quiet               print nothing but errors
+  --strict              fail where there would be a warning: where the picture lacks something
+                        that the file has, or shows nothing
 
 Which device:
   --device D            a number or a part of a name from `vitrail info`, or cpu
@@ -82,7 +84,7 @@ void addCompareOptions(CLI::App& command, CompareArguments& arguments) {
   command.add_option("--json", arguments.json);
   command.add_option("--device", arguments.device);
   command.add_flag("--validate", arguments.validate);
-  command.add_flag("--quiet", arguments.quiet);
+  addWarningOptions(command, arguments);
 }
 
 void checkCompareArguments(const CLI::App& command, CompareArguments& arguments) {

@@ -25,7 +25,6 @@ struct CompareArguments : SceneArguments {
   std::string json;    // empty: no report
   std::string device;
   bool validate = false;
-  bool quiet = false;
 
   bool pictures() const { return files.size() == 2; }
 };

@@ -39,7 +39,10 @@ void runRender(const RenderArguments& arguments) {
   if (!arguments.json.empty()) report.emplace(arguments.json);
   if (report && report->isSameAs(picture)) throw UsageError("-o and --json name the same file");
 
-  const RenderResult result = renderScene(arguments, openScene(arguments));
+  const Scene scene = openScene(arguments);
+  RenderResult result = renderScene(arguments, scene);
+  result.report.warnings.insert(result.report.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
+  reportWarnings(result.report.warnings, arguments);
 
   const std::vector<std::byte> png = encodePng(result.picture);
   const std::string json = toJson(result.report);

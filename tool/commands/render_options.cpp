@@ -49,6 +49,8 @@ Where to:
   -o, --output FILE     the picture, .png; it appears whole or not at all
   --json FILE           a report: fragments, layers, memory, GPU time of each pass
   --quiet               print nothing but errors
+  --strict              fail where there would be a warning: where the picture lacks something
+                        that the file has, or shows nothing
 
 Which device:
   --device D            a number or a part of a name from `vitrail info`, or cpu
@@ -94,7 +96,7 @@ void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
   command.add_option("--json", arguments.json);
   command.add_option("--device", arguments.device);
   command.add_flag("--validate", arguments.validate);
-  command.add_flag("--quiet", arguments.quiet);
+  addWarningOptions(command, arguments);
   addMethodOptions(command, arguments);
 }
 

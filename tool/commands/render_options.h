@@ -19,7 +19,6 @@ struct RenderArguments : SceneArguments {
   std::string device;
   std::string json; // empty: no report
   bool validate = false;
-  bool quiet = false;
 };
 
 // Adds the options to a command. Texts that cannot be understood end the parse with a CLI::ValidationError.

@@ -11,10 +11,11 @@
 #include "../scene/builtin/builtin.h"
 #include "../scene/camera.h"
 #include "../scene/scene.h"
+#include "warnings.h"
 
 namespace vitrail::tool {
 
-struct SceneArguments {
+struct SceneArguments : WarningOptions {
   std::string model; // empty: a built-in scene
   std::string scene;
   std::optional<std::uint32_t> count;

@@ -37,6 +37,7 @@ struct Comparison : Machine {
   std::string scene;                  // what the picture is of, in words
   std::optional<std::uint32_t> count; // of a built-in scene, where it was chosen
   std::uint64_t triangles = 0;
+  std::vector<std::string> warnings; // of the scene
   Picture exact;
   FrameReport exactFrame;
   // The fragments of each pixel at its centre, whatever the samples, and the most that a pixel has.

@@ -20,8 +20,9 @@ struct FrameReport : FrameStats {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t samples = 1;
-  std::string msaaResolve;     // "per-pixel", "per-sample"; empty at one sample and where `resolve` is
-  std::uint64_t peakBytes = 0; // the most device memory that the tool and the library held at once
+  std::string msaaResolve;           // "per-pixel", "per-sample"; empty at one sample and where `resolve` is
+  std::vector<std::string> warnings; // what the picture lacks, or shows otherwise than its file says
+  std::uint64_t peakBytes = 0;       // the most device memory that the tool and the library held at once
   // GPU time: opaque, the passes that the method names, encode. With fragment lists those are clear, collect, build
   // lists where that is a pass of its own, and resolve; unsorted has blend; a multisampled picture has box_filter
   // before encode. Summed over tiles. What the host works on a frame before the GPU can go on stands among them, as

@@ -101,6 +101,7 @@ std::string toJson(const BenchReport& report) {
   json["bandwidth_gb_s"] = report.bytesPerSecond * 1e-9;
   json["recommendation"] = std::move(recommendation);
   json["scenes"] = std::move(scenes);
+  json[names::kWarnings] = report.warnings;
   return documentOf(json);
 }
 

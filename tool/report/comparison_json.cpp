@@ -48,6 +48,7 @@ std::string toJson(const Comparison& comparison) {
   json[names::kLayersMax] = comparison.layersMax;
   json["methods"] = std::move(methods);
   json["refused"] = std::move(refused);
+  json[names::kWarnings] = comparison.warnings;
   return documentOf(json);
 }
 

@@ -34,6 +34,7 @@ std::string toJson(const FrameReport& report) {
         {"peak_bytes", report.peakBytes}}},
       {names::kPassesMs, passes},
       {names::kFrameMs, report.frameMs},
+      {names::kWarnings, report.warnings},
   });
 }
 

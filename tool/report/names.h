@@ -23,6 +23,9 @@ inline constexpr const char* kTiles = "tiles";
 inline constexpr const char* kNodesBytes = "nodes_bytes";
 inline constexpr const char* kMemoryBytes = "memory_bytes"; // all that the method keeps on the device
 
+// What pictures lack, a line each.
+inline constexpr const char* kWarnings = "warnings";
+
 // What it cost: milliseconds of GPU time, medians where several frames were drawn.
 inline constexpr const char* kPassesMs = "passes_ms";
 inline constexpr const char* kCostMs = "cost_ms";         // all passes but the opaque one

@@ -33,14 +33,14 @@ std::filesystem::path folderOf(const std::filesystem::path& path) {
 
 } // namespace
 
-Scene loadModel(const std::filesystem::path& path) {
+Scene loadModel(const std::filesystem::path& path, const LoadOptions& options) {
   const std::string extension = extensionOf(path);
   try {
     // A missing file is the more helpful thing to say about a mistyped name.
     const std::vector<std::byte> file = readFile(path);
     Scene scene;
     if (extension == "gltf" || extension == "glb")
-      scene = loadGltf(file, folderOf(path));
+      scene = loadGltf(file, folderOf(path), options);
     else if (extension == "obj")
       scene = loadObj(file, folderOf(path));
     else if (extension == "ply")

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -17,16 +18,24 @@ struct LoadError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What of a file that holds several states is drawn.
+struct LoadOptions {
+  std::optional<double> time;           // seconds into the animation; none: the rest pose, no animation
+  std::optional<std::string> animation; // a name, or else a number from 0; none: the first
+  std::optional<std::string> variant;   // of KHR_materials_variants; none: the file's default materials
+};
+
 // Loads a model by its file's content and extension: .gltf, .glb, .obj, .ply, .stl (any case).
-// Throws LoadError; a file without any triangle is an error.
-Scene loadModel(const std::filesystem::path& path);
+// Throws LoadError; a file without any triangle, line or point is an error. What is left out of the scene, or drawn
+// otherwise than the file says, is among the scene's warnings.
+Scene loadModel(const std::filesystem::path& path, const LoadOptions& options = {});
 
 // The glTF part, also reachable from memory for fuzzing: `base` is the folder for external buffers and images; when it
 // is empty external files are refused.
-Scene loadGltf(std::span<const std::byte> file, const std::filesystem::path& base);
+Scene loadGltf(std::span<const std::byte> file, const std::filesystem::path& base, const LoadOptions& options = {});
 
 // The other formats, likewise. `base` is the folder for an OBJ's .mtl and for textures; when it is empty none are read.
-// Missing ones leave a plain material.
+// Missing ones leave a plain material and a warning.
 Scene loadObj(std::span<const std::byte> file, const std::filesystem::path& base);
 Scene loadPly(std::span<const std::byte> file, const std::filesystem::path& base);
 Scene loadStl(std::span<const std::byte> file);

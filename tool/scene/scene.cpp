@@ -1,7 +1,9 @@
 // Questions about a whole scene.
 #include "scene.h"
 
+#include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace vitrail::tool {
 namespace {
@@ -22,6 +24,10 @@ std::vector<glm::vec3> usedPositions(const Mesh& mesh) {
 
 bool isTransparent(const Material& material) {
   return material.alphaMode == AlphaMode::Blend || (material.transmission > 0.0F && !material.unlit);
+}
+
+void warn(Scene& scene, std::string line) {
+  if (std::ranges::find(scene.warnings, line) == scene.warnings.end()) scene.warnings.push_back(std::move(line));
 }
 
 void visitPositions(const Scene& scene, const std::function<void(std::span<const glm::vec3>)>& visit) {

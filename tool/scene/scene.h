@@ -1,5 +1,6 @@
 // What a model is once it is in memory: everything the renderer, the reference and the tests know about a scene.
-// Right-handed, Y up, metres, as in glTF. Colours are linear unless a name says sRGB.
+// Right-handed, Y up, metres, as in glTF. Colours are linear unless a name says sRGB. All places are relative to
+// Scene::origin.
 #pragma once
 
 #include <cstdint>
@@ -22,9 +23,14 @@ struct Vertex {
   glm::vec4 color{1.0F}; // linear, straight alpha
 };
 
-// A triangle list. Every index is below vertices.size(), and indices.size() is a multiple of 3. Counter-clockwise
-// triangles, seen from outside, agree with their vertex normals.
+// What three, two or one of a mesh's indices stand for. Lines are a pixel wide, points a number of pixels that is the
+// picture's choice; those of a mesh without normals are not lit.
+enum class Primitive { Triangles, Lines, Points };
+
+// A list of triangles, lines or points. Every index is below vertices.size(), and indices.size() is a multiple of 3, 2
+// or 1. Counter-clockwise triangles, seen from outside, agree with their vertex normals.
 struct Mesh {
+  Primitive primitive = Primitive::Triangles;
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
 };
@@ -66,7 +72,8 @@ enum class BlendMode {
   Additive // adds to it and hides nothing
 };
 
-// glTF's metallic-roughness material; docs/shading.md states how it is shaded.
+// glTF's metallic-roughness material with the extensions that docs/shading.md names; it states how each is shaded.
+// What is 0 or empty is not there.
 struct Material {
   std::string name;
   AlphaMode alphaMode = AlphaMode::Opaque;
@@ -87,6 +94,36 @@ struct Material {
   TextureSlot occlusionTexture;    // r
   TextureSlot emissiveTexture;     // sRGB
   TextureSlot transmissionTexture; // r
+
+  float ior = 1.5F; // KHR_materials_ior; 0 stands for infinity: everything is reflected
+  // KHR_materials_volume: what is between the surfaces of one object that faces both ways.
+  float thickness = 0.0F;           // in the mesh's space; 0: the surface is a thin wall
+  TextureSlot thicknessTexture;     // g
+  float attenuationDistance = 0.0F; // in the world; 0: infinite, nothing is absorbed
+  glm::vec3 attenuationColor{1.0F}; // what is left of white light after that distance
+  float specular = 1.0F;            // KHR_materials_specular
+  glm::vec3 specularColor{1.0F};    // may exceed 1
+  TextureSlot specularTexture;      // a
+  TextureSlot specularColorTexture; // sRGB
+  float clearcoat = 0.0F;           // KHR_materials_clearcoat
+  float clearcoatRoughness = 0.0F;
+  TextureSlot clearcoatTexture;          // r
+  TextureSlot clearcoatRoughnessTexture; // g
+  glm::vec3 sheenColor{0.0F};            // KHR_materials_sheen
+  float sheenRoughness = 0.0F;
+};
+
+// KHR_lights_punctual. It shines along its own -Z.
+struct Light {
+  enum class Kind { Directional, Point, Spot };
+  Kind kind = Kind::Point;
+  std::string name;
+  glm::vec3 intensity{1.0F};              // colour times intensity: lux (directional) or candela
+  glm::vec3 position{0.0F};               // point and spot
+  glm::vec3 direction{0.0F, 0.0F, -1.0F}; // unit length, where the light goes; directional and spot
+  float range = 0.0F;                     // 0: infinite
+  float innerConeAngle = 0.0F;            // radians from the direction; spot
+  float outerConeAngle = 0.785398F;
 };
 
 // Whether light passes through a surface: it is blended, or lit and transmissive.
@@ -121,15 +158,45 @@ struct Bounds {
   glm::vec3 max{0.0F};
 };
 
+// What a file holds, beside what the scene is made of, for people who ask (`vitrail info MODEL`).
+struct FileFacts {
+  struct Extension {
+    std::string name;
+    bool required = false;
+    bool honoured = false;
+    std::string lost; // what the picture lacks where it is not honoured, or only in part; empty: nothing
+  };
+  struct Animation {
+    std::string name;
+    double seconds = 0.0;
+  };
+  std::string format; // "glTF 2.0 (binary)", "OBJ", "PLY (binary)", "STL (text)"
+  std::string generator;
+  std::vector<Extension> extensions;
+  std::vector<Animation> animations;
+  std::vector<std::string> variants;
+};
+
 struct Scene {
   std::string name;
+  // The point of the file's space that is (0, 0, 0) here, in double precision: what lies millions of metres from its
+  // own origin keeps its precision in 32-bit floats. All positions, cameras and lights are relative to it.
+  glm::dvec3 origin{0.0};
   std::vector<Mesh> meshes;
   std::vector<Image> images;
   std::vector<Material> materials;
   std::vector<Draw> draws;
   std::vector<SceneCamera> cameras;
+  std::vector<Light> lights;
+  FileFacts file;
+  std::vector<std::string> warnings;    // see warn()
   std::optional<Background> background; // what the scene asks for where the user does not choose
 };
+
+// Notes what the picture of a scene lacks, or shows otherwise than the file says: one line that names what it is by the
+// file's own name for it and says what is lost, as in "image 0: missing.png: no such file; the material is drawn
+// without it". The same line is kept once.
+void warn(Scene& scene, std::string line);
 
 // The smallest box around all drawn triangles, in the world. The scene has at least one draw.
 Bounds worldBounds(const Scene& scene);

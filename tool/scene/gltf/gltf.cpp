@@ -144,7 +144,7 @@ class SceneBuilder {
 
 } // namespace
 
-Scene loadGltf(std::span<const std::byte> file, const std::filesystem::path& base) {
+Scene loadGltf(std::span<const std::byte> file, const std::filesystem::path& base, const LoadOptions& /*options*/) {
   try {
     const GltfDocument document = openGltf(file, base);
     return SceneBuilder(document).build();

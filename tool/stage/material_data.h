@@ -1,0 +1,18 @@
+// A material as the shaders take it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "../scene/scene.h"
+#include "surface_shared.h"
+
+namespace vitrail::tool {
+
+// With `opacity`, every material is blended with that factor.
+shaders::MaterialData makeMaterialData(const Material& material, std::optional<float> opacity);
+
+// What the pipeline of a surface is specialized for (surface_shared.h).
+std::uint32_t featuresOf(const Scene& scene, const Material& material, bool vertexColors);
+
+} // namespace vitrail::tool
