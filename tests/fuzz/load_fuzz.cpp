@@ -33,8 +33,8 @@ void checkScene(const Scene& scene) {
   std::size_t triangles = 0;
   for (const Mesh& mesh : scene.meshes) {
     require(mesh.indices.size() % 3 == 0, "whole triangles");
-    for (const std::uint32_t index : mesh.indices) require(index < mesh.vertices.size(), "indices in range");
-    for (const Vertex& vertex : mesh.vertices) {
+    for (const std::uint32_t index : mesh.indices) require(index < mesh.vertexCount(), "indices in range");
+    for (const Vertex& vertex : mesh.vertices()) {
       require(isUnit(vertex.normal), "unit normals");
       require(isUnit(glm::vec3(vertex.tangent)) && (vertex.tangent.w == 1.0F || vertex.tangent.w == -1.0F),
               "unit tangents with a sign");

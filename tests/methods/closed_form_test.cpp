@@ -123,10 +123,10 @@ TEST_P(StackTest, OneMesh) {
   for (const std::size_t i : shuffledOrder(layers.size(), random)) {
     Scene one;
     addRectangle(one, {glm::vec2(-50.0F), glm::vec2(50.0F), layerZ(i, layers.size())}, unlitMaterial(glm::vec4(1.0F)));
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (Vertex vertex : one.meshes[0].vertices) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertexCount());
+    for (Vertex vertex : one.meshes[0].vertices()) {
       vertex.color = linearColor(layers[i]);
-      mesh.vertices.push_back(vertex);
+      mesh.add(vertex);
     }
     for (const std::uint32_t index : one.meshes[0].indices) mesh.indices.push_back(first + index);
   }
@@ -215,8 +215,8 @@ TEST_F(ClosedFormTest, CrossingQuads) {
   Scene scene;
   addRectangle(scene, {glm::vec2(-4.0F), glm::vec2(4.0F), 0.0F}, unlitMaterial(linearColor(a)));
   addRectangle(scene, {glm::vec2(-4.0F), glm::vec2(4.0F), 0.0F}, unlitMaterial(linearColor(b)));
-  for (Vertex& vertex : scene.meshes[0].vertices) vertex.position.z = -vertex.position.x;
-  for (Vertex& vertex : scene.meshes[1].vertices) vertex.position.z = vertex.position.x;
+  for (glm::vec3& position : scene.meshes[0].positions) position.z = -position.x;
+  for (glm::vec3& position : scene.meshes[1].positions) position.z = position.x;
   const RenderOptions options = smallPicture(straightView(), background);
   const Color8 left = blendBackToFront({a, b}, background);
   const Color8 right = blendBackToFront({b, a}, background);

@@ -231,15 +231,14 @@ TestScene shuffledPanes() {
     Mesh& mesh = result.scene.meshes[object];
     const Mesh first = mesh;
     for (const int step : {2, 1, 3}) { // not in the order of their depths
-      const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-      for (Vertex vertex : first.vertices) {
+      const auto base = static_cast<std::uint32_t>(mesh.vertexCount());
+      for (Vertex vertex : first.vertices()) {
         vertex.position.z = static_cast<float>(step) + 0.3F * static_cast<float>(object);
-        mesh.vertices.push_back(vertex);
+        mesh.add(vertex);
       }
       for (const std::uint32_t index : first.indices) mesh.indices.push_back(base + index);
     }
-    for (std::size_t i = 0; i < first.vertices.size(); ++i)
-      mesh.vertices[i].position.z = 0.3F * static_cast<float>(object);
+    for (std::size_t i = 0; i < first.vertexCount(); ++i) mesh.positions[i].z = 0.3F * static_cast<float>(object);
   }
   return result;
 }
@@ -265,10 +264,10 @@ TestScene maskedPanes(const std::string& name, const glm::vec3& step) {
     const glm::vec3 low = glm::vec3(-1.37F, -0.81F, 0.0F) + step * static_cast<float>(place);
     addRectangle(scene, {glm::vec2(low), glm::vec2(low) + glm::vec2(0.83F, 1.31F), low.z}, material);
     if (place == 1) continue;
-    for (Vertex& vertex : scene.meshes.back().vertices) {
+    reference::changeVertices(scene.meshes.back(), [&](Vertex& vertex) {
       vertex.color = glm::vec4(0.3F, 0.9F, 0.2F, vertex.texCoord0.x);
       if (place == 0) vertex.color = glm::vec4(0.8F, 0.9F, 0.6F, 1.0F - vertex.texCoord0.x);
-    }
+    });
   }
   result.opacity = 0.6F;
   return result;

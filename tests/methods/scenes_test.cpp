@@ -219,9 +219,9 @@ TEST_F(ScenesTest, MaskAndBlendByVertexAlpha) {
     material.alphaMode = mode;
     material.alphaCutoff = 0.4F;
     addRectangle(scene, rectangle, material);
-    for (Vertex& vertex : scene.meshes.back().vertices) {
+    reference::changeVertices(scene.meshes.back(), [](Vertex& vertex) {
       vertex.color = glm::vec4(1.0F, 0.5F, vertex.texCoord0.y, vertex.texCoord0.x);
-    }
+    });
   };
   Material lit;
   lit.roughness = 0.7F;

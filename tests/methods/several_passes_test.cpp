@@ -41,10 +41,10 @@ Scene manyPanes() {
     const Mesh pane = std::exchange(mesh, {});
     for (int i = 0; i < 130; ++i) {
       const int place = 2 * (i * 77 % 130) + half;
-      const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-      for (Vertex vertex : pane.vertices) {
+      const auto base = static_cast<std::uint32_t>(mesh.vertexCount());
+      for (Vertex vertex : pane.vertices()) {
         vertex.position.z = -6.0F + 12.0F * static_cast<float>(place) / 259.0F;
-        mesh.vertices.push_back(vertex);
+        mesh.add(vertex);
       }
       for (const std::uint32_t index : pane.indices) mesh.indices.push_back(base + index);
     }

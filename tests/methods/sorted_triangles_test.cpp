@@ -26,12 +26,12 @@ Scene interleavedTriangles() {
                         -0.8F + 0.04F * static_cast<float>(cell / kColumns));
     const auto hue = static_cast<float>(i / 400 % 5); // so that one more or less shows
     const float z = -6.0F + 12.0F * static_cast<float>(i) / static_cast<float>(kTriangles);
-    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+    const auto base = static_cast<std::uint32_t>(mesh.vertexCount());
     for (const glm::vec2 corner : {glm::vec2(0.0F, 0.0F), glm::vec2(0.1F, 0.0F), glm::vec2(0.0F, 0.1F)}) {
       Vertex vertex;
       vertex.position = glm::vec3(low + corner, z);
       vertex.color = glm::vec4(0.25F * hue, 1.0F - 0.25F * hue, 0.5F, 1.0F);
-      mesh.vertices.push_back(vertex);
+      mesh.add(vertex);
     }
     mesh.indices.insert(mesh.indices.end(), {base, base + 1, base + 2});
   }

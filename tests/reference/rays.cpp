@@ -151,9 +151,9 @@ std::vector<Triangle> placeTriangles(const Scene& scene, const View& view) {
     const Mesh& mesh = scene.meshes.at(draw.mesh);
     const glm::dmat4 toCamera = worldToCamera * glm::dmat4(draw.transform);
     const bool mirrored = glm::determinant(glm::dmat3(glm::dmat4(draw.transform))) < 0.0;
-    std::vector<glm::dvec3> placed(mesh.vertices.size());
-    std::transform(mesh.vertices.begin(), mesh.vertices.end(), placed.begin(), [&](const Vertex& vertex) {
-      return glm::dvec3(toCamera * glm::dvec4(glm::dvec3(vertex.position), 1.0));
+    std::vector<glm::dvec3> placed(mesh.vertexCount());
+    std::ranges::transform(mesh.positions, placed.begin(), [&](const glm::vec3& position) {
+      return glm::dvec3(toCamera * glm::dvec4(glm::dvec3(position), 1.0));
     });
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
       Triangle triangle;

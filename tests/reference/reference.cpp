@@ -115,8 +115,11 @@ glm::dvec3 Eye::shadeSurface(const PictureRay& ray, const PixelSurface& surface)
   if (material.unlit) return base;
   glm::dvec3 normal(0.0);
   const std::array<Vertex, 3> corner = finder_.corners(hit);
+  const glm::dvec3 first(corner[0].position);
+  const glm::dvec3 plane = glm::cross(glm::dvec3(corner[1].position) - first, glm::dvec3(corner[2].position) - first);
   for (int i = 0; i < 3; ++i) {
-    const glm::dvec3 vertexNormal(corner[static_cast<std::size_t>(i)].normal);
+    const glm::dvec3 vertexNormal =
+        finder_.meshOf(hit).normals.empty() ? plane : glm::dvec3(corner[static_cast<std::size_t>(i)].normal);
     normal += hit.barycentric[i] * (normalToWorld_[hit.draw] * vertexNormal);
   }
   Surface lit;

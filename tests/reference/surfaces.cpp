@@ -79,10 +79,9 @@ SurfaceFinder::SurfaceFinder(const Scene& scene, const ReferenceOptions& options
                                                                      : std::numeric_limits<double>::infinity()) {}
 
 std::array<Vertex, 3> SurfaceFinder::corners(const RayHit& hit) const {
-  const Mesh& mesh = scene_.meshes[scene_.draws[hit.draw].mesh];
+  const Mesh& mesh = meshOf(hit);
   const std::size_t first = std::size_t{hit.triangle} * 3;
-  return {mesh.vertices[mesh.indices[first]], mesh.vertices[mesh.indices[first + 1]],
-          mesh.vertices[mesh.indices[first + 2]]};
+  return {mesh.vertex(mesh.indices[first]), mesh.vertex(mesh.indices[first + 1]), mesh.vertex(mesh.indices[first + 2])};
 }
 
 bool SurfaceFinder::isTransparent(const Material& material) const {

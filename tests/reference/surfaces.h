@@ -52,6 +52,7 @@ class SurfaceFinder {
 
   [[nodiscard]] std::array<Vertex, 3> corners(const RayHit& hit) const;
   [[nodiscard]] bool isTransparent(const Material& material) const;
+  [[nodiscard]] const Mesh& meshOf(const RayHit& hit) const { return scene_.meshes[scene_.draws[hit.draw].mesh]; }
   [[nodiscard]] const Material& materialOf(const RayHit& hit) const {
     return scene_.materials[scene_.draws[hit.draw].material];
   }

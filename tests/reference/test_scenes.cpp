@@ -25,7 +25,7 @@ std::uint32_t addRectangle(Scene& scene, const Rectangle& rectangle, const Mater
     vertex.position = glm::vec3(corner, rectangle.z);
     vertex.texCoord0 = (corner - low) / (high - low);
     vertex.texCoord0.y = 1.0F - vertex.texCoord0.y;
-    mesh.vertices.push_back(vertex);
+    mesh.add(vertex);
   }
   mesh.indices = {0, 1, 2, 0, 2, 3};
   scene.meshes.push_back(std::move(mesh));

@@ -23,6 +23,16 @@ struct Rectangle {
 // Adds a rectangle of two triangles as a mesh, a material and a draw of its own. Returns the index of the draw.
 std::uint32_t addRectangle(Scene& scene, const Rectangle& rectangle, const Material& material);
 
+// Calls `change` with each vertex of a mesh, and keeps what it makes of it.
+template <typename Change>
+void changeVertices(Mesh& mesh, Change change) {
+  for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
+    Vertex vertex = mesh.vertex(i);
+    change(vertex);
+    mesh.set(i, vertex);
+  }
+}
+
 // An orthographic view along -Z of heights -1 to 1. It sees z from 9 down to -9.
 View straightView();
 

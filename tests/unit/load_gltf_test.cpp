@@ -21,7 +21,7 @@ glm::vec3 placed(const Draw& draw, const glm::vec3& position) {
 // The corners of a mesh's triangles, in order.
 std::vector<glm::vec3> corners(const Mesh& mesh) {
   std::vector<glm::vec3> positions;
-  for (const std::uint32_t index : mesh.indices) positions.push_back(mesh.vertices[index].position);
+  for (const std::uint32_t index : mesh.indices) positions.push_back(mesh.positions[index]);
   return positions;
 }
 
@@ -33,9 +33,9 @@ TEST(LoadGltf, TriangleWithoutAnythingHasFlatNormalsAndTheDefaultMaterial) {
     ASSERT_EQ(scene.draws.size(), 1U);
     ASSERT_EQ(scene.materials.size(), 1U);
     EXPECT_EQ(scene.meshes[0].indices, (Indices{0, 1, 2}));
-    expectNear(scene.meshes[0].vertices[1].position, {1.0F, 0.0F, 0.0F});
-    expectNear(scene.meshes[0].vertices[2].normal, {0.0F, 0.0F, 1.0F});
-    expectNear(scene.meshes[0].vertices[0].color, glm::vec4(1.0F));
+    expectNear(scene.meshes[0].vertex(1).position, {1.0F, 0.0F, 0.0F});
+    expectNear(scene.meshes[0].vertex(2).normal, {0.0F, 0.0F, 1.0F});
+    expectNear(scene.meshes[0].vertex(0).color, glm::vec4(1.0F));
     EXPECT_EQ(scene.draws[0].transform, glm::mat4(1.0F));
     const Material& material = scene.materials[0];
     EXPECT_EQ(material.alphaMode, AlphaMode::Opaque);
@@ -51,7 +51,7 @@ TEST(LoadGltf, StripsKeepTheWindingAndDropRepeatedVertices) {
   const Mesh mesh = loadGood("strip.gltf").meshes.at(0);
   // 0 1 2 2 3 makes one triangle: the others name vertex 2 twice.
   EXPECT_EQ(mesh.indices, (Indices{0, 1, 2}));
-  EXPECT_EQ(mesh.vertices.size(), 3U) << "vertices that no triangle uses are dropped";
+  EXPECT_EQ(mesh.vertexCount(), 3U) << "vertices that no triangle uses are dropped";
 }
 
 TEST(TriangleList, EveryOtherTriangleOfAStripIsTurned) {
@@ -88,12 +88,12 @@ TEST(LoadGltf, SparseAndZeroFilledAccessors) {
   expectNear(positions[0], {0.0F, 0.0F, 0.0F});
   expectNear(positions[1], {1.0F, 0.0F, 0.0F});
   expectNear(positions[2], {0.0F, 5.0F, 0.0F});
-  EXPECT_EQ(mesh.vertices[0].texCoord0, glm::vec2(0.0F));
+  EXPECT_EQ(mesh.vertex(0).texCoord0, glm::vec2(0.0F));
 }
 
 TEST(LoadGltf, NormalizedIntegersAndQuantizedPositions) {
   const Scene scene = loadGood("normalized.gltf");
-  const std::vector<Vertex>& vertices = scene.meshes.at(0).vertices;
+  const std::vector<Vertex> vertices = scene.meshes.at(0).vertices();
   expectNear(placed(scene.draws.at(0), vertices[1].position), {2.0F, 0.0F, 0.0F});
   expectNear(vertices[2].position, {0.0F, -1.0F, 0.0F});
   expectNear(vertices[0].normal, {0.0F, 0.0F, -1.0F});
@@ -105,7 +105,7 @@ TEST(LoadGltf, NormalizedIntegersAndQuantizedPositions) {
 }
 
 TEST(LoadGltf, InterleavedAttributesAndColorsWithoutAlpha) {
-  const std::vector<Vertex> vertices = loadGood("interleaved.gltf").meshes.at(0).vertices;
+  const std::vector<Vertex> vertices = loadGood("interleaved.gltf").meshes.at(0).vertices();
   ASSERT_EQ(vertices.size(), 3U);
   expectNear(vertices[2].position, {0.0F, 1.0F, 0.0F});
   expectNear(vertices[2].normal, {0.0F, 0.0F, 1.0F});
@@ -115,14 +115,14 @@ TEST(LoadGltf, InterleavedAttributesAndColorsWithoutAlpha) {
 
 TEST(LoadGltf, NormalsThatAreZeroOrNoNumbersBecomeTheFaces) {
   const Scene scene = loadGood("broken_normals.gltf");
-  for (const Vertex& vertex : scene.meshes.at(0).vertices) expectNear(vertex.normal, {0.0F, 0.0F, 1.0F});
+  for (const Vertex& vertex : scene.meshes.at(0).vertices()) expectNear(vertex.normal, {0.0F, 0.0F, 1.0F});
 }
 
 TEST(LoadGltf, SkinsStandInTheirRestPoseAndIgnoreTheNode) {
   const Scene scene = loadGood("skin.gltf");
   ASSERT_EQ(scene.draws.size(), 1U);
   EXPECT_EQ(scene.draws[0].transform, glm::mat4(1.0F));
-  const std::vector<Vertex>& vertices = scene.meshes.at(0).vertices;
+  const std::vector<Vertex> vertices = scene.meshes.at(0).vertices();
   ASSERT_EQ(vertices.size(), 3U);
   // Joint 0 moves by (0, 1, 0). Joint 1 takes 1 from z, doubles, and adds 3 to z.
   expectNear(vertices[0].position, {0.0F, 1.0F, 0.0F});
@@ -137,8 +137,8 @@ TEST(LoadGltf, MorphTargetsStandAtTheMeshsWeightsOrTheNodes) {
   const Scene scene = loadGood("morph.gltf");
   ASSERT_EQ(scene.draws.size(), 2U);
   ASSERT_EQ(scene.meshes.size(), 2U);
-  expectNear(scene.meshes[scene.draws[0].mesh].vertices[0].position, {0.0F, 0.0F, 0.5F});
-  expectNear(scene.meshes[scene.draws[1].mesh].vertices[0].position, {2.0F, 0.0F, 0.0F});
+  expectNear(scene.meshes[scene.draws[0].mesh].vertex(0).position, {0.0F, 0.0F, 0.5F});
+  expectNear(scene.meshes[scene.draws[1].mesh].vertex(0).position, {2.0F, 0.0F, 0.0F});
 }
 
 TEST(LoadGltf, TheDefaultSceneIsDrawnThroughItsHierarchy) {
@@ -247,7 +247,7 @@ TEST(LoadGltf, ImagesInBufferViewsAndBesideTheModel) {
     EXPECT_EQ(scene.images[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 128})) << name;
     EXPECT_EQ(scene.materials.at(0).baseColorTexture.image, 0);
     EXPECT_EQ(scene.materials.at(0).baseColorTexture.sampler, Sampler{});
-    EXPECT_EQ(scene.meshes.at(0).vertices.at(1).texCoord0, glm::vec2(1.0F, 1.0F));
+    EXPECT_EQ(scene.meshes.at(0).vertex(1).texCoord0, glm::vec2(1.0F, 1.0F));
   }
 }
 
@@ -263,9 +263,9 @@ TEST(LoadGltf, TangentsFollowTheNormalTexturesCoordinates) {
   EXPECT_EQ(material.normalScale, 0.5F);
   const Mesh& mesh = scene.meshes.at(0);
   // The middle edge is shared by the plain and the mirrored quad, so its two vertices are split.
-  EXPECT_EQ(mesh.vertices.size(), 8U);
+  EXPECT_EQ(mesh.vertexCount(), 8U);
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-    const Vertex& vertex = mesh.vertices[mesh.indices[i]];
+    const Vertex vertex = mesh.vertex(mesh.indices[i]);
     const bool mirrored = i >= 6;
     expectNear(vertex.tangent, mirrored ? glm::vec4(-1.0F, 0.0F, 0.0F, -1.0F) : glm::vec4(1.0F, 0.0F, 0.0F, 1.0F));
   }

@@ -18,9 +18,12 @@ inline void expectNear(const glm::vec3& actual, const glm::vec3& expected, float
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(actual[c], expected[c], tolerance) << "component " << c;
 }
 
+// Vertex colours are kept as 16-bit floats.
+constexpr float kColorTolerance = 2.5e-4F; // up to 1
+
 inline void expectNear(const glm::vec4& actual, const glm::vec4& expected) {
-  expectNear(glm::vec3(actual), glm::vec3(expected));
-  EXPECT_NEAR(actual.w, expected.w, 1e-5F);
+  expectNear(glm::vec3(actual), glm::vec3(expected), kColorTolerance);
+  EXPECT_NEAR(actual.w, expected.w, kColorTolerance);
 }
 
 } // namespace vitrail::tool

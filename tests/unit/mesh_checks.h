@@ -19,8 +19,8 @@ inline bool isUnit(const glm::vec3& vector) { return std::abs(glm::length(vector
 // Empty: the mesh is sound. Else what is wrong with it.
 inline std::string meshFault(const Mesh& mesh) {
   if (mesh.indices.empty() || mesh.indices.size() % 3 != 0) return "not a list of triangles";
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Vertex& vertex = mesh.vertices[i];
+  for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
+    const Vertex vertex = mesh.vertex(i);
     const std::string which = " of vertex " + std::to_string(i);
     if (!isUnit(vertex.normal)) return "the length of the normal" + which;
     if (!isUnit(glm::vec3(vertex.tangent))) return "the length of the tangent" + which;
@@ -31,9 +31,9 @@ inline std::string meshFault(const Mesh& mesh) {
     glm::dvec3 position[3];
     glm::dvec3 normals(0.0);
     for (std::size_t k = 0; k < 3; ++k) {
-      if (mesh.indices[i + k] >= mesh.vertices.size()) return "index " + std::to_string(i + k);
-      position[k] = glm::dvec3(mesh.vertices[mesh.indices[i + k]].position);
-      normals += glm::dvec3(mesh.vertices[mesh.indices[i + k]].normal);
+      if (mesh.indices[i + k] >= mesh.vertexCount()) return "index " + std::to_string(i + k);
+      position[k] = glm::dvec3(mesh.positions[mesh.indices[i + k]]);
+      normals += glm::dvec3(mesh.vertex(mesh.indices[i + k]).normal);
     }
     const glm::dvec3 face = glm::cross(position[1] - position[0], position[2] - position[0]);
     if (!(glm::length(face) > 0.0)) return "no area in triangle " + std::to_string(i / 3);
@@ -48,7 +48,7 @@ inline std::size_t openEdges(const Mesh& mesh) {
   using Point = std::tuple<float, float, float>;
   std::map<Point, std::size_t> welded;
   std::vector<std::size_t> index;
-  for (const Vertex& vertex : mesh.vertices) {
+  for (const Vertex& vertex : mesh.vertices()) {
     // Adding 0 makes one zero of the two.
     const Point point(vertex.position.x + 0.0F, vertex.position.y + 0.0F, vertex.position.z + 0.0F);
     index.push_back(welded.emplace(point, welded.size()).first->second);
@@ -71,9 +71,9 @@ inline std::size_t openEdges(const Mesh& mesh) {
 inline double signedVolume(const Mesh& mesh) {
   double sum = 0.0;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-    const glm::dvec3 a(mesh.vertices[mesh.indices[i]].position);
-    const glm::dvec3 b(mesh.vertices[mesh.indices[i + 1]].position);
-    const glm::dvec3 c(mesh.vertices[mesh.indices[i + 2]].position);
+    const glm::dvec3 a(mesh.positions[mesh.indices[i]]);
+    const glm::dvec3 b(mesh.positions[mesh.indices[i + 1]]);
+    const glm::dvec3 c(mesh.positions[mesh.indices[i + 2]]);
     sum += glm::dot(a, glm::cross(b, c));
   }
   return sum / 6.0;

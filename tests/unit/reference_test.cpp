@@ -49,7 +49,7 @@ Scene octahedron(const glm::mat4& transform) {
     Vertex vertex;
     vertex.position = corner;
     vertex.normal = corner;
-    mesh.vertices.push_back(vertex);
+    mesh.add(vertex);
   }
   mesh.indices = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   scene.meshes.push_back(mesh);
@@ -520,7 +520,7 @@ TEST(ReferenceSamples, EverySampleHasItsOwnDepth) {
   Scene scene;
   addRectangle(scene, kAll, unlitMaterial({1.0F, 0.0F, 0.0F, 1.0F}, AlphaMode::Opaque));
   addRectangle(scene, {glm::vec2(-4.0F), glm::vec2(4.0F), 0.0F}, unlitMaterial({0.0F, 1.0F, 0.0F, 0.5F}));
-  for (Vertex& vertex : scene.meshes[1].vertices) vertex.position.z = -vertex.position.x;
+  for (glm::vec3& position : scene.meshes[1].positions) position.z = -position.x;
   ReferenceOptions options = straightOptions(1, 1);
   options.samples = 4;
   expectNear(renderReference(scene, options).exact.linear[0], {0.75, 0.25, 0.0}, 1e-7);
@@ -530,9 +530,9 @@ TEST(ReferenceSamples, EverySampleHasItsOwnDepth) {
 TEST(ReferenceSamples, SurfacesAreShadedAtTheCentre) {
   Scene scene;
   addRectangle(scene, {glm::vec2(0.4F, -9.0F), glm::vec2(2.4F, 9.0F), 0.0F}, unlitMaterial(glm::vec4(1.0F)));
-  for (Vertex& vertex : scene.meshes[0].vertices) {
+  reference::changeVertices(scene.meshes[0], [](Vertex& vertex) {
     vertex.color = glm::vec4(glm::vec3(0.5F + 0.1F * vertex.position.x), 1.0F); // 0.5 at the centre, x = 0
-  }
+  });
   ReferenceOptions options = straightOptions(1, 1);
   options.background.srgb = glm::vec3(0.0F);
   options.samples = 4;

@@ -80,9 +80,9 @@ TEST(Sweep, Names) {
 double areaOf(const Mesh& mesh) {
   double area = 0.0;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-    const glm::vec3 a = mesh.vertices[mesh.indices[i]].position;
-    const glm::vec3 b = mesh.vertices[mesh.indices[i + 1]].position;
-    const glm::vec3 c = mesh.vertices[mesh.indices[i + 2]].position;
+    const glm::vec3 a = mesh.positions[mesh.indices[i]];
+    const glm::vec3 b = mesh.positions[mesh.indices[i + 1]];
+    const glm::vec3 c = mesh.positions[mesh.indices[i + 2]];
     area += 0.5 * static_cast<double>(glm::length(glm::cross(b - a, c - a)));
   }
   return area;
@@ -93,32 +93,33 @@ TEST(SplitTriangles, AreFourTimesAsManyOfTheSameSurface) {
   const Scene split = splitTriangles(scene, 2);
   EXPECT_EQ(triangleCount(split), 16 * triangleCount(scene));
   EXPECT_NEAR(areaOf(split.meshes[0]), areaOf(scene.meshes[0]), 1e-4 * areaOf(scene.meshes[0]));
-  for (const Vertex& vertex : split.meshes[0].vertices) {
+  for (const Vertex& vertex : split.meshes[0].vertices()) {
     EXPECT_NEAR(glm::length(vertex.normal), 1.0F, 1e-5F);
     EXPECT_NEAR(glm::length(glm::vec3(vertex.tangent)), 1.0F, 1e-5F);
     EXPECT_GT(glm::dot(vertex.normal, glm::normalize(vertex.position)), 0.99F); // outwards still
   }
-  for (const std::uint32_t index : split.meshes[0].indices) ASSERT_LT(index, split.meshes[0].vertices.size());
+  for (const std::uint32_t index : split.meshes[0].indices) ASSERT_LT(index, split.meshes[0].vertexCount());
 }
 
 TEST(SplitTriangles, OneTriangleByHand) {
   Scene scene;
   scene.meshes.resize(1);
-  scene.meshes[0].vertices.resize(4);
-  scene.meshes[0].vertices[1].position = {2.0F, 0.0F, 0.0F};
-  scene.meshes[0].vertices[2].position = {2.0F, 2.0F, 0.0F};
-  scene.meshes[0].vertices[2].color = {0.0F, 0.5F, 1.0F, 0.0F};
-  scene.meshes[0].vertices[3].position = {0.0F, 2.0F, 0.0F};
+  std::array<Vertex, 4> corners;
+  corners[1].position = {2.0F, 0.0F, 0.0F};
+  corners[2].position = {2.0F, 2.0F, 0.0F};
+  corners[2].color = {0.0F, 0.5F, 1.0F, 0.0F};
+  corners[3].position = {0.0F, 2.0F, 0.0F};
+  for (const Vertex& corner : corners) scene.meshes[0].add(corner);
   scene.meshes[0].indices = {0, 1, 2, 0, 2, 3};
   const Mesh split = splitTriangles(scene, 1).meshes[0];
   EXPECT_EQ(split.indices.size(), 24U);
-  EXPECT_EQ(split.vertices.size(), 9U); // 4, and the middles of 5 edges: the diagonal's is shared
-  EXPECT_EQ(split.vertices[5].position, glm::vec3(2.0F, 1.0F, 0.0F));
-  EXPECT_EQ(split.vertices[5].color, glm::vec4(0.5F, 0.75F, 1.0F, 0.5F));
+  EXPECT_EQ(split.vertexCount(), 9U); // 4, and the middles of 5 edges: the diagonal's is shared
+  EXPECT_EQ(split.vertex(5).position, glm::vec3(2.0F, 1.0F, 0.0F));
+  EXPECT_EQ(split.vertex(5).color, glm::vec4(0.5F, 0.75F, 1.0F, 0.5F));
   for (std::size_t i = 0; i < split.indices.size(); i += 3) { // none is turned around
-    const glm::vec3 a = split.vertices[split.indices[i]].position;
-    const glm::vec3 b = split.vertices[split.indices[i + 1]].position;
-    const glm::vec3 c = split.vertices[split.indices[i + 2]].position;
+    const glm::vec3 a = split.positions[split.indices[i]];
+    const glm::vec3 b = split.positions[split.indices[i + 1]];
+    const glm::vec3 c = split.positions[split.indices[i + 2]];
     EXPECT_GT(glm::cross(b - a, c - a).z, 0.0F);
   }
 }

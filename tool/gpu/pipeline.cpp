@@ -31,23 +31,22 @@ VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderM
 constexpr VkColorComponentFlags kAllChannels =
     VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
 
-// `binding` outlives the result.
-VkPipelineVertexInputStateCreateInfo vertexInput(const VertexLayout& vertices,
-                                                 const VkVertexInputBindingDescription& binding) {
+VkPipelineVertexInputStateCreateInfo vertexInput(const VertexLayout& vertices) {
   auto info = vkStruct<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
   if (vertices.attributes.empty()) return info;
-  info.vertexBindingDescriptionCount = 1;
-  info.pVertexBindingDescriptions = &binding;
+  info.vertexBindingDescriptionCount = static_cast<std::uint32_t>(vertices.bindings.size());
+  info.pVertexBindingDescriptions = vertices.bindings.data();
   info.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(vertices.attributes.size());
   info.pVertexAttributeDescriptions = vertices.attributes.data();
   return info;
 }
 
 VkPipelineDynamicStateCreateInfo dynamicState(const VertexLayout& vertices) {
-  static constexpr std::array<VkDynamicState, 4> kStates{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
-                                                         VK_DYNAMIC_STATE_FRONT_FACE, VK_DYNAMIC_STATE_CULL_MODE};
+  static constexpr std::array<VkDynamicState, 5> kStates{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                                         VK_DYNAMIC_STATE_FRONT_FACE, VK_DYNAMIC_STATE_CULL_MODE,
+                                                         VK_DYNAMIC_STATE_VERTEX_INPUT_BINDING_STRIDE};
   auto info = vkStruct<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
-  info.dynamicStateCount = vertices.attributes.empty() ? 2 : 4;
+  info.dynamicStateCount = vertices.attributes.empty() ? 2 : 5;
   info.pDynamicStates = kStates.data();
   return info;
 }
@@ -186,8 +185,7 @@ Unique<VkPipeline> makeGraphicsPipeline(Gpu& gpu, const GraphicsPipelineInfo& in
                                                         stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment.get())};
   stages[0].pSpecializationInfo = stages[1].pSpecializationInfo = constants.get();
 
-  const VkVertexInputBindingDescription binding{0, info.vertices.stride, VK_VERTEX_INPUT_RATE_VERTEX};
-  const auto vertices = vertexInput(info.vertices, binding);
+  const auto vertices = vertexInput(info.vertices);
   auto assembly =
       vkStruct<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
   assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;

@@ -43,9 +43,9 @@ struct BlendFactors {
 };
 VkPipelineColorBlendAttachmentState blendWith(const BlendFactors& color, const BlendFactors& alpha);
 
-// What vertex shaders read of one buffer, bound as number 0.
+// What vertex shaders read of buffers, whose strides are given where they are bound.
 struct VertexLayout {
-  std::uint32_t stride = 0;
+  std::span<const VkVertexInputBindingDescription> bindings;
   std::span<const VkVertexInputAttributeDescription> attributes; // none: they read nothing
 };
 
@@ -55,7 +55,7 @@ struct GraphicsPipelineInfo {
   std::span<const std::uint32_t> vertexShader;
   std::span<const std::uint32_t> fragmentShader;
   PipelineConstants constants; // of both shaders
-  VertexLayout vertices;       // with them front face and cull mode are dynamic
+  VertexLayout vertices;       // with them front face, cull mode and strides are dynamic
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   std::uint32_t sampleMask = UINT32_MAX; // samples that are drawn, one bit each
   bool shadeEverySample = false;         // at the place of each, where the device has GpuFeatures::sampleRateShading

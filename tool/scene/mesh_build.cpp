@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,7 +20,7 @@ bool isFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v
 
 // Twice the area, along the normal. In double precision, where no product of finite floats overflows or vanishes.
 glm::dvec3 areaVector(const Mesh& mesh, std::size_t firstIndex) {
-  const auto corner = [&](std::size_t i) { return glm::dvec3(mesh.vertices[mesh.indices[firstIndex + i]].position); };
+  const auto corner = [&](std::size_t i) { return glm::dvec3(mesh.positions[mesh.indices[firstIndex + i]]); };
   const glm::dvec3 a = corner(0);
   return glm::cross(corner(1) - a, corner(2) - a);
 }
@@ -30,7 +32,7 @@ glm::vec3 unit(const glm::dvec3& v) {
 }
 
 std::vector<glm::dvec3> sumAreaVectors(const Mesh& mesh) {
-  std::vector<glm::dvec3> sums(mesh.vertices.size(), glm::dvec3(0.0));
+  std::vector<glm::dvec3> sums(mesh.vertexCount(), glm::dvec3(0.0));
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const glm::dvec3 area = areaVector(mesh, i);
     for (std::size_t c = 0; c < 3; ++c) sums[mesh.indices[i + c]] += area;
@@ -38,15 +40,17 @@ std::vector<glm::dvec3> sumAreaVectors(const Mesh& mesh) {
   return sums;
 }
 
-// The triangles around a vertex can cancel each other out; then any one of them gives the normal.
-void fillMissingNormals(Mesh& mesh) {
+// Packs normals. The triangles around a vertex can cancel each other out, which leaves none: then any one of them gives
+// the normal.
+void setNormals(Mesh& mesh, std::vector<glm::vec3> normals) {
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
     for (std::size_t c = 0; c < 3; ++c) {
-      glm::vec3& normal = mesh.vertices[mesh.indices[i + c]].normal;
+      glm::vec3& normal = normals[mesh.indices[i + c]];
       if (normal == glm::vec3(0.0F)) normal = unit(areaVector(mesh, i));
     }
-  for (Vertex& vertex : mesh.vertices)
-    if (vertex.normal == glm::vec3(0.0F)) vertex.normal = {0.0F, 0.0F, 1.0F};
+  mesh.normals.resize(normals.size());
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    mesh.normals[i] = packDirection(normals[i] == glm::vec3(0.0F) ? glm::vec3(0.0F, 0.0F, 1.0F) : normals[i]);
 }
 
 glm::vec3 anyOrthogonal(const glm::vec3& normal) {
@@ -62,9 +66,9 @@ glm::vec3 orthogonalTangent(const glm::dvec3& tangent, const glm::vec3& normal) 
   return glm::length(rest) > 1e-4 ? unit(rest) : anyOrthogonal(normal);
 }
 
-glm::vec2 slotCoordinates(const Vertex& vertex, const TextureSlot& slot) {
-  const glm::vec2 uv = slot.texCoord == 0 ? vertex.texCoord0 : vertex.texCoord1;
-  return glm::vec2(slot.transform * glm::vec3(uv, 1.0F));
+glm::vec2 slotCoordinates(const Mesh& mesh, std::uint32_t vertex, const TextureSlot& slot) {
+  const std::vector<glm::vec2>& set = slot.texCoord == 0 ? mesh.texCoords0 : mesh.texCoords1;
+  return glm::vec2(slot.transform * glm::vec3(set.empty() ? glm::vec2(0.0F) : set[vertex], 1.0F));
 }
 
 struct TriangleTangent {
@@ -73,13 +77,13 @@ struct TriangleTangent {
 };
 
 TriangleTangent triangleTangent(const Mesh& mesh, std::size_t firstIndex, const TextureSlot& slot) {
-  const Vertex& a = mesh.vertices[mesh.indices[firstIndex]];
-  const Vertex& b = mesh.vertices[mesh.indices[firstIndex + 1]];
-  const Vertex& c = mesh.vertices[mesh.indices[firstIndex + 2]];
-  const glm::dvec3 edge1 = glm::dvec3(b.position) - glm::dvec3(a.position);
-  const glm::dvec3 edge2 = glm::dvec3(c.position) - glm::dvec3(a.position);
-  const glm::dvec2 uv1 = glm::dvec2(slotCoordinates(b, slot)) - glm::dvec2(slotCoordinates(a, slot));
-  const glm::dvec2 uv2 = glm::dvec2(slotCoordinates(c, slot)) - glm::dvec2(slotCoordinates(a, slot));
+  const std::uint32_t a = mesh.indices[firstIndex];
+  const std::uint32_t b = mesh.indices[firstIndex + 1];
+  const std::uint32_t c = mesh.indices[firstIndex + 2];
+  const glm::dvec3 edge1 = glm::dvec3(mesh.positions[b]) - glm::dvec3(mesh.positions[a]);
+  const glm::dvec3 edge2 = glm::dvec3(mesh.positions[c]) - glm::dvec3(mesh.positions[a]);
+  const glm::dvec2 uv1 = glm::dvec2(slotCoordinates(mesh, b, slot)) - glm::dvec2(slotCoordinates(mesh, a, slot));
+  const glm::dvec2 uv2 = glm::dvec2(slotCoordinates(mesh, c, slot)) - glm::dvec2(slotCoordinates(mesh, a, slot));
   const double determinant = uv1.x * uv2.y - uv2.x * uv1.y;
   // v grows down the image, and glTF's bitangent w * cross(normal, tangent) points up it: the picture is unmirrored,
   // and w is +1, where u and v turn clockwise.
@@ -124,51 +128,57 @@ void dropDegenerateTriangles(Mesh& mesh) {
 
 void dropUnusedVertices(Mesh& mesh) {
   constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> newIndex(mesh.vertices.size(), unused);
+  std::vector<std::uint32_t> newIndex(mesh.vertexCount(), unused);
   for (const std::uint32_t index : mesh.indices) newIndex[index] = 0;
   std::uint32_t kept = 0;
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    if (newIndex[i] == unused) continue;
-    mesh.vertices[kept] = mesh.vertices[i];
-    newIndex[i] = kept++;
-  }
-  mesh.vertices.resize(kept);
+  for (std::uint32_t& place : newIndex)
+    if (place != unused) place = kept++;
+  if (kept == mesh.vertexCount()) return;
+  forEachAttribute(mesh, [&](auto& values) {
+    for (std::size_t i = 0; i < newIndex.size(); ++i)
+      if (newIndex[i] != unused) values[newIndex[i]] = values[i];
+    values.resize(kept);
+  });
   for (std::uint32_t& index : mesh.indices) index = newIndex[index];
 }
 
+void separateTriangles(Mesh& mesh) {
+  forEachAttribute(mesh, [&](auto& values) {
+    std::decay_t<decltype(values)> separate(mesh.indices.size());
+    for (std::size_t i = 0; i < separate.size(); ++i) separate[i] = values[mesh.indices[i]];
+    values = std::move(separate);
+  });
+  std::iota(mesh.indices.begin(), mesh.indices.end(), 0U);
+}
+
 void makeFlatNormals(Mesh& mesh) {
-  std::vector<Vertex> vertices;
-  vertices.reserve(mesh.indices.size());
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const glm::vec3 normal = unit(areaVector(mesh, i));
-    for (std::size_t c = 0; c < 3; ++c) {
-      vertices.push_back(mesh.vertices[mesh.indices[i + c]]);
-      vertices.back().normal = normal;
-    }
-  }
-  mesh.vertices = std::move(vertices);
-  for (std::size_t i = 0; i < mesh.indices.size(); ++i) mesh.indices[i] = static_cast<std::uint32_t>(i);
-  fillMissingNormals(mesh);
+  separateTriangles(mesh);
+  std::vector<glm::vec3> normals(mesh.indices.size());
+  for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = unit(areaVector(mesh, i / 3 * 3));
+  setNormals(mesh, std::move(normals));
 }
 
 void makeSmoothNormals(Mesh& mesh) {
   const std::vector<glm::dvec3> sums = sumAreaVectors(mesh);
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i].normal = unit(sums[i]);
-  fillMissingNormals(mesh);
+  std::vector<glm::vec3> normals(sums.size());
+  std::ranges::transform(sums, normals.begin(), unit);
+  setNormals(mesh, std::move(normals));
 }
 
 void makeCreasedNormals(Mesh& mesh, float crease) {
-  makeFlatNormals(mesh);
+  separateTriangles(mesh);
+  std::vector<glm::vec3> flat(mesh.indices.size());
+  for (std::size_t i = 0; i < flat.size(); ++i) flat[i] = unit(areaVector(mesh, i / 3 * 3));
   // Corners at one place are neighbours in this order.
   const auto place = [&mesh](std::uint32_t corner) {
-    const glm::vec3& p = mesh.vertices[corner].position;
+    const glm::vec3& p = mesh.positions[corner];
     return std::tuple(p.x, p.y, p.z);
   };
   std::vector<std::uint32_t> order = mesh.indices;
   std::ranges::sort(order, {}, place);
 
   const double cosine = std::cos(static_cast<double>(crease));
-  std::vector<glm::vec3> normals(mesh.vertices.size());
+  std::vector<glm::vec3> normals(flat.size());
   for (std::size_t begin = 0; begin < order.size();) {
     std::size_t end = begin + 1;
     while (end < order.size() && place(order[end]) == place(order[begin])) ++end;
@@ -176,43 +186,43 @@ void makeCreasedNormals(Mesh& mesh, float crease) {
     constexpr std::size_t mostCompared = 256;
     const bool compared = end - begin <= mostCompared;
     for (std::size_t i = begin; i < end; ++i) {
-      const glm::vec3& own = mesh.vertices[order[i]].normal;
+      const glm::vec3& own = flat[order[i]];
       glm::dvec3 sum(0.0);
       for (std::size_t j = begin; compared && j < end; ++j)
-        if (glm::dot(glm::dvec3(own), glm::dvec3(mesh.vertices[order[j]].normal)) > cosine)
-          sum += areaVector(mesh, order[j] / 3 * 3);
+        if (glm::dot(glm::dvec3(own), glm::dvec3(flat[order[j]])) > cosine) sum += areaVector(mesh, order[j] / 3 * 3);
       const glm::vec3 mean = unit(sum);
       normals[order[i]] = mean == glm::vec3(0.0F) ? own : mean;
     }
     begin = end;
   }
-  for (std::size_t i = 0; i < normals.size(); ++i) mesh.vertices[i].normal = normals[i];
+  setNormals(mesh, std::move(normals));
 }
 
 void turnTrianglesToNormals(Mesh& mesh) {
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     glm::dvec3 normals(0.0);
-    for (std::size_t c = 0; c < 3; ++c) normals += glm::dvec3(mesh.vertices[mesh.indices[i + c]].normal);
+    for (std::size_t c = 0; c < 3; ++c) normals += glm::dvec3(unpackDirection(mesh.normals[mesh.indices[i + c]]));
     if (glm::dot(areaVector(mesh, i), normals) < 0.0) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
   }
 }
 
-void repairNormals(Mesh& mesh) {
+void setRepairedNormals(Mesh& mesh, std::vector<glm::vec3> normals) {
   bool complete = true;
-  for (Vertex& vertex : mesh.vertices) {
-    vertex.normal = isFinite(vertex.normal) ? unit(glm::dvec3(vertex.normal)) : glm::vec3(0.0F);
-    complete = complete && vertex.normal != glm::vec3(0.0F);
+  for (glm::vec3& normal : normals) {
+    normal = isFinite(normal) ? unit(glm::dvec3(normal)) : glm::vec3(0.0F);
+    complete = complete && normal != glm::vec3(0.0F);
   }
-  if (complete) return;
-  const std::vector<glm::dvec3> sums = sumAreaVectors(mesh);
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    if (mesh.vertices[i].normal == glm::vec3(0.0F)) mesh.vertices[i].normal = unit(sums[i]);
-  fillMissingNormals(mesh);
+  if (!complete) {
+    const std::vector<glm::dvec3> sums = sumAreaVectors(mesh);
+    for (std::size_t i = 0; i < normals.size(); ++i)
+      if (normals[i] == glm::vec3(0.0F)) normals[i] = unit(sums[i]);
+  }
+  setNormals(mesh, std::move(normals));
 }
 
 void makeTangents(Mesh& mesh, const TextureSlot& slot) {
-  // The first vertices.size() sums are those of triangles that are not mirrored, the others those of mirrored ones.
-  const std::size_t count = mesh.vertices.size();
+  // The first vertexCount() sums are those of triangles that are not mirrored, the others those of mirrored ones.
+  const std::size_t count = mesh.vertexCount();
   std::vector<glm::dvec3> sums(2 * count, glm::dvec3(0.0));
   std::vector<std::uint32_t> mirroredCopy(count, 0); // 0: none
   std::vector<bool> hasPlain(count, false);
@@ -226,27 +236,31 @@ void makeTangents(Mesh& mesh, const TextureSlot& slot) {
       sums[index + (tangent.sign > 0.0F ? 0 : count)] += tangent.direction;
     }
   }
-  for (std::size_t i = 0; i < count; ++i)
-    mesh.vertices[i].tangent = glm::vec4(orthogonalTangent(sums[i], mesh.vertices[i].normal), 1.0F);
+  const auto tangentOf = [&](const glm::dvec3& sum, std::size_t vertex, float sign) {
+    return packTangent(glm::vec4(orthogonalTangent(sum, unpackDirection(mesh.normals[vertex])), sign));
+  };
+  mesh.tangents.resize(count);
+  for (std::size_t i = 0; i < count; ++i) mesh.tangents[i] = tangentOf(sums[i], i, 1.0F);
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     if (signs[i / 3] > 0.0F) continue;
     std::uint32_t& index = mesh.indices[i];
     const std::size_t original = index;
     if (mirroredCopy[original] == 0 && hasPlain[original]) {
-      mirroredCopy[original] = static_cast<std::uint32_t>(mesh.vertices.size());
-      mesh.vertices.push_back(mesh.vertices[original]);
+      mirroredCopy[original] = static_cast<std::uint32_t>(mesh.vertexCount());
+      forEachAttribute(mesh, [original](auto& values) { values.push_back(values[original]); });
     }
     if (mirroredCopy[original] != 0) index = mirroredCopy[original];
-    Vertex& vertex = mesh.vertices[index];
-    vertex.tangent = glm::vec4(orthogonalTangent(sums[original + count], vertex.normal), -1.0F);
+    mesh.tangents[index] = tangentOf(sums[original + count], index, -1.0F);
   }
 }
 
-void repairTangents(Mesh& mesh) {
-  for (Vertex& vertex : mesh.vertices) {
-    const glm::vec3 tangent(vertex.tangent);
+void setRepairedTangents(Mesh& mesh, std::span<const glm::vec4> tangents) {
+  mesh.tangents.resize(tangents.size());
+  for (std::size_t i = 0; i < tangents.size(); ++i) {
+    const glm::vec3 tangent(tangents[i]);
     const glm::dvec3 usable = isFinite(tangent) ? glm::dvec3(tangent) : glm::dvec3(0.0);
-    vertex.tangent = glm::vec4(orthogonalTangent(usable, vertex.normal), vertex.tangent.w < 0.0F ? -1.0F : 1.0F);
+    const glm::vec3 direction = orthogonalTangent(usable, unpackDirection(mesh.normals[i]));
+    mesh.tangents[i] = packTangent(glm::vec4(direction, tangents[i].w < 0.0F ? -1.0F : 1.0F));
   }
 }
 
@@ -255,17 +269,17 @@ void requireDrawable(const Scene& scene) {
   constexpr double farthest = 1e15;
   std::vector<Bounds> boxes(scene.meshes.size());
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    const std::vector<Vertex>& vertices = scene.meshes[i].vertices;
-    if (vertices.empty()) continue;
-    boxes[i] = {vertices[0].position, vertices[0].position};
-    for (const Vertex& vertex : vertices) {
-      boxes[i].min = glm::min(boxes[i].min, vertex.position);
-      boxes[i].max = glm::max(boxes[i].max, vertex.position);
+    const std::vector<glm::vec3>& positions = scene.meshes[i].positions;
+    if (positions.empty()) continue;
+    boxes[i] = {positions[0], positions[0]};
+    for (const glm::vec3& position : positions) {
+      boxes[i].min = glm::min(boxes[i].min, position);
+      boxes[i].max = glm::max(boxes[i].max, position);
     }
   }
-  bool anyTriangle = false;
+  bool anything = false;
   for (const Draw& draw : scene.draws) {
-    anyTriangle = anyTriangle || !scene.meshes[draw.mesh].indices.empty();
+    anything = anything || !scene.meshes[draw.mesh].indices.empty();
     const Bounds& box = boxes[draw.mesh];
     for (int corner = 0; corner < 8; ++corner) {
       const glm::dvec4 local((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
@@ -276,7 +290,7 @@ void requireDrawable(const Scene& scene) {
           throw LoadError(fmt::format("the model reaches to {:.3g}, farther than {:.0e}", world[axis], farthest));
     }
   }
-  if (!anyTriangle) throw LoadError("the file holds no triangles");
+  if (!anything) throw LoadError("the file holds no triangles");
 }
 
 } // namespace vitrail::tool

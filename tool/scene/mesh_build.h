@@ -19,13 +19,29 @@ enum class Topology { Triangles, Strip, Fan };
 // fill a last triangle are dropped, as GPUs do; so are triangles that name a vertex twice.
 std::vector<std::uint32_t> triangleList(std::span<const std::uint32_t> indices, Topology topology);
 
-// Removes the triangles that have no area, in place. Every index is below vertices.size().
+// Calls `change` with each array of attributes that the mesh has.
+template <typename Change>
+void forEachAttribute(Mesh& mesh, Change change) {
+  change(mesh.positions);
+  if (!mesh.normals.empty()) change(mesh.normals);
+  if (!mesh.tangents.empty()) change(mesh.tangents);
+  if (!mesh.texCoords0.empty()) change(mesh.texCoords0);
+  if (!mesh.texCoords1.empty()) change(mesh.texCoords1);
+  if (!mesh.colors.empty()) change(mesh.colors);
+}
+
+// What follows is for meshes of triangles.
+
+// Removes the triangles that have no area, in place. Every index is below vertexCount().
 void dropDegenerateTriangles(Mesh& mesh);
 
 // Removes the vertices that no triangle uses.
 void dropUnusedVertices(Mesh& mesh);
 
-// Gives each triangle three vertices of its own, with the normal of its plane.
+// Gives each triangle three vertices of its own.
+void separateTriangles(Mesh& mesh);
+
+// The same, with the normal of its plane. A mesh without normals is flat as it is: this is for tangents that need them.
 void makeFlatNormals(Mesh& mesh);
 
 // Normals that are the mean of the planes around each vertex, weighted by area.
@@ -38,17 +54,18 @@ void makeCreasedNormals(Mesh& mesh, float crease);
 // Turns the triangles whose plane faces away from their vertices' normals.
 void turnTrianglesToNormals(Mesh& mesh);
 
-// Scales all normals to unit length. One that is zero or not finite becomes the mean normal of its triangles.
-void repairNormals(Mesh& mesh);
+// Gives the vertices these normals, scaled to unit length. One that is zero or not finite becomes the mean normal of
+// its triangles.
+void setRepairedNormals(Mesh& mesh, std::vector<glm::vec3> normals);
 
 // Tangents along growing u of a texture slot, orthogonal to the normals, as the mean over the triangles around each
 // vertex. Where vertices are shared between mirrored and unmirrored triangles they are split. Method: Lengyel,
 // "Foundations of Game Engine Development" vol. 2, section 7.5.
 void makeTangents(Mesh& mesh, const TextureSlot& slot);
 
-// Makes the given tangents unit length and orthogonal to the normals, and their w +1 or -1. One that cannot be used is
-// replaced by any direction orthogonal to the normal.
-void repairTangents(Mesh& mesh);
+// Gives the vertices, which have normals, these tangents, made unit length and orthogonal to the normals, and their w
+// +1 or -1. One that cannot be used is replaced by any direction orthogonal to the normal.
+void setRepairedTangents(Mesh& mesh, std::span<const glm::vec4> tangents);
 
 // Throws LoadError where a scene holds no triangle or reaches beyond what 32-bit floats can draw.
 void requireDrawable(const Scene& scene);

@@ -10,17 +10,36 @@ namespace {
 
 // The positions that a mesh's triangles use: a file may hold others, and they are not part of the picture.
 std::vector<glm::vec3> usedPositions(const Mesh& mesh) {
-  std::vector<bool> used(mesh.vertices.size(), false);
+  std::vector<bool> used(mesh.vertexCount(), false);
   for (const std::uint32_t index : mesh.indices) used[index] = true;
   std::vector<glm::vec3> positions;
-  positions.reserve(mesh.vertices.size());
+  positions.reserve(mesh.vertexCount());
   for (std::size_t i = 0; i < used.size(); ++i) {
-    if (used[i]) positions.push_back(mesh.vertices[i].position);
+    if (used[i]) positions.push_back(mesh.positions[i]);
   }
   return positions;
 }
 
 } // namespace
+
+Bounds boundsOf(const Mesh& mesh) {
+  const glm::vec3& first = mesh.positions[mesh.indices.front()];
+  Bounds bounds{first, first};
+  for (const std::uint32_t index : mesh.indices) {
+    bounds.min = glm::min(bounds.min, mesh.positions[index]);
+    bounds.max = glm::max(bounds.max, mesh.positions[index]);
+  }
+  return bounds;
+}
+
+std::array<glm::vec3, 8> cornersOf(const Bounds& bounds) {
+  std::array<glm::vec3, 8> corners;
+  for (unsigned i = 0; i < 8; ++i) {
+    corners[i] = {(i & 1U) != 0 ? bounds.max.x : bounds.min.x, (i & 2U) != 0 ? bounds.max.y : bounds.min.y,
+                  (i & 4U) != 0 ? bounds.max.z : bounds.min.z};
+  }
+  return corners;
+}
 
 bool isTransparent(const Material& material) {
   return material.alphaMode == AlphaMode::Blend || (material.transmission > 0.0F && !material.unlit);
@@ -56,7 +75,10 @@ Bounds worldBounds(const Scene& scene) {
 
 std::uint64_t triangleCount(const Scene& scene) {
   std::uint64_t count = 0;
-  for (const Draw& draw : scene.draws) count += scene.meshes[draw.mesh].indices.size() / 3;
+  for (const Draw& draw : scene.draws) {
+    const Mesh& mesh = scene.meshes[draw.mesh];
+    if (mesh.primitive == Primitive::Triangles) count += mesh.indices.size() / 3;
+  }
   return count;
 }
 

@@ -3,6 +3,7 @@
 // Scene::origin.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -14,6 +15,7 @@
 
 namespace vitrail::tool {
 
+// A vertex with all that it may have, as code makes and reads one. Meshes keep less (below).
 struct Vertex {
   glm::vec3 position{0.0F};
   glm::vec3 normal{0.0F, 0.0F, 1.0F};        // unit length
@@ -27,13 +29,45 @@ struct Vertex {
 // picture's choice; those of a mesh without normals are not lit.
 enum class Primitive { Triangles, Lines, Points };
 
-// A list of triangles, lines or points. Every index is below vertices.size(), and indices.size() is a multiple of 3, 2
-// or 1. Counter-clockwise triangles, seen from outside, agree with their vertex normals.
+// How many indices make one: 3, 2 or 1.
+constexpr std::size_t cornersOf(Primitive primitive) {
+  return primitive == Primitive::Triangles ? 3 : primitive == Primitive::Lines ? 2 : 1;
+}
+
+// A list of triangles, lines or points. Every index is below vertexCount(), and indices.size() is a multiple of 3, 2 or
+// 1. Counter-clockwise triangles, seen from outside, agree with their vertex normals. Vertices are kept as the GPU
+// reads them, an array for each attribute: as long as `positions`, or empty, which stands for the value that Vertex
+// begins with. Triangles without normals are flat: each has that of its plane.
 struct Mesh {
   Primitive primitive = Primitive::Triangles;
-  std::vector<Vertex> vertices;
+  std::vector<glm::vec3> positions;
+  std::vector<std::uint32_t> normals;  // packDirection()
+  std::vector<std::uint32_t> tangents; // packTangent()
+  std::vector<glm::vec2> texCoords0;
+  std::vector<glm::vec2> texCoords1;
+  std::vector<std::uint64_t> colors; // packColor()
   std::vector<std::uint32_t> indices;
+
+  std::size_t vertexCount() const { return positions.size(); }
+  // A vertex as it is kept: unpacked, and with the default for what the mesh does not have.
+  Vertex vertex(std::size_t i) const;
+  std::vector<Vertex> vertices() const;
+  // Adds a vertex. Attributes other than position and normal are kept from the first vertex on that has them.
+  void add(const Vertex& vertex);
+  // Replaces vertex i by another one.
+  void set(std::size_t i, const Vertex& vertex);
 };
+
+// A direction in 32 bits: its octahedral projection (Meyer et al., "On floating-point normal vectors", EGSR 2010) as
+// two 16-bit signed normalised numbers, x in the lower half. At most 0.003 degrees off; the axes are exact.
+std::uint32_t packDirection(const glm::vec3& unitVector);
+glm::vec3 unpackDirection(std::uint32_t packed);
+// The same with a sign, w < 0, in place of the last bit: at most 0.005 degrees off.
+std::uint32_t packTangent(const glm::vec4& tangent);
+glm::vec4 unpackTangent(std::uint32_t packed);
+// Four 16-bit floats, red in the lowest bits: at most 2^-11 of the value off, up to 65504.
+std::uint64_t packColor(const glm::vec4& color);
+glm::vec4 unpackColor(std::uint64_t packed);
 
 // 8-bit RGBA, straight alpha, rows top to bottom without padding. Whether the colours are sRGB is the texture slot's
 // business: base colour and emissive are, the others are not.
@@ -176,6 +210,10 @@ struct FileFacts {
   std::vector<Animation> animations;
   std::vector<std::string> variants;
 };
+
+std::array<glm::vec3, 8> cornersOf(const Bounds& bounds);
+// The box around what a mesh shows, in its own space. It has indices.
+Bounds boundsOf(const Mesh& mesh);
 
 struct Scene {
   std::string name;

@@ -29,8 +29,8 @@ void split(Mesh& mesh) {
   std::unordered_map<std::uint64_t, std::uint32_t> middles; // by the two ends of an edge
   const auto middle = [&](std::uint32_t a, std::uint32_t b) {
     const std::uint64_t edge = std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
-    const auto [place, isNew] = middles.try_emplace(edge, static_cast<std::uint32_t>(mesh.vertices.size()));
-    if (isNew) mesh.vertices.push_back(middleOf(mesh.vertices[a], mesh.vertices[b]));
+    const auto [place, isNew] = middles.try_emplace(edge, static_cast<std::uint32_t>(mesh.vertexCount()));
+    if (isNew) mesh.add(middleOf(mesh.vertex(a), mesh.vertex(b)));
     return place->second;
   };
   std::vector<std::uint32_t> indices;
@@ -50,7 +50,9 @@ void split(Mesh& mesh) {
 } // namespace
 
 Scene splitTriangles(Scene scene, std::uint32_t times) {
-  for (std::uint32_t i = 0; i < times; ++i) std::ranges::for_each(scene.meshes, split);
+  for (std::uint32_t i = 0; i < times; ++i)
+    for (Mesh& mesh : scene.meshes)
+      if (mesh.primitive == Primitive::Triangles) split(mesh);
   return scene;
 }
 

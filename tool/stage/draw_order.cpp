@@ -19,14 +19,14 @@ std::vector<std::uint32_t> submissionOrder(std::uint32_t count, DrawOrder order,
   return numbers;
 }
 
-std::vector<std::uint32_t> reorderTriangles(const std::vector<std::uint32_t>& indices, DrawOrder order,
-                                            std::uint64_t salt) {
-  const auto triangles = static_cast<std::uint32_t>(indices.size() / 3);
+std::vector<std::uint32_t> reorderPrimitives(const Mesh& mesh, DrawOrder order, std::uint64_t salt) {
+  const std::size_t corners = cornersOf(mesh.primitive);
+  const auto count = static_cast<std::uint32_t>(mesh.indices.size() / corners);
   std::vector<std::uint32_t> result;
-  result.reserve(indices.size());
-  for (const std::uint32_t triangle : submissionOrder(triangles, order, salt)) {
-    const std::size_t first = std::size_t{triangle} * 3;
-    result.insert(result.end(), {indices[first], indices[first + 1], indices[first + 2]});
+  result.reserve(mesh.indices.size());
+  for (const std::uint32_t i : submissionOrder(count, order, salt)) {
+    const auto first = mesh.indices.begin() + static_cast<std::ptrdiff_t>(i * corners);
+    result.insert(result.end(), first, first + static_cast<std::ptrdiff_t>(corners));
   }
   return result;
 }

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "../scene/scene.h"
+
 namespace vitrail::tool {
 
 // The order in which transparent draws, and the triangles inside each, are submitted.
@@ -12,8 +14,7 @@ enum class DrawOrder { Forward, Reversed, Shuffled };
 // The numbers 0 to count - 1 in that order. Shuffled is the same on every machine, and differs between salts.
 std::vector<std::uint32_t> submissionOrder(std::uint32_t count, DrawOrder order, std::uint64_t salt);
 
-// A triangle list's indices with the triangles in that order; each keeps its own vertex order.
-std::vector<std::uint32_t> reorderTriangles(const std::vector<std::uint32_t>& indices, DrawOrder order,
-                                            std::uint64_t salt);
+// A mesh's indices with the triangles (lines, points) in that order; each keeps its own vertex order.
+std::vector<std::uint32_t> reorderPrimitives(const Mesh& mesh, DrawOrder order, std::uint64_t salt);
 
 } // namespace vitrail::tool

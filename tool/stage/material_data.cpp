@@ -34,11 +34,13 @@ shaders::MaterialData makeMaterialData(const Material& material, std::optional<f
   return data;
 }
 
-std::uint32_t featuresOf(const Scene& scene, const Material& material, bool vertexColors) {
+std::uint32_t featuresOf(const Scene& scene, const Material& material, const Mesh& mesh) {
   std::uint32_t features = MaterialTextures::filledSlots(scene, material);
   if (material.unlit) features = (features & 1U << shaders::SLOT_BASE_COLOR) | shaders::FEATURE_UNLIT;
   if (material.alphaMode == AlphaMode::Mask) features |= shaders::FEATURE_MASK;
-  if (vertexColors) features |= shaders::FEATURE_VERTEX_COLOR;
+  if (!mesh.colors.empty()) features |= shaders::FEATURE_VERTEX_COLOR;
+  const bool flat = mesh.normals.empty() && mesh.primitive == Primitive::Triangles;
+  if (flat && !material.unlit) features |= shaders::FEATURE_FLAT;
   const bool transmissive = material.transmission > 0.0F && !material.unlit;
   if (transmissive) features |= shaders::FEATURE_TRANSMISSION;
   if (!transmissive) features &= ~(1U << shaders::SLOT_TRANSMISSION);

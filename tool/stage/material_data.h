@@ -12,7 +12,7 @@ namespace vitrail::tool {
 // With `opacity`, every material is blended with that factor.
 shaders::MaterialData makeMaterialData(const Material& material, std::optional<float> opacity);
 
-// What the pipeline of a surface is specialized for (surface_shared.h).
-std::uint32_t featuresOf(const Scene& scene, const Material& material, bool vertexColors);
+// What the pipeline of a mesh with a material is specialized for (surface_shared.h).
+std::uint32_t featuresOf(const Scene& scene, const Material& material, const Mesh& mesh);
 
 } // namespace vitrail::tool

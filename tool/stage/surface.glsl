@@ -7,7 +7,7 @@
 layout(constant_id = 0) const uint kFeatures = 0u;
 
 layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameData frame; };
-layout(set = 0, binding = 2, std140) uniform MaterialBlock { MaterialData material; };
+layout(set = 0, binding = 1, std140) uniform MaterialBlock { MaterialData material; };
 layout(set = 1, binding = 0) uniform sampler2D baseColorTexture;
 layout(set = 1, binding = 1) uniform sampler2D metallicRoughnessTexture;
 layout(set = 1, binding = 2) uniform sampler2D normalTexture;
@@ -41,9 +41,14 @@ vec3 viewDirection() {
   return frame.eye.w > 0.5 ? backward : direction(frame.eye.xyz - inPosition, backward);
 }
 
-// The shading normal on the side that is seen. `sampled` is the normal map's texel.
-vec3 surfaceNormal(vec3 sampled, vec3 fallback) {
-  vec3 normal = direction(inNormal, fallback);
+// The normal of a flat triangle's plane, on one side or the other, not of unit length. Before any discard, which would
+// leave the derivatives undefined.
+vec3 planeNormal() { return has(FEATURE_FLAT) ? cross(dFdx(inPosition), dFdy(inPosition)) : vec3(0.0); }
+
+// The shading normal on the side that is seen. `sampled` is the normal map's texel, `v` points to the eye.
+vec3 surfaceNormal(vec3 plane, vec3 sampled, vec3 v) {
+  if (has(FEATURE_FLAT)) return direction(dot(plane, v) < 0.0 ? -plane : plane, v);
+  vec3 normal = direction(inNormal, v);
   if (hasTexture(SLOT_NORMAL)) {
     vec3 axis = abs(normal.x) < 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
     vec3 tangent = direction(inTangent.xyz - normal * dot(normal, inTangent.xyz), normalize(cross(axis, normal)));
@@ -126,12 +131,13 @@ Surface shadeSurface() {
     transmission *= texture(transmissionTexture, inTexCoords[SLOT_TRANSMISSION]).r;
   }
 
+  vec3 plane = planeNormal();
   if (has(FEATURE_MASK) && base.a < material.alphaCutoff) discard;
   float alpha = material.opacity * mix(1.0, base.a, material.alphaFromBase);
   if (has(FEATURE_UNLIT)) return Surface(base.rgb, alpha, vec3(1.0), 0.0);
 
   vec3 v = viewDirection();
-  vec3 n = surfaceNormal(normalSample, v);
+  vec3 n = surfaceNormal(plane, normalSample, v);
   float roughness = clamp(material.roughness * metallicRoughness.g, 0.045, 1.0);
   float metallic = clamp(material.metallic * metallicRoughness.b, 0.0, 1.0);
   float occlusion = 1.0 + material.occlusionStrength * (occlusionSample - 1.0);

@@ -6,15 +6,18 @@
 layout(constant_id = 0) const uint kFeatures = 0u;
 
 layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameData frame; };
-layout(set = 0, binding = 1, std140) uniform DrawBlock { DrawData draw; };
-layout(set = 0, binding = 2, std140) uniform MaterialBlock { MaterialData material; };
+layout(set = 0, binding = 1, std140) uniform MaterialBlock { MaterialData material; };
 
 layout(location = 0) in vec3 inPosition;
-layout(location = 1) in vec3 inNormal;
-layout(location = 2) in vec4 inTangent;
+layout(location = 1) in vec2 inNormal;   // octahedral (tool/scene/scene.h)
+layout(location = 2) in ivec2 inTangent; // octahedral, and a sign in the last bit of y
 layout(location = 3) in vec2 inTexCoord0;
 layout(location = 4) in vec2 inTexCoord1;
 layout(location = 5) in vec4 inColor;
+// The instance's transform to the world: rows.
+layout(location = 6) in vec4 inRow0;
+layout(location = 7) in vec4 inRow1;
+layout(location = 8) in vec4 inRow2;
 
 layout(location = 0) out vec3 outPosition;
 layout(location = 1) out vec3 outNormal;
@@ -34,13 +37,31 @@ vec2 slotCoordinates(uint slot) {
   return vec2(dot(data.row0.xyz, uv1), dot(data.row1.xyz, uv1));
 }
 
+vec3 fromOctahedral(vec2 p) {
+  vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+  float fold = max(-v.z, 0.0);
+  v.x -= v.x < 0.0 ? -fold : fold;
+  v.y -= v.y < 0.0 ? -fold : fold;
+  return normalize(v);
+}
+
 void main() {
-  vec4 position = draw.model * vec4(inPosition, 1.0);
+  vec4 local = vec4(inPosition, 1.0);
+  vec4 position = vec4(dot(inRow0, local), dot(inRow1, local), dot(inRow2, local), 1.0);
   gl_Position = frame.viewProjection * position;
   outPosition = position.xyz;
-  outNormal = draw.normal0.xyz * inNormal.x + draw.normal1.xyz * inNormal.y + draw.normal2.xyz * inNormal.z;
-  // A mirror turns cross(normal, tangent) round, so the bitangent's sign turns with it.
-  outTangent = vec4(mat3(draw.model) * inTangent.xyz, inTangent.w * draw.normal0.w);
+
+  // Normals turn as planes do: by the cofactors, which exist even where the transform has no inverse, scaled so that
+  // their squares stay in the range of a float. A mirror's cofactors point inwards, and it turns cross(normal, tangent)
+  // round: the sign of both turns with it.
+  vec3 largest = max(max(abs(inRow0.xyz), abs(inRow1.xyz)), abs(inRow2.xyz));
+  float size = max(max(largest.x, largest.y), largest.z);
+  mat3 rows = mat3(inRow0.xyz, inRow1.xyz, inRow2.xyz) * (size > 0.0 ? 1.0 / size : 0.0);
+  mat3 cofactors = mat3(cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1]));
+  float mirrored = dot(rows[0], cofactors[0]) < 0.0 ? -1.0 : 1.0;
+  outNormal = mirrored * (fromOctahedral(inNormal) * cofactors);
+  vec3 tangent = fromOctahedral(vec2(float(inTangent.x) / 32767.0, float(inTangent.y >> 1) / 16383.0));
+  outTangent = vec4(tangent * rows, (inTangent.y & 1) != 0 ? -mirrored : mirrored);
   outColor = inColor;
   for (uint slot = 0u; slot < SLOT_COUNT; ++slot) outTexCoords[slot] = slotCoordinates(slot);
 }

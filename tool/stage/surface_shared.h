@@ -31,6 +31,7 @@ const uint FEATURE_MASK = 128u;         // fragments below the cutoff are discar
 const uint FEATURE_VERTEX_COLOR = 256u; // without it colours are exact: interpolating a constant rounds
 const uint FEATURE_TRANSMISSION = 512u; // light passes through, tinted
 const uint FEATURE_ADDITIVE = 1024u;    // adds its light to what is behind it
+const uint FEATURE_FLAT = 2048u;        // there are no vertex normals: each triangle has that of its plane
 
 // What all draws of a frame share (std140).
 struct FrameData {
@@ -40,14 +41,6 @@ struct FrameData {
   vec4 toLight; // xyz: unit vector in the world
   vec4 ray;     // a pixel at (x, y) looks along (x * ray.x - ray.z, ray.w - y * ray.y, -1) in camera axes
   vec4 depth;   // a perspective camera's depths are depth.x + depth.y * gl_FragCoord.w
-};
-
-// One draw (std140).
-struct DrawData {
-  mat4 model;
-  vec4 normal0; // columns of the normal matrix; normal0.w: -1 where the transform mirrors, else 1
-  vec4 normal1;
-  vec4 normal2;
 };
 
 // Where a texture slot samples: (u, v, 1) times two rows, row0.w: which texture coordinates, 0 or 1.
@@ -73,7 +66,6 @@ struct MaterialData {
 
 #ifdef __cplusplus
 static_assert(sizeof(FrameData) == 192);
-static_assert(sizeof(DrawData) == 112);
 static_assert(sizeof(SlotData) == 32);
 static_assert(sizeof(MaterialData) == 256);
 #endif

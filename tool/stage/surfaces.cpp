@@ -1,7 +1,6 @@
 #include "surfaces.h"
 
 #include <array>
-#include <cstddef>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -11,15 +10,6 @@
 namespace vitrail::tool {
 
 namespace {
-
-constexpr std::array<VkVertexInputAttributeDescription, 6> kVertexAttributes{{
-    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
-    {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
-    {2, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
-    {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texCoord0)},
-    {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, texCoord1)},
-    {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, color)},
-}};
 
 Unique<VkPipelineLayout> makeLayout(const Surfaces& surfaces, const SurfaceProgram& program) {
   std::vector<VkDescriptorSetLayout> sets{surfaces.frameLayout(), surfaces.scene().textureLayout()};
@@ -36,7 +26,7 @@ SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const Gpu
     if (pipelines_.contains(draw.features)) continue;
     GraphicsPipelineInfo info;
     info.vertexShader = shaders::surface_vert;
-    info.vertices = {sizeof(Vertex), kVertexAttributes};
+    info.vertices = surfaceVertexLayout();
     info.depthTest = VK_COMPARE_OP_GREATER;
     describe(draw.features, info);
     info.layout = layout_.get();
@@ -55,18 +45,19 @@ Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
       frameSet_(
           gpu,
           {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT},
-           {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT},
            {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT}},
           "frame") {
   frameSet_.writeBuffer(0, viewBuffer_.get(), viewBuffer_.size());
-  frameSet_.writeBuffer(1, scene_.drawData().get(), sizeof(shaders::DrawData));
-  frameSet_.writeBuffer(2, scene_.materials().get(), sizeof(shaders::MaterialData));
+  frameSet_.writeBuffer(1, scene_.materials().get(), sizeof(shaders::MaterialData));
 }
 
 std::vector<SurfaceRun> Surfaces::runsOf(std::span<const GpuDraw> draws) {
   std::vector<SurfaceRun> runs;
   runs.reserve(draws.size());
-  for (std::uint32_t i = 0; i < draws.size(); ++i) runs.push_back({i, draws[i].firstIndex, draws[i].indexCount});
+  for (std::uint32_t i = 0; i < draws.size(); ++i) {
+    const GpuDraw& draw = draws[i];
+    runs.push_back({i, draw.firstIndex, draw.indexCount, draw.firstInstance, draw.instanceCount});
+  }
   return runs;
 }
 
@@ -77,8 +68,8 @@ void Surfaces::setView(const shaders::FrameData& view) {
 
 void Surfaces::cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout) const {
   const VkDescriptorSet set = frameSet_.set();
-  const std::array<std::uint32_t, 2> offsets{}; // of no draw
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set, 2, offsets.data());
+  const std::uint32_t offset = 0; // of no draw
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set, 1, &offset);
 }
 
 // Runs of one draw that follow each other bind nothing anew.
@@ -89,9 +80,7 @@ void Surfaces::cmdDraw(VkCommandBuffer commands, std::span<const GpuDraw> draws,
   if (set != VK_NULL_HANDLE) {
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1, &set, 0, nullptr);
   }
-  const VkBuffer vertices = scene_.vertices().get();
-  const VkDeviceSize offset = 0;
-  vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &offset);
+  scene_.cmdBindInstances(commands);
   vkCmdBindIndexBuffer(commands, indices != VK_NULL_HANDLE ? indices : scene_.indices().get(), 0, VK_INDEX_TYPE_UINT32);
   VkPipeline pipeline = VK_NULL_HANDLE;
   const GpuDraw* bound = nullptr;
@@ -102,15 +91,24 @@ void Surfaces::cmdDraw(VkCommandBuffer commands, std::span<const GpuDraw> draws,
       vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     }
     if (&draw != bound) {
-      const std::array<VkDescriptorSet, 2> sets{frameSet_.set(), draw.textures};
-      const std::array<std::uint32_t, 2> offsets{draw.dataOffset, draw.materialOffset};
-      vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 2, sets.data(), 2, offsets.data());
-      if (bound == nullptr || bound->frontFace != draw.frontFace) vkCmdSetFrontFace(commands, draw.frontFace);
-      if (bound == nullptr || bound->cullMode != draw.cullMode) vkCmdSetCullMode(commands, draw.cullMode);
+      cmdBind(commands, layout, draw, bound);
       bound = &draw;
     }
-    vkCmdDrawIndexed(commands, run.indexCount, 1, run.firstIndex, draw.vertexOffset, 0);
+    vkCmdDrawIndexed(commands, run.indexCount, run.instanceCount, run.firstIndex, 0, run.firstInstance);
   }
+}
+
+// Binds what a draw reads; of what `before`, if anything, has bound, what differs.
+void Surfaces::cmdBind(VkCommandBuffer commands, VkPipelineLayout layout, const GpuDraw& draw,
+                       const GpuDraw* before) const {
+  if (before == nullptr || before->materialOffset != draw.materialOffset) {
+    const std::array<VkDescriptorSet, 2> sets{frameSet_.set(), draw.textures};
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 2, sets.data(), 1,
+                            &draw.materialOffset);
+  }
+  if (before == nullptr || before->mesh != draw.mesh) scene_.streams().cmdBind(commands, draw.mesh);
+  if (before == nullptr || before->frontFace != draw.frontFace) vkCmdSetFrontFace(commands, draw.frontFace);
+  if (before == nullptr || before->cullMode != draw.cullMode) vkCmdSetCullMode(commands, draw.cullMode);
 }
 
 } // namespace vitrail::tool

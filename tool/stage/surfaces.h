@@ -46,11 +46,13 @@ class SurfacePipelines {
   std::map<std::uint32_t, Unique<VkPipeline>> pipelines_;
 };
 
-// A part of a draw: indices of it that are drawn together.
+// A part of a draw: indices and instances of it that are drawn together.
 struct SurfaceRun {
   std::uint32_t draw = 0; // index into GpuScene's opaque or transparent draws
   std::uint32_t firstIndex = 0;
   std::uint32_t indexCount = 0;
+  std::uint32_t firstInstance = 0; // among all instances, as GpuDraw's
+  std::uint32_t instanceCount = 1;
 };
 
 class Surfaces {
@@ -79,6 +81,8 @@ class Surfaces {
                VkBuffer indices = VK_NULL_HANDLE) const;
 
  private:
+  void cmdBind(VkCommandBuffer commands, VkPipelineLayout layout, const GpuDraw& draw, const GpuDraw* before) const;
+
   Gpu& gpu_;
   GpuScene scene_;
   std::vector<SurfaceRun> transparentRuns_;

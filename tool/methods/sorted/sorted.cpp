@@ -37,14 +37,21 @@ class Sorted final : public Method {
   std::vector<SurfaceRun> sortedRuns(const Surfaces& surfaces) const;
 
   SurfacePipelines surfaces_;
-  std::vector<glm::dvec3> middles_; // of the transparent draws, in the GPU's space
+  std::vector<SurfaceRun> runs_;    // the objects, in the order of submission
+  std::vector<glm::dvec3> middles_; // of each, in the GPU's space
 };
 
 Sorted::Sorted(const MethodHost& host, const MethodOptions& options)
     : surfaces_(makeBlendedSurfaces(host, options, "sorted")) {
-  for (const PlacedBox& placed : host.surfaces.scene().transparentBoxes()) {
-    const glm::dvec3 middle = 0.5 * (glm::dvec3(placed.box.min) + glm::dvec3(placed.box.max));
-    middles_.emplace_back(glm::dmat4(placed.model) * glm::dvec4(middle, 1.0));
+  const GpuScene& scene = host.surfaces.scene();
+  for (std::uint32_t d = 0; d < scene.transparentDraws().size(); ++d) {
+    const GpuDraw& draw = scene.transparentDraws()[d];
+    const Bounds box = boundsOf(host.scene.meshes[draw.mesh]);
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
+    for (std::uint32_t i = draw.firstInstance; i < draw.firstInstance + draw.instanceCount; ++i) {
+      middles_.emplace_back(glm::dmat4(scene.placeOf(host.scene, i)) * glm::dvec4(middle, 1.0));
+      runs_.push_back({d, draw.firstIndex, draw.indexCount, i, 1});
+    }
   }
 }
 
@@ -52,8 +59,8 @@ Sorted::Sorted(const MethodHost& host, const MethodOptions& options)
 std::vector<SurfaceRun> Sorted::sortedRuns(const Surfaces& surfaces) const {
   std::vector<std::pair<double, SurfaceRun>> order;
   order.reserve(middles_.size());
-  for (const SurfaceRun& run : surfaces.transparentRuns()) {
-    order.emplace_back(distanceFromCamera(surfaces.view(), middles_[run.draw]), run);
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    order.emplace_back(distanceFromCamera(surfaces.view(), middles_[i]), runs_[i]);
   }
   std::ranges::stable_sort(order, [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<SurfaceRun> runs;

@@ -5,7 +5,7 @@
 //
 // Cost: a sort of all transparent triangles on the host and an index buffer of 12 bytes a triangle written anew, once a
 // frame, n log n in their number, as the pass `sort`; then a draw of the surfaces as in `unsorted`, but with a draw
-// call wherever the object changes, up to one a triangle. The host keeps 36 bytes a triangle, and 12 a draw call.
+// call wherever the object changes, up to one a triangle. The host keeps 44 bytes a triangle, and 20 a draw call.
 //
 // What it gets wrong: triangles that pass through each other or overlap in a cycle, which have no order; and a triangle
 // whose centroid is nearer than another's while the part that is seen is farther, which large triangles beside small
@@ -52,6 +52,7 @@ class SortedTriangles final : public Method {
 
  private:
   void addTriangles(const MethodHost& host);
+  void addObject(const Mesh& mesh, const std::vector<std::uint32_t>& indices, const glm::dmat4& place);
   void sortTriangles(const shaders::FrameData& view);
   void writeIndices();
   void blend(Frame& frame, std::span<const SurfaceRun> runs);
@@ -59,8 +60,10 @@ class SortedTriangles final : public Method {
   SurfacePipelines surfaces_;
   // By triangle, in the order of submission:
   std::vector<glm::vec3> centroids_;   // in the GPU's space
-  std::vector<std::uint32_t> draws_;   // index into the transparent draws
-  std::vector<std::uint32_t> indices_; // three each, of the draw's vertices
+  std::vector<std::uint32_t> parents_; // index into objects_
+  std::vector<std::uint32_t> firsts_;  // index into indices_: where its own begin
+  std::vector<std::uint32_t> indices_; // of the objects' vertices
+  std::vector<SurfaceRun> objects_;    // the instances of the transparent draws
   // Of the present frame:
   std::vector<std::uint64_t> order_; // a key that sorts farthest first, above the triangle's number
   std::vector<SurfaceRun> runs_;
@@ -72,7 +75,7 @@ SortedTriangles::SortedTriangles(const MethodHost& host, const MethodOptions& op
   addTriangles(host);
   if (indices_.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw GpuError(fmt::format("the method sorted-triangles sorts at most {} triangles, not {}: use linked-list",
-                               std::numeric_limits<std::uint32_t>::max() / 3, draws_.size()));
+                               std::numeric_limits<std::uint32_t>::max() / 3, parents_.size()));
   }
   sorted_ = GpuBuffer(host.gpu, indices_.size() * sizeof(std::uint32_t), VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
                       MemoryKind::Upload, "sorted indices");
@@ -81,24 +84,32 @@ SortedTriangles::SortedTriangles(const MethodHost& host, const MethodOptions& op
 void SortedTriangles::addTriangles(const MethodHost& host) {
   const GpuScene& scene = host.surfaces.scene();
   for (std::uint32_t i = 0; i < scene.transparentDraws().size(); ++i) {
-    const Mesh& mesh = host.scene.meshes[host.scene.draws[scene.transparentDraws()[i].source].mesh];
+    const GpuDraw& draw = scene.transparentDraws()[i];
+    const Mesh& mesh = host.scene.meshes[draw.mesh];
     const std::vector<std::uint32_t> indices = scene.transparentIndices(host.scene, i);
-    const glm::dmat4 model(scene.transparentBoxes()[i].model);
-    for (std::size_t first = 0; first < indices.size(); first += 3) {
-      glm::dvec3 sum(0.0);
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        sum += glm::dvec3(mesh.vertices[indices[first + corner]].position);
-      }
-      centroids_.emplace_back(model * glm::dvec4(sum / 3.0, 1.0));
-      draws_.push_back(i);
+    for (std::uint32_t k = draw.firstInstance; k < draw.firstInstance + draw.instanceCount; ++k) {
+      addObject(mesh, indices, glm::dmat4(scene.placeOf(host.scene, k)));
+      objects_.push_back({i, 0, 0, k, 1});
     }
-    indices_.insert(indices_.end(), indices.begin(), indices.end());
   }
+}
+
+// Adds the triangles of the object that comes next.
+void SortedTriangles::addObject(const Mesh& mesh, const std::vector<std::uint32_t>& indices, const glm::dmat4& place) {
+  const std::size_t corners = cornersOf(mesh.primitive);
+  for (std::size_t first = 0; first < indices.size(); first += corners) {
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < corners; ++i) sum += glm::dvec3(mesh.positions[indices[first + i]]);
+    centroids_.emplace_back(place * glm::dvec4(sum / static_cast<double>(corners), 1.0));
+    parents_.push_back(static_cast<std::uint32_t>(objects_.size()));
+    firsts_.push_back(static_cast<std::uint32_t>(indices_.size() + first));
+  }
+  indices_.insert(indices_.end(), indices.begin(), indices.end());
 }
 
 // Equal distances stay in the order of submission.
 void SortedTriangles::sortTriangles(const shaders::FrameData& view) {
-  order_.resize(draws_.size());
+  order_.resize(parents_.size());
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const auto distance = static_cast<float>(distanceFromCamera(view, centroids_[i]));
     order_[i] = std::uint64_t{farthestFirst(distance)} << 32U | i;
@@ -112,10 +123,16 @@ void SortedTriangles::writeIndices() {
   std::uint32_t written = 0;
   for (const std::uint64_t key : order_) {
     const auto triangle = static_cast<std::uint32_t>(key);
-    if (runs_.empty() || runs_.back().draw != draws_[triangle]) runs_.push_back({draws_[triangle], written, 0});
-    std::copy_n(&indices_[std::size_t{triangle} * 3], 3, to + written);
-    runs_.back().indexCount += 3;
-    written += 3;
+    const SurfaceRun& object = objects_[parents_[triangle]];
+    if (runs_.empty() || runs_.back().firstInstance != object.firstInstance) {
+      runs_.push_back({object.draw, written, 0, object.firstInstance, 1});
+    }
+    const std::uint32_t next =
+        triangle + 1 < firsts_.size() ? firsts_[triangle + 1] : static_cast<std::uint32_t>(indices_.size());
+    const std::uint32_t corners = next - firsts_[triangle];
+    std::copy_n(&indices_[firsts_[triangle]], corners, to + written);
+    runs_.back().indexCount += corners;
+    written += corners;
   }
 }
 

@@ -47,7 +47,7 @@ Scene makeHairball(std::uint32_t count, std::uint32_t seed) {
   Scene scene;
   scene.name = "hairball";
   Mesh core = uvSphere(64, 32);
-  for (Vertex& vertex : core.vertices) vertex.position *= coreRadius;
+  for (glm::vec3& position : core.positions) position *= coreRadius;
   Material coreMaterial = glassMaterial(linearFromSrgb({0.25F, 0.12F, 0.08F}), 0.5F, 0.4F);
   coreMaterial.name = "core";
   const std::uint32_t coreMesh = addMesh(scene, std::move(core));

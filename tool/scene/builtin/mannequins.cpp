@@ -71,7 +71,7 @@ struct Body {
 Mesh limb(float topRadius, float bottomRadius, float length) {
   Mesh mesh = capsule(topRadius, bottomRadius, 0.5F * (length - topRadius - bottomRadius), 20, 6);
   const float shift = -topRadius - 0.5F * (length - topRadius - bottomRadius);
-  for (Vertex& vertex : mesh.vertices) vertex.position.y += shift;
+  for (glm::vec3& position : mesh.positions) position.y += shift;
   return mesh;
 }
 

@@ -47,7 +47,7 @@ void addLatheRow(Mesh& mesh, const ProfilePoint& point, float v, std::uint32_t s
     const float column = static_cast<float>(i) + (onAxis ? 0.5F : 0.0F);
     vertex.texCoord0 = {column / static_cast<float>(segments), v};
     vertex.texCoord1 = vertex.texCoord0;
-    mesh.vertices.push_back(vertex);
+    mesh.add(vertex);
   }
 }
 
@@ -155,7 +155,7 @@ Mesh quad(float halfWidth, float halfHeight) {
     vertex.position = {(2.0F * corner.x - 1.0F) * halfWidth, (1.0F - 2.0F * corner.y) * halfHeight, 0.0F};
     vertex.texCoord0 = corner;
     vertex.texCoord1 = corner;
-    mesh.vertices.push_back(vertex);
+    mesh.add(vertex);
   }
   mesh.indices = {0, 1, 2, 0, 2, 3};
   return mesh;
@@ -169,7 +169,7 @@ Mesh tube(std::span<const glm::vec3> curve, std::span<const float> radii, std::u
     vertex.position = position;
     vertex.normal = glm::normalize(normal);
     vertex.tangent = glm::vec4(tangent, 1.0F);
-    mesh.vertices.push_back(vertex);
+    mesh.add(vertex);
   };
   for (std::size_t k = 0; k < curve.size(); ++k) {
     const Frame& frame = frames[k];
@@ -180,7 +180,7 @@ Mesh tube(std::span<const glm::vec3> curve, std::span<const float> radii, std::u
       addVertex(curve[k] + radii[k] * outward, outward, around);
     }
   }
-  const auto firstTip = static_cast<std::uint32_t>(mesh.vertices.size());
+  const auto firstTip = static_cast<std::uint32_t>(mesh.vertexCount());
   addVertex(curve.front() - radii.front() * frames.front().tangent, -frames.front().tangent, frames.front().normal);
   addVertex(curve.back() + radii.back() * frames.back().tangent, frames.back().tangent, frames.back().normal);
 
@@ -199,8 +199,8 @@ Mesh tube(std::span<const glm::vec3> curve, std::span<const float> radii, std::u
 }
 
 void append(Mesh& mesh, const Mesh& part) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+  const auto first = static_cast<std::uint32_t>(mesh.vertexCount());
+  for (std::size_t i = 0; i < part.vertexCount(); ++i) mesh.add(part.vertex(i));
   for (const std::uint32_t index : part.indices) mesh.indices.push_back(first + index);
 }
 

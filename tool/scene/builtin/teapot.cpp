@@ -130,15 +130,15 @@ Vertex evaluate(const Patch& patch, float u, float v, float side) {
 
 // side is +1 where the cross product of the directions of u and v points outward, else -1.
 void addPatch(Mesh& mesh, const Patch& patch, float side, std::uint32_t steps) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const auto first = static_cast<std::uint32_t>(mesh.vertexCount());
   const auto at = [steps](std::uint32_t i) { return static_cast<float>(i) / static_cast<float>(steps); };
   for (std::uint32_t j = 0; j <= steps; ++j) {
-    for (std::uint32_t i = 0; i <= steps; ++i) mesh.vertices.push_back(evaluate(patch, at(i), at(j), side));
+    for (std::uint32_t i = 0; i <= steps; ++i) mesh.add(evaluate(patch, at(i), at(j), side));
   }
   const auto addTriangle = [&mesh, side](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    if (mesh.vertices[a].position == mesh.vertices[b].position) return; // at a pole
-    if (mesh.vertices[b].position == mesh.vertices[c].position) return;
-    if (mesh.vertices[c].position == mesh.vertices[a].position) return;
+    if (mesh.positions[a] == mesh.positions[b]) return; // at a pole
+    if (mesh.positions[b] == mesh.positions[c]) return;
+    if (mesh.positions[c] == mesh.positions[a]) return;
     if (side > 0.0F) {
       mesh.indices.insert(mesh.indices.end(), {a, b, c});
     } else {

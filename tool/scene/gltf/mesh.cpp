@@ -138,19 +138,27 @@ std::vector<std::uint32_t> readTriangles(const GltfDocument& document, const tin
   return triangleList(indices, topology);
 }
 
-void finish(Mesh& mesh, const AccessorIndices& attributes, const Material& material) {
-  dropDegenerateTriangles(mesh);
-  dropUnusedVertices(mesh);
+// Keeps of the vertices what the mesh has. Tangents mean nothing without the normals that they were made for.
+void finish(Mesh& mesh, const std::vector<Vertex>& vertices, const AccessorIndices& attributes,
+            const Material& material) {
+  for (const Vertex& vertex : vertices) mesh.add(vertex);
+  std::vector<glm::vec3> normals;
+  std::vector<glm::vec4> tangents;
   const bool hasNormals = attributes.contains("NORMAL");
+  const bool hasTangents = hasNormals && attributes.contains("TANGENT");
   if (hasNormals)
-    repairNormals(mesh);
-  else
-    makeFlatNormals(mesh);
-  // Tangents mean nothing without the normals that they were made for.
-  if (hasNormals && attributes.contains("TANGENT"))
-    repairTangents(mesh);
-  else if (material.normalTexture.image >= 0)
-    makeTangents(mesh, material.normalTexture);
+    for (const Vertex& vertex : vertices) normals.push_back(vertex.normal);
+  if (hasTangents)
+    for (const Vertex& vertex : vertices) tangents.push_back(vertex.tangent);
+  mesh.normals.clear();
+  mesh.tangents.clear();
+  dropDegenerateTriangles(mesh);
+  if (hasNormals) setRepairedNormals(mesh, std::move(normals));
+  if (hasTangents) setRepairedTangents(mesh, tangents);
+  dropUnusedVertices(mesh);
+  if (hasTangents || material.normalTexture.image < 0) return;
+  if (!hasNormals) makeFlatNormals(mesh);
+  makeTangents(mesh, material.normalTexture);
 }
 
 } // namespace
@@ -175,16 +183,16 @@ Mesh GltfMeshReader::read(std::size_t mesh, std::size_t primitive, const GltfMat
   if (!topology || !source.attributes.contains("POSITION")) return result;
 
   VertexReader reader(document_, where);
-  result.vertices = reader.read(source.attributes, material);
-  take(result.vertices.size());
+  std::vector<Vertex> vertices = reader.read(source.attributes, material);
+  take(vertices.size());
   for (std::size_t i = 0; i < std::min(source.targets.size(), pose.weights.size()); ++i)
     if (pose.weights[i] != 0.0)
-      reader.morph(source.targets[i], material, static_cast<float>(pose.weights[i]), result.vertices);
-  result.indices = readTriangles(document_, source, *topology, result.vertices.size(), where);
+      reader.morph(source.targets[i], material, static_cast<float>(pose.weights[i]), vertices);
+  result.indices = readTriangles(document_, source, *topology, vertices.size(), where);
   take(result.indices.size());
-  if (pose.skin) applySkin(document_, pose.nodes, *pose.skin, source, where, result);
-  repairAttributes(result.vertices, where);
-  finish(result, source.attributes, material.material);
+  if (pose.skin) applySkin(document_, pose.nodes, *pose.skin, source, where, vertices, result.indices);
+  repairAttributes(vertices, where);
+  finish(result, vertices, source.attributes, material.material);
   return result;
 }
 

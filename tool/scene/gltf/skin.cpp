@@ -84,12 +84,13 @@ glm::dmat3 cofactors(const glm::dmat3& m) {
 } // namespace
 
 void applySkin(const GltfDocument& document, std::span<const glm::dmat4> nodes, std::size_t skin,
-               const tinygltf::Primitive& primitive, const std::string& where, Mesh& mesh) {
+               const tinygltf::Primitive& primitive, const std::string& where, std::vector<Vertex>& vertices,
+               std::vector<std::uint32_t>& indices) {
   const std::vector<glm::dmat4> joints = jointMatrices(document, nodes, skin);
-  const std::vector<InfluenceSet> sets = readInfluences(document, primitive, where, mesh.vertices.size());
-  std::vector<bool> mirrored(mesh.vertices.size());
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    Vertex& vertex = mesh.vertices[i];
+  const std::vector<InfluenceSet> sets = readInfluences(document, primitive, where, vertices.size());
+  std::vector<bool> mirrored(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    Vertex& vertex = vertices[i];
     const glm::dmat4 matrix = blendedMatrix(sets, joints, i, where);
     const glm::dmat3 linear(matrix);
     const double sign = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
@@ -99,8 +100,8 @@ void applySkin(const GltfDocument& document, std::span<const glm::dmat4> nodes, 
     vertex.tangent = glm::vec4(glm::vec3(glm::normalize(linear * glm::dvec3(vertex.tangent))),
                                vertex.tangent.w * static_cast<float>(sign));
   }
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-    if (mirrored[mesh.indices[i]]) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+    if (mirrored[indices[i]]) std::swap(indices[i + 1], indices[i + 2]);
 }
 
 } // namespace vitrail::tool

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -12,11 +13,12 @@
 
 namespace vitrail::tool {
 
-// Moves the mesh, whose vertices are the primitive's in the file's order, to where the skin's joints carry it in the
+// Moves vertices, which are the primitive's in the file's order, to where the skin's joints carry it in the
 // world. `nodes` holds all nodes' world transforms. Up to eight joints move a vertex (JOINTS_0 and JOINTS_1); their
 // weights are normalised, and a vertex without any stays where it is. Triangles that the skin turns inside out are
 // turned back. `where` names the primitive in messages. Throws LoadError.
 void applySkin(const GltfDocument& document, std::span<const glm::dmat4> nodes, std::size_t skin,
-               const tinygltf::Primitive& primitive, const std::string& where, Mesh& mesh);
+               const tinygltf::Primitive& primitive, const std::string& where, std::vector<Vertex>& vertices,
+               std::vector<std::uint32_t>& indices);
 
 } // namespace vitrail::tool

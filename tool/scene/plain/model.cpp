@@ -15,7 +15,7 @@ namespace vitrail::tool {
 namespace {
 
 bool isTranslucent(const Mesh& mesh) {
-  return std::ranges::any_of(mesh.vertices, [](const Vertex& vertex) { return vertex.color.a < 1.0F; });
+  return std::ranges::any_of(mesh.colors, [](std::uint64_t color) { return unpackColor(color).a < 1.0F; });
 }
 
 bool isTranslucent(const Image& image) {
@@ -35,14 +35,14 @@ Material plainMaterial(bool colored) {
   return material;
 }
 
-void addPlainMesh(Scene& scene, Mesh mesh, NormalsFrom normals, Material material) {
+void addPlainMesh(Scene& scene, Mesh mesh, NormalsFrom normals, Material material, std::vector<glm::vec3> given) {
   constexpr float crease = 0.7853982F;
   dropDegenerateTriangles(mesh);
-  dropUnusedVertices(mesh);
   if (mesh.indices.empty()) return;
+  if (normals == NormalsFrom::File) setRepairedNormals(mesh, std::move(given));
+  dropUnusedVertices(mesh);
   switch (normals) {
     case NormalsFrom::File:
-      repairNormals(mesh);
       turnTrianglesToNormals(mesh);
       break;
     case NormalsFrom::SharedCorners:

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -27,7 +28,8 @@ enum class NormalsFrom {
 
 // Makes the mesh keep scene.h's promises and adds it to the scene with its material, at the origin. Blends the material
 // where vertices or its base colour texture are translucent. A mesh without area adds nothing.
-void addPlainMesh(Scene& scene, Mesh mesh, NormalsFrom normals, Material material);
+// `given`: the normals of NormalsFrom::File, one a vertex.
+void addPlainMesh(Scene& scene, Mesh mesh, NormalsFrom normals, Material material, std::vector<glm::vec3> given = {});
 
 // Reads textures beside a model, each once. One that is missing or damaged gives no texture, and so the plain colour:
 // such files are often passed on without their textures.

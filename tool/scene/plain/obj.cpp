@@ -103,6 +103,7 @@ struct Part {
   Mesh mesh;
   std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
   bool hasNormals = false;
+  std::vector<glm::vec3> normals; // of the vertices
 };
 
 class ObjReader {
@@ -117,7 +118,7 @@ class ObjReader {
     for (const std::string& name : order_) {
       Part& part = parts_.at(name);
       addPlainMesh(scene, std::move(part.mesh), part.hasNormals ? NormalsFrom::File : NormalsFrom::Places,
-                   materialOf(name, scene, textures));
+                   materialOf(name, scene, textures), std::move(part.normals));
     }
     requireDrawable(scene);
     return scene;
@@ -165,7 +166,7 @@ class ObjReader {
   void readFace(TextLines& lines, Part& part) {
     outline_.clear();
     while (lines.more()) outline_.push_back(vertexOf(readCorner(lines), part));
-    addPolygon(outline_, part.mesh.vertices, part.mesh.indices);
+    addPolygon(outline_, part.mesh.positions, part.mesh.indices);
   }
 
   // "7", "7/2", "7/2/3" or "7//3".
@@ -199,18 +200,17 @@ class ObjReader {
   }
 
   std::uint32_t vertexOf(const Corner& corner, Part& part) const {
-    const auto [place, isNew] =
-        part.vertices.try_emplace(corner, static_cast<std::uint32_t>(part.mesh.vertices.size()));
+    const auto [place, isNew] = part.vertices.try_emplace(corner, static_cast<std::uint32_t>(part.mesh.vertexCount()));
     if (!isNew) return place->second;
     Vertex vertex;
     vertex.position = attributes_.positions[static_cast<std::size_t>(corner.position)];
     if (!attributes_.colors.empty()) vertex.color = attributes_.colors[static_cast<std::size_t>(corner.position)];
     if (corner.texCoord >= 0) vertex.texCoord0 = attributes_.texCoords[static_cast<std::size_t>(corner.texCoord)];
     // A corner without a normal gets its face's, if others have one.
-    vertex.normal = glm::vec3(0.0F);
-    if (corner.normal >= 0) vertex.normal = attributes_.normals[static_cast<std::size_t>(corner.normal)];
+    part.normals.push_back(corner.normal >= 0 ? attributes_.normals[static_cast<std::size_t>(corner.normal)]
+                                              : glm::vec3(0.0F));
     part.hasNormals = part.hasNormals || corner.normal >= 0;
-    part.mesh.vertices.push_back(vertex);
+    part.mesh.add(vertex);
     return place->second;
   }
 

@@ -286,12 +286,13 @@ class PlyReader {
     }
     std::size_t begin = 0;
     for (const std::uint32_t size : polygonSizes_) {
-      addPolygon(std::span(corners_).subspan(begin, size), mesh_.vertices, mesh_.indices);
+      addPolygon(std::span(corners_).subspan(begin, size), mesh_.positions, mesh_.indices);
       begin += size;
     }
     return std::move(mesh_);
   }
 
+  std::vector<glm::vec3> normals() { return std::move(normals_); }
   bool hasNormals() const { return has(Slot::NormalX) && has(Slot::NormalY) && has(Slot::NormalZ); }
   bool hasColors() const { return has(Slot::Red) && has(Slot::Green) && has(Slot::Blue); }
   bool hasTexCoords() const { return has(Slot::U) && has(Slot::V); }
@@ -323,7 +324,7 @@ class PlyReader {
       present_[static_cast<std::size_t>(slots.back())] = true;
     }
     if (!has(Slot::X) || !has(Slot::Y) || !has(Slot::Z)) throw LoadError("the PLY vertices have no x, y and z");
-    mesh_.vertices.reserve(static_cast<std::size_t>(element.count));
+    mesh_.positions.reserve(static_cast<std::size_t>(element.count));
     for (std::uint64_t i = 0; i < element.count; ++i) {
       const auto where = [i] { return fmt::format("vertex {}", i); };
       std::array<double, slotCount> values{};
@@ -354,7 +355,9 @@ class PlyReader {
     // v grows upwards in these files and downwards in glTF.
     const glm::vec2 uv(value(Slot::U), 1.0F - value(Slot::V));
     if (std::isfinite(uv.x) && std::isfinite(uv.y)) vertex.texCoord0 = uv;
-    mesh_.vertices.push_back(vertex);
+    normals_.push_back(vertex.normal);
+    vertex.normal = Vertex{}.normal;
+    mesh_.add(vertex);
   }
 
   // Faces, triangle strips, and elements that are of no interest.
@@ -415,6 +418,7 @@ class PlyReader {
   std::uint64_t vertexCount_ = 0;
   std::array<bool, slotCount> present_{};
   Mesh mesh_;
+  std::vector<glm::vec3> normals_;     // of the vertices
   std::vector<std::uint32_t> corners_; // of all polygons, one after the other
   std::vector<std::uint32_t> polygonSizes_;
 };
@@ -431,7 +435,7 @@ Scene loadPly(std::span<const std::byte> file, const std::filesystem::path& base
   Material material = plainMaterial(reader.hasColors() || texture.image >= 0);
   material.baseColorTexture = texture;
   addPlainMesh(scene, std::move(mesh), reader.hasNormals() ? NormalsFrom::File : NormalsFrom::SharedCorners,
-               std::move(material));
+               std::move(material), reader.normals());
   requireDrawable(scene);
   return scene;
 }

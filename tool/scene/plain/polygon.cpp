@@ -8,13 +8,13 @@ namespace vitrail::tool {
 namespace {
 
 // The corners in a plane, turned so that the polygon runs counter-clockwise.
-std::vector<glm::dvec2> flatten(std::span<const std::uint32_t> corners, std::span<const Vertex> vertices) {
+std::vector<glm::dvec2> flatten(std::span<const std::uint32_t> corners, std::span<const glm::vec3> positions) {
   // Newell's method: the area vector of a closed line.
   glm::dvec3 area(0.0);
-  const glm::dvec3 origin(vertices[corners[0]].position);
+  const glm::dvec3 origin(positions[corners[0]]);
   for (std::size_t i = 0; i < corners.size(); ++i)
-    area += glm::cross(glm::dvec3(vertices[corners[i]].position) - origin,
-                       glm::dvec3(vertices[corners[(i + 1) % corners.size()]].position) - origin);
+    area += glm::cross(glm::dvec3(positions[corners[i]]) - origin,
+                       glm::dvec3(positions[corners[(i + 1) % corners.size()]]) - origin);
   const glm::dvec3 size = glm::abs(area);
   const int drop = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
   const int u = (drop + 1) % 3;
@@ -23,7 +23,7 @@ std::vector<glm::dvec2> flatten(std::span<const std::uint32_t> corners, std::spa
   std::vector<glm::dvec2> points;
   points.reserve(corners.size());
   for (const std::uint32_t corner : corners) {
-    const glm::dvec3 p = glm::dvec3(vertices[corner].position) - origin;
+    const glm::dvec3 p = glm::dvec3(positions[corner]) - origin;
     points.emplace_back(turned ? -p[u] : p[u], p[v]);
   }
   return points;
@@ -61,7 +61,7 @@ bool isEar(std::span<const glm::dvec2> points, std::span<const std::size_t> left
 
 } // namespace
 
-void addPolygon(std::span<const std::uint32_t> corners, std::span<const Vertex> vertices,
+void addPolygon(std::span<const std::uint32_t> corners, std::span<const glm::vec3> positions,
                 std::vector<std::uint32_t>& triangles) {
   if (corners.size() < 3) return;
   const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
@@ -69,7 +69,7 @@ void addPolygon(std::span<const std::uint32_t> corners, std::span<const Vertex> 
   };
   // Looking for ears takes time with the cube of the number of corners.
   constexpr std::size_t mostClipped = 300;
-  const std::vector<glm::dvec2> points = flatten(corners, vertices);
+  const std::vector<glm::dvec2> points = flatten(corners, positions);
   std::vector<std::size_t> left(corners.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
   if (corners.size() > 3 && corners.size() <= mostClipped && !isConvex(points)) {

@@ -28,12 +28,12 @@ constexpr std::size_t facetBytes = 50; // normal, 3 corners, 16 spare bits
 void addCorner(Mesh& mesh, const glm::vec3& position, const glm::vec4& color) {
   for (int c = 0; c < 3; ++c)
     if (!std::isfinite(position[c]))
-      throw LoadError(fmt::format("facet {}: a corner is not finite", mesh.vertices.size() / 3));
+      throw LoadError(fmt::format("facet {}: a corner is not finite", mesh.vertexCount() / 3));
   Vertex vertex;
   vertex.position = position;
   vertex.color = color;
-  mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
-  mesh.vertices.push_back(vertex);
+  mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertexCount()));
+  mesh.add(vertex);
 }
 
 glm::vec4 fiveBitColor(std::uint32_t r, std::uint32_t g, std::uint32_t b, float alpha) {
@@ -79,7 +79,7 @@ class FacetColors {
 Scene loadBinary(std::span<const std::byte> file, std::uint32_t facets) {
   FacetColors colors(file);
   Mesh mesh;
-  mesh.vertices.reserve(std::size_t{3} * facets);
+  mesh.positions.reserve(std::size_t{3} * facets);
   mesh.indices.reserve(std::size_t{3} * facets);
   for (std::size_t i = 0; i < facets; ++i) {
     const std::size_t begin = facetsBegin + i * facetBytes;
@@ -93,8 +93,7 @@ Scene loadBinary(std::span<const std::byte> file, std::uint32_t facets) {
       addCorner(mesh, position, color);
     }
   }
-  if (!colors.any())
-    for (Vertex& vertex : mesh.vertices) vertex.color = glm::vec4(1.0F);
+  if (!colors.any()) mesh.colors.clear();
   Scene scene;
   addPlainMesh(scene, std::move(mesh), NormalsFrom::Places, plainMaterial(colors.any()));
   return scene;
