@@ -15,6 +15,8 @@ import pathlib
 import struct
 import zlib
 
+from streams import stream
+
 HERE = pathlib.Path(__file__).resolve().parent
 GOOD = HERE / "good"
 BAD = HERE / "bad"
@@ -392,6 +394,250 @@ def write_good_transmission():
     m.save("transmission.gltf")
 
 
+def ktx2(vulkan_format, width, height, pixels, scheme=0, packed=None, model=1, key_values=()):
+    """A KTX 2.0 texture of one level; `model` is the colour model of its data format descriptor."""
+    descriptor = struct.pack("<IIHHBBBB", 4 + 24, 0, 2, 24, model, 1, 1, 0) + b"\0" * 12
+    words = b""
+    for key, value in key_values:
+        pair = key.encode() + b"\0" + value.encode() + b"\0"
+        words += struct.pack("<I", len(pair)) + pair + b"\0" * (-len(pair) % 4)
+    descriptor_at = 80 + 24
+    words_at = descriptor_at + len(descriptor)
+    data_at = (words_at + len(words) + 15) // 16 * 16
+    data = pixels if packed is None else packed
+    header = struct.pack("<9I", vulkan_format, 1, width, height, 0, 0, 1, 1, scheme)
+    index = struct.pack("<4I2Q", descriptor_at, len(descriptor), words_at, len(words), 0, 0)
+    level = struct.pack("<3Q", data_at, len(data), len(pixels))
+    front = b"\xabKTX 20\xbb\r\n\x1a\n" + header + index + level + descriptor + words
+    return front.ljust(data_at, b"\0") + data
+
+
+def zstd_stored(data):
+    """A Zstandard frame of one block that is not compressed, of fewer than 256 bytes."""
+    return b"\x28\xb5\x2f\xfd\x20" + bytes([len(data)]) + struct.pack("<I", len(data) << 3 | 1)[:3] + data
+
+
+def draco_quad(name, **primitive):
+    """A primitive that is compressed as a whole, whose accessors have no data of their own."""
+    m = Model()
+    m.doc["extensionsUsed"] = ["KHR_draco_mesh_compression"]
+
+    def accessor(kind, component, count=4, **extra):
+        return m.put("accessors", {"componentType": component, "count": count, "type": kind, **extra})
+
+    view = m.view(stream(name))
+    ids = {"POSITION": 7, "NORMAL": 2, "TEXCOORD_0": 5, "COLOR_0": 3}
+    m.mesh(
+        {
+            "POSITION": accessor("VEC3", FLOAT),
+            "NORMAL": accessor("VEC3", FLOAT),
+            "TEXCOORD_0": accessor("VEC2", FLOAT),
+            "COLOR_0": accessor("VEC4", UBYTE, normalized=True),
+        },
+        indices=accessor("SCALAR", USHORT, 6),
+        extensions={"KHR_draco_mesh_compression": {"bufferView": view, "attributes": ids}},
+        **primitive,
+    )
+    return m
+
+
+def meshopt_view(m, name, mode, count, stride, extension="EXT_meshopt_compression", **extra):
+    """A buffer view whose bytes are only in its compressed form, in buffer 0; buffer 1 is the fallback."""
+    data = stream(name)
+    m.data += b"\0" * (-len(m.data) % 4)
+    compressed = {
+        "buffer": 0,
+        "byteOffset": len(m.data),
+        "byteLength": len(data),
+        "byteStride": stride,
+        "count": count,
+        "mode": mode,
+        **extra,
+    }
+    m.data += data
+    view = {"buffer": 1, "byteOffset": 0, "byteLength": count * stride, "extensions": {extension: compressed}}
+    if mode == "ATTRIBUTES":
+        view["byteStride"] = stride
+    return m.put("bufferViews", view)
+
+
+def meshopt_quad(extension="EXT_meshopt_compression", filtered=False):
+    m = Model()
+    m.doc["extensionsUsed"] = m.doc["extensionsRequired"] = [extension, "KHR_mesh_quantization"]
+
+    def accessor(view, kind, component, count=4, **extra):
+        return m.put("accessors", {"bufferView": view, "componentType": component, "count": count, "type": kind, **extra})
+
+    if filtered:
+        positions = meshopt_view(
+            m, "MESHOPT_POSITIONS_EXPONENTIAL", "ATTRIBUTES", 4, 12, extension, filter="EXPONENTIAL"
+        )
+        indices = meshopt_view(m, "MESHOPT_INDICES", "INDICES", 4, 4, extension)
+    else:
+        positions = meshopt_view(m, "MESHOPT_POSITIONS", "ATTRIBUTES", 4, 12, extension)
+        indices = meshopt_view(m, "MESHOPT_TRIANGLES", "TRIANGLES", 6, 2, extension)
+    normals = meshopt_view(m, "MESHOPT_NORMALS_OCTAHEDRAL", "ATTRIBUTES", 4, 4, extension, filter="OCTAHEDRAL")
+    m.mesh(
+        {
+            "POSITION": accessor(positions, "VEC3", FLOAT),
+            "NORMAL": accessor(normals, "VEC3", BYTE, normalized=True),
+        },
+        indices=accessor(indices, "SCALAR", UINT if filtered else USHORT, 4 if filtered else 6),
+        mode=5 if filtered else 4,
+    )
+    return m
+
+
+def with_fallback(m, extension="EXT_meshopt_compression"):
+    doc = m.finished()
+    doc["buffers"].append({"byteLength": 1000, "extensions": {extension: {"fallback": True}}})
+    return doc
+
+
+def write_good_compressed():
+    draco_quad("DRACO_EDGEBREAKER").save("draco_edgebreaker.gltf")
+    m = draco_quad("DRACO_SEQUENTIAL", mode=5)
+    m.doc["extensionsRequired"] = m.doc["extensionsUsed"]
+    m.save("draco_sequential.gltf")
+    # Damaged, but the same triangle stands beside it.
+    m = triangle()
+    view = m.view(stream("DRACO_EDGEBREAKER")[:60])
+    m.doc["extensionsUsed"] = ["KHR_draco_mesh_compression"]
+    m.doc["meshes"][0]["primitives"][0]["extensions"] = {
+        "KHR_draco_mesh_compression": {"bufferView": view, "attributes": {"POSITION": 7}}
+    }
+    m.save("draco_damaged_with_data.gltf")
+
+    write_json(GOOD / "meshopt.gltf", with_fallback(meshopt_quad()))
+    write_json(GOOD / "meshopt_filters.gltf", with_fallback(meshopt_quad(filtered=True)))
+    khronos = "KHR_meshopt_compression"
+    write_json(GOOD / "meshopt_khronos.gltf", with_fallback(meshopt_quad(khronos), khronos))
+    m = triangle()
+    rotations = meshopt_view(m, "MESHOPT_ROTATIONS_QUATERNION", "ATTRIBUTES", 4, 8, filter="QUATERNION")
+    m.put(
+        "accessors",
+        {"bufferView": rotations, "componentType": SHORT, "count": 4, "type": "VEC4", "normalized": True},
+    )
+    write_json(GOOD / "meshopt_rotations.gltf", with_fallback(m))
+
+
+def pictured(picture, mime="image/png", extension=None):
+    """A quad with a base colour factor of (1, 0.5, 1, 0.5) and a texture."""
+    m = quad(material=0)
+    if picture is not None:
+        m.doc["images"] = [{"name": "skin", "uri": data_uri(picture, mime) if isinstance(picture, bytes) else picture}]
+    m.doc["textures"] = [{"extensions": {extension: {"source": 0}}} if extension else {"source": 0}]
+    m.doc["materials"] = [
+        {
+            "alphaMode": "BLEND",
+            "pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 1, 0.5], "baseColorTexture": {"index": 0}},
+        }
+    ]
+    if extension:
+        m.doc["extensionsUsed"] = [extension]
+    return m
+
+
+def gif(width, height, palette, codes):
+    """A GIF whose pixels are `codes`, of 2 bits each: a clear code goes before each of them."""
+    bits = 0
+    count = 0
+    for code in [c for pixel in codes for c in (4, pixel)] + [5]:
+        bits |= code << count
+        count += 3
+    data = bits.to_bytes((count + 7) // 8, "little")
+    screen = b"GIF89a" + struct.pack("<HHBBB", width, height, 0x81, 0, 0) + bytes(palette).ljust(12, b"\0")
+    image = b"," + struct.pack("<HHHHB", 0, 0, width, height, 0) + b"\2" + bytes([len(data)]) + data + b"\0"
+    return screen + image + b";"
+
+
+def write_good_images():
+    pixels = bytes([255, 0, 0, 255, 0, 255, 0, 128])
+    webp = stream("WEBP_LOSSLESS")
+    plain = ktx2(37, 2, 1, pixels)
+    turned = ktx2(9, 1, 2, bytes([10, 20]), key_values=[("KTXorientation", "ru"), ("KTXswizzle", "rrr1")])
+    for name, picture, extension in (
+        ("image_webp", webp, "EXT_texture_webp"),
+        ("image_webp_plain_source", webp, None),
+        ("image_webp_lossy", stream("WEBP_LOSSY"), "EXT_texture_webp"),
+        ("image_ktx2", plain, "KHR_texture_basisu"),
+        ("image_ktx2_zlib", ktx2(37, 2, 1, pixels, 3, zlib.compress(pixels)), "KHR_texture_basisu"),
+        ("image_ktx2_zstd", ktx2(43, 2, 1, pixels, 2, zstd_stored(pixels)), None),
+        ("image_ktx2_grey", turned, None),
+        ("image_ktx2_16", ktx2(77, 1, 1, struct.pack("<2H", 32896, 65535)), None),
+        ("image_ktx2_bgr", ktx2(30, 1, 1, bytes([1, 2, 3])), None),
+        ("image_gif", gif(2, 1, [255, 0, 0, 0, 255, 0], [0, 1]), None),
+    ):
+        m = pictured(picture, "image/any", extension)
+        if extension:
+            m.doc["extensionsRequired"] = [extension]
+        m.save(f"{name}.gltf")
+    # An image that cannot be read, and the plain one beside it.
+    m = pictured(ktx2(0, 4, 4, bytes(16), model=166), "image/ktx2", "KHR_texture_basisu")
+    m.put("images", {"uri": data_uri(RED_GREEN, "image/png")})
+    m.doc["textures"][0]["source"] = 1
+    m.save("image_basisu_fallback.gltf")
+
+
+def write_good_without_images():
+    """Each is drawn without its image, with the warning that load_missing_images_test.cpp states."""
+
+    def png_with(at, data):
+        changed = bytearray(RED_GREEN)
+        changed[at : at + len(data)] = data
+        changed[29:33] = struct.pack(">I", zlib.crc32(bytes(changed[12:29])))
+        return bytes(changed)
+
+    table = bytes([0] + [17] * 16 + [0] * 272)
+    jpeg = b"\xff\xd8\xff\xc4" + struct.pack(">H", 2 + len(table)) + table
+    uastc = ktx2(0, 4, 4, bytes(16), model=166)
+    pictures = {
+        "garbage": b"no picture at all",
+        "huge": png_with(16, struct.pack(">II", 16000, 16000)),
+        "jpeg_table": jpeg,
+        "over_limit": png_with(16, struct.pack(">II", 100000, 2)),
+        "truncated": RED_GREEN[:50],
+        "missing": "not-there.png",
+        "remote": "https://example.org/skin.png",
+        "outside": "/dev/zero",
+        "data_uri": "data:image/png;base64,AAAA!!!!AAAA",
+        "avif": b"\0\0\0\x20ftypavif" + bytes(20),
+        "dds": b"DDS " + bytes(124),
+        "webp_damaged": stream("WEBP_LOSSLESS")[:30],
+        "webp_huge": stream("WEBP_LOSSLESS")[:21] + b"\xff\xff\xff\x1f" + stream("WEBP_LOSSLESS")[25:],
+        "basisu_etc1s": ktx2(0, 4, 4, bytes(16), 1, b"", 163),
+        "ktx2_cut_off": ktx2(37, 2, 1, bytes(8))[:-4],
+        "ktx2_header": ktx2(37, 2, 1, bytes(8))[:70],
+        "ktx2_huge": ktx2(37, 16384, 16384, bytes(8)),
+        "ktx2_layers": ktx2(37, 2, 1, bytes(100000), 3, zlib.compress(bytes(100000))),
+        "ktx2_pixels": ktx2(37, 2, 1, bytes(4)),
+        "ktx2_zlib": ktx2(37, 2, 1, bytes(8), 3, b"no zlib"),
+        "ktx2_zstd": ktx2(37, 2, 1, bytes(8), 2, b"no Zstandard"),
+        "ktx2_scheme": ktx2(37, 2, 1, bytes(8), 9),
+        "ktx2_bc7": ktx2(145, 4, 4, bytes(16)),
+    }
+    for name, picture in pictures.items():
+        pictured(picture).save(f"no_image_{name}.gltf")
+    m = pictured(uastc, "image/ktx2", "KHR_texture_basisu")
+    m.doc["extensionsRequired"] = ["KHR_texture_basisu"]
+    m.save("no_image_basisu_uastc.gltf")
+    m = pictured(None)
+    m.doc["textures"] = [{}]
+    m.save("no_image_texture.gltf")
+    m = pictured("skin.png")
+    del m.doc["images"][0]["uri"]
+    m.save("no_image_neither.gltf")
+    m = pictured("skin.png")
+    m.doc["images"][0]["bufferView"] = 0
+    m.save("no_image_both.gltf")
+    m = pictured("skin.png")
+    m.doc["images"] = [{"bufferView": 0}]
+    m.doc["bufferViews"].insert(0, {"buffer": 0, "byteOffset": 4, "byteLength": 10000})
+    for accessor in m.doc["accessors"]:
+        accessor["bufferView"] += 1
+    m.save("no_image_buffer_view.gltf")
+
+
 def write_good_plain():
     (GOOD / "colors.ply").write_text(
         "ply\nformat ascii 1.0\ncomment made by make_corpus.py\nelement vertex 4\n"
@@ -484,13 +730,6 @@ def bad_documents():
         m.doc["images"][0]["uri"] = data_uri(picture, "image/png")
         return m
 
-    huge = bytearray(RED_GREEN)
-    huge[16:24] = struct.pack(">II", 16000, 16000)
-    huge[29:33] = struct.pack(">I", zlib.crc32(bytes(huge[12:29])))
-    larger = bytearray(RED_GREEN)
-    larger[16:24] = struct.pack(">II", 100000, 2)
-    larger[29:33] = struct.pack(">I", zlib.crc32(bytes(larger[12:29])))
-
     def sparse(count, index, component=USHORT):
         def make():
             m = triangle()
@@ -558,18 +797,11 @@ def bad_documents():
     doc["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0, "znear": 1}}]
     doc["nodes"][0]["camera"] = 0
     yield "camera_flat", doc
-    yield simple("extension_required", "extensionsRequired", ["KHR_draco_mesh_compression"])
+    yield simple("extension_required", "extensionsRequired", ["KHR_techniques_webgl"])
     yield "index_range", plain(indexed([0, 1, 3]))
     yield "index_restart", plain(indexed([0, 1, 65535]))
     yield "index_floats", plain(indexed([0, 1, 2], FLOAT))
     yield "index_vectors", plain(indexed([0, 1, 2], USHORT, "VEC3"))
-    yield "image_huge", plain(lambda: textured_quad(bytes(huge)))
-    yield "image_over_limit", plain(lambda: textured_quad(bytes(larger)))
-    yield "image_truncated", plain(lambda: textured_quad(RED_GREEN[:50]))
-    yield "image_garbage", plain(lambda: textured_quad(b"no picture at all"))
-    table = bytes([0] + [17] * 16 + [0] * 272)
-    jpeg = b"\xff\xd8\xff\xc4" + struct.pack(">H", 2 + len(table)) + table
-    yield "image_jpeg_table", plain(lambda: textured_quad(jpeg))
     yield "joint_range", plain(skinned(2, 2))
     yield "joint_matrices", plain(skinned(0))
     yield simple("material_range", "meshes", 0, "primitives", 0, "material", 0)
@@ -580,7 +812,6 @@ def bad_documents():
     glass = {"KHR_materials_transmission": {"transmissionTexture": {"index": 1}}}
     yield "material_transmission_range", change(setter("materials", [{"extensions": glass}]), triangle_with(**image))
     yield simple("material_factor_type", "materials", [{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]}}])
-    yield "texture_no_image", change(setter("textures", 0, {}), lambda: textured_quad(RED_GREEN))
     yield simple("mesh_mode", "meshes", 0, "primitives", 0, "mode", 7)
     yield simple("mesh_points_only", "meshes", 0, "primitives", 0, "mode", 0)
     yield simple("node_cycle", "nodes", [{"mesh": 0}, {"children": [2]}, {"children": [1]}])
@@ -600,6 +831,7 @@ def bad_documents():
     yield "sparse_values_short", plain(sparse(2, 0))
     yield "sparse_component_type", plain(sparse(1, 0, FLOAT))
     yield simple("version_1", "asset", "version", "1.0")
+    yield from bad_compressed()
     doc = plain(triangle)
     del doc["accessors"][0]["bufferView"]
     doc["accessors"][0]["count"] = 2**31
@@ -608,6 +840,55 @@ def bad_documents():
     doc["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = len(doc["accessors"])
     doc["accessors"].append({**doc["accessors"][0], "count": 2})
     yield "attribute_counts", doc
+
+
+def bad_compressed():
+    """Compressed geometry that cannot be decoded."""
+
+    def draco(data, **attributes):
+        m = draco_quad("DRACO_EDGEBREAKER")
+        m.doc["bufferViews"] = []
+        m.data = b""
+        m.view(data)
+        m.doc["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["attributes"].update(attributes)
+        return m.finished()
+
+    whole = stream("DRACO_EDGEBREAKER")
+    sequential = stream("DRACO_SEQUENTIAL")
+    yield "draco_cut_off", draco(whole[:100])
+    yield "draco_garbage", draco(b"no Draco at all")
+    yield "draco_point_cloud", draco(whole[:7] + b"\0" + whole[8:])
+    yield "draco_attribute", draco(whole, NORMAL=9)
+    yield "draco_attribute_type", draco(whole, NORMAL="2")
+    # Two counts of 2^28 - 1 where 2 triangles and 4 points stood.
+    yield "draco_counts", draco(sequential[:11] + b"\xff\xff\xff\x7f" * 2 + sequential[13:])
+    yield "draco_counts_edgebreaker", draco(whole[:12] + b"\xff\xff\xff\x7f" * 2 + whole[14:])
+
+    def meshopt(view=0, data=None, **changes):
+        doc = with_fallback(meshopt_quad())
+        compressed = doc["bufferViews"][view]["extensions"]["EXT_meshopt_compression"]
+        compressed.update(changes)
+        if data is not None:
+            buffer = bytearray(base64.b64decode(doc["buffers"][0]["uri"].split(",")[1]))
+            buffer[compressed["byteOffset"] : compressed["byteOffset"] + len(data)] = data
+            doc["buffers"][0]["uri"] = data_uri(bytes(buffer))
+        return doc
+
+    yield "meshopt_count", meshopt(count=2**31 - 1)
+    yield "meshopt_count_triangles", meshopt(1, count=30000)
+    yield "meshopt_damaged", meshopt(data=b"\xa0\xff\xff")
+    yield "meshopt_filter", meshopt(filter="COLOR")
+    yield "meshopt_filter_indices", meshopt(1, filter="OCTAHEDRAL")
+    yield "meshopt_mode", meshopt(mode="POINTS")
+    yield "meshopt_not_whole", meshopt(1, count=5)
+    yield "meshopt_quaternion", meshopt(filter="QUATERNION")
+    yield "meshopt_range", meshopt(byteOffset=10000)
+    yield "meshopt_stride", meshopt(byteStride=10)
+    yield "meshopt_stride_indices", meshopt(1, byteStride=3)
+    yield "meshopt_version", meshopt(data=b"\xa1")
+    doc = with_fallback(triangle())
+    doc["bufferViews"][0]["buffer"] = 1
+    yield "meshopt_fallback_alone", doc
 
 
 def write_bad():
@@ -712,6 +993,9 @@ def main():
     write_good_materials()
     write_good_transmission()
     write_good_plain()
+    write_good_compressed()
+    write_good_images()
+    write_good_without_images()
     write_bad()
 
 

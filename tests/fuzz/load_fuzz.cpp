@@ -1,5 +1,5 @@
 // Feeds model loading with whatever libFuzzer makes up. The first byte selects the reader (glTF, OBJ, PLY,
-// STL, images), the rest is the file. A file
+// STL, images, Draco and meshoptimizer inside glTF), the rest is the file. A file
 // either loads and keeps the promises of scene.h, or is refused with a LoadError of one line: anything else is a
 // finding.
 #include <cstddef>

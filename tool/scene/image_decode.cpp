@@ -1,4 +1,4 @@
-// Decodes image files with stb_image, after checking what it would allocate.
+// Decodes image files: those that no other file here is for with stb_image, after checking what it would allocate.
 #include "image_decode.h"
 
 #include <algorithm>
@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "image_ktx2.h"
+#include "image_webp.h"
 #include "load.h"
 
 // A JPEG may name a Huffman table that it never defines. In zeroed memory such a table decodes to nothing; in any other
@@ -22,6 +24,7 @@
 #define STBI_FAILURE_USERMSG
 #define STBI_NO_STDIO
 #define STBI_ONLY_BMP
+#define STBI_ONLY_GIF
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_PNG
 #define STBI_ONLY_TGA
@@ -39,22 +42,18 @@
 namespace vitrail::tool {
 namespace {
 
-constexpr int longestSide = 16384;
-constexpr std::array<std::uint8_t, 8> pngSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-constexpr std::array<std::uint8_t, 3> jpegSignature{0xff, 0xd8, 0xff};
-
-template <std::size_t Size>
-bool startsWith(std::span<const std::byte> file, const std::array<std::uint8_t, Size>& signature) {
-  return file.size() >= Size && std::equal(signature.begin(), signature.end(), file.begin(),
-                                           [](std::uint8_t a, std::byte b) { return std::byte{a} == b; });
-}
+constexpr std::int64_t longestSide = 16384;
+constexpr std::string_view pngSignature = "\x89PNG\r\n\x1a\n";
+constexpr std::string_view jpegSignature = "\xff\xd8\xff";
+constexpr std::string_view gifSignature = "GIF8";
+constexpr std::string_view bmpSignature = "BM";
 
 // A header can state any size; the decoder would allocate it before it misses the data. No compression that it reads
 // packs more than this: PNG's deflate reaches 1032 bytes for one, and a byte holds up to 8 pixels; in JPEG a block of
-// 64 pixels takes a bit at least.
-bool plausible(std::uint64_t pixels, std::span<const std::byte> file) {
-  const std::uint64_t pixelsPerByte = isPng(file) ? 1032 * 8 : 1024;
-  return pixels / pixelsPerByte <= file.size();
+// 64 pixels takes a bit at least; in GIF a code of 12 bits stands for at most 4096 pixels.
+std::uint64_t mostPixelsPerByte(std::span<const std::byte> file) {
+  if (isPng(file)) return 1032 * 8;
+  return startsWith(file, gifSignature) ? 4096 : 1024;
 }
 
 // PNG files state their bit depth, which narrows the bound.
@@ -66,6 +65,11 @@ bool plausiblePng(std::span<const std::byte> file, std::uint64_t pixels) {
   const auto colorType = std::to_integer<unsigned>(file[colorTypeOffset]);
   const std::uint64_t channels = colorType == 2 ? 3 : colorType == 4 ? 2 : colorType == 6 ? 4 : 1;
   return pixels * depth * channels / 8 / 1032 <= file.size();
+}
+
+LoadError tooLarge(std::int64_t width, std::int64_t height, std::size_t fileSize) {
+  return LoadError(
+      fmt::format("the image states {} x {} pixels, but its file has only {} bytes", width, height, fileSize));
 }
 
 // Whether all Huffman tables of a JPEG fit their 256 symbols. Some versions of stb_image write past the end of a table
@@ -106,13 +110,23 @@ std::uint8_t roundedTo8Bits(std::uint16_t value) {
   return static_cast<std::uint8_t>((static_cast<std::uint32_t>(value) * 255U + 32767U) / 65535U);
 }
 
-} // namespace
+// What is known by its first bytes, but not read.
+std::string_view unreadKind(std::span<const std::byte> file) {
+  if (file.size() >= 12 && startsWith(file.subspan(4), "ftyp")) {
+    if (startsWith(file.subspan(8), "avi")) return "AVIF";
+    if (startsWith(file.subspan(8), "he") || startsWith(file.subspan(8), "mif1")) return "HEIF";
+  }
+  if (startsWith(file, "DDS ")) return "DDS";
+  if (startsWith(file, "\xabKTX 11\xbb")) return "KTX 1";
+  if (startsWith(file, "sB")) return "Basis Universal";
+  if (startsWith(file, {"II*\0", 4}) || startsWith(file, {"MM\0*", 4})) return "TIFF";
+  if (startsWith(file, "\x76\x2f\x31\x01")) return "OpenEXR";
+  if (startsWith(file, "#?")) return "Radiance HDR";
+  if (startsWith(file, "<svg") || startsWith(file, "<?xml")) return "SVG";
+  return {};
+}
 
-bool isPng(std::span<const std::byte> file) { return startsWith(file, pngSignature); }
-
-bool isPngOrJpeg(std::span<const std::byte> file) { return isPng(file) || startsWith(file, jpegSignature); }
-
-Image decodeImage(std::span<const std::byte> file) {
+Image decodeWithStb(std::span<const std::byte> file) {
   if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw LoadError("the image file is larger than 2 GiB");
   if (startsWith(file, jpegSignature) && !hasSoundHuffmanTables(file))
@@ -123,14 +137,15 @@ Image decodeImage(std::span<const std::byte> file) {
   int height = 0;
   int channels = 0;
   const auto fail = [] { throw LoadError(fmt::format("the image cannot be decoded: {}", stbi_failure_reason())); };
-  if (stbi_info_from_memory(bytes, size, &width, &height, &channels) == 0) fail();
-  if (width < 1 || height < 1 || width > longestSide || height > longestSide)
-    throw LoadError(
-        fmt::format("the image has {} x {} pixels, but a side may have 1 to {}", width, height, longestSide));
+  const bool known = isPng(file) || startsWith(file, jpegSignature) || startsWith(file, gifSignature) ||
+                     startsWith(file, bmpSignature);
+  if (stbi_info_from_memory(bytes, size, &width, &height, &channels) == 0) {
+    if (!known) throw LoadError("is no image that can be read: none of PNG, JPEG, WebP, KTX2, GIF, BMP and TGA");
+    fail();
+  }
+  checkImageSize(width, height, file.size(), mostPixelsPerByte(file), 0);
   const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  if (!plausible(pixels, file) || (isPng(file) && !plausiblePng(file, pixels)))
-    throw LoadError(
-        fmt::format("the image states {} x {} pixels, but its file has only {} bytes", width, height, size));
+  if (isPng(file) && !plausiblePng(file, pixels)) throw tooLarge(width, height, file.size());
 
   Image image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
   const std::size_t valueCount = static_cast<std::size_t>(pixels) * 4;
@@ -146,6 +161,33 @@ Image decodeImage(std::span<const std::byte> file) {
     image.rgba.assign(data.get(), data.get() + valueCount);
   }
   return image;
+}
+
+} // namespace
+
+bool startsWith(std::span<const std::byte> file, std::string_view signature) {
+  return file.size() >= signature.size() &&
+         std::equal(signature.begin(), signature.end(), file.begin(),
+                    [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
+}
+
+void checkImageSize(std::int64_t width, std::int64_t height, std::size_t fileSize, std::uint64_t pixelsPerByte,
+                    std::uint64_t alwaysAllowed) {
+  if (width < 1 || height < 1 || width > longestSide || height > longestSide)
+    throw LoadError(
+        fmt::format("the image has {} x {} pixels, but a side may have 1 to {}", width, height, longestSide));
+  const auto pixels = static_cast<std::uint64_t>(width * height);
+  if (pixels > alwaysAllowed && pixels / pixelsPerByte > fileSize) throw tooLarge(width, height, fileSize);
+}
+
+bool isPng(std::span<const std::byte> file) { return startsWith(file, pngSignature); }
+
+Image decodeImage(std::span<const std::byte> file) {
+  if (isWebp(file)) return decodeWebp(file);
+  if (isKtx2(file)) return decodeKtx2(file);
+  const std::string_view kind = unreadKind(file);
+  if (!kind.empty()) throw LoadError(fmt::format("is an image of the kind {}, which is not read", kind));
+  return decodeWithStb(file);
 }
 
 } // namespace vitrail::tool

@@ -81,9 +81,27 @@ constexpr std::array accessorFields{nameField,
                                     required({"type", Kind::Text}),
                                     object("sparse", sparseFields)};
 
-constexpr std::array bufferFields{nameField, required({"byteLength", Kind::Size}), Field{"uri", Kind::Text}};
-constexpr std::array bufferViewFields{nameField, required(index("buffer", "buffers")), Field{"byteOffset", Kind::Size},
-                                      required({"byteLength", Kind::Size}), Field{"byteStride", Kind::Size}};
+constexpr std::array meshoptBufferFields{Field{"fallback", Kind::Boolean}};
+constexpr std::array bufferExtensionFields{object("EXT_meshopt_compression", meshoptBufferFields),
+                                           object("KHR_meshopt_compression", meshoptBufferFields)};
+constexpr std::array bufferFields{nameField, required({"byteLength", Kind::Size}), Field{"uri", Kind::Text},
+                                  object("extensions", bufferExtensionFields)};
+// Integers where the specification allows more: the library that reads extensions keeps 32 bits of them.
+constexpr std::array meshoptViewFields{required(index("buffer", "buffers")),
+                                       Field{"byteOffset", Kind::Integer},
+                                       required({"byteLength", Kind::Integer}),
+                                       required({"byteStride", Kind::Integer}),
+                                       required({"count", Kind::Integer}),
+                                       required({"mode", Kind::Text}),
+                                       Field{"filter", Kind::Text}};
+constexpr std::array bufferViewExtensionFields{object("EXT_meshopt_compression", meshoptViewFields),
+                                               object("KHR_meshopt_compression", meshoptViewFields)};
+constexpr std::array bufferViewFields{nameField,
+                                      required(index("buffer", "buffers")),
+                                      Field{"byteOffset", Kind::Size},
+                                      required({"byteLength", Kind::Size}),
+                                      Field{"byteStride", Kind::Size},
+                                      object("extensions", bufferViewExtensionFields)};
 
 constexpr std::array perspectiveFields{required({"yfov", Kind::Number}), required({"znear", Kind::Number}),
                                        Field{"zfar", Kind::Number}};
@@ -96,7 +114,12 @@ constexpr std::array imageFields{nameField, Field{"uri", Kind::Text}, Field{"mim
                                  index("bufferView", "bufferViews")};
 constexpr std::array samplerFields{nameField, Field{"magFilter", Kind::Integer}, Field{"minFilter", Kind::Integer},
                                    Field{"wrapS", Kind::Integer}, Field{"wrapT", Kind::Integer}};
-constexpr std::array textureFields{nameField, index("sampler", "samplers"), index("source", "images")};
+constexpr std::array textureSourceFields{index("source", "images")};
+constexpr std::array textureSourceExtensionFields{
+    object("EXT_texture_webp", textureSourceFields), object("KHR_texture_basisu", textureSourceFields),
+    object("EXT_texture_avif", textureSourceFields), object("MSFT_texture_dds", textureSourceFields)};
+constexpr std::array textureFields{nameField, index("sampler", "samplers"), index("source", "images"),
+                                   object("extensions", textureSourceExtensionFields)};
 
 constexpr std::array textureTransformFields{numbers("offset", 2), Field{"rotation", Kind::Number}, numbers("scale", 2),
                                             Field{"texCoord", Kind::Integer}};
@@ -124,9 +147,14 @@ constexpr std::array materialFields{nameField,
                                     Field{"doubleSided", Kind::Boolean},
                                     object("extensions", materialExtensionFields)};
 
+constexpr std::array dracoFields{required(index("bufferView", "bufferViews"))};
+constexpr std::array primitiveExtensionFields{object("KHR_draco_mesh_compression", dracoFields)};
 constexpr std::array primitiveFields{required(index("attributes", "accessors", Kind::IndexMap)),
-                                     index("indices", "accessors"), index("material", "materials"),
-                                     Field{"mode", Kind::Integer}, index("targets", "accessors", Kind::IndexMaps)};
+                                     index("indices", "accessors"),
+                                     index("material", "materials"),
+                                     Field{"mode", Kind::Integer},
+                                     index("targets", "accessors", Kind::IndexMaps),
+                                     object("extensions", primitiveExtensionFields)};
 constexpr std::array meshFields{nameField, required(object("primitives", primitiveFields, Kind::Objects)),
                                 numbers("weights")};
 
@@ -163,9 +191,11 @@ constexpr std::array<Section, 12> sections{{{"accessors", "accessor", accessorFi
                                             {"skins", "skin", skinFields},
                                             {"textures", "texture", textureFields}}};
 
-constexpr std::array<std::string_view, 5> implementedExtensions{"KHR_materials_emissive_strength",
-                                                                "KHR_materials_transmission", "KHR_materials_unlit",
-                                                                "KHR_mesh_quantization", "KHR_texture_transform"};
+// What is missing of a picture's textures never refuses the file, whatever requires them.
+constexpr std::array<std::string_view, 12> implementedExtensions{
+    "EXT_meshopt_compression",    "EXT_texture_avif",    "EXT_texture_webp",      "KHR_draco_mesh_compression",
+    "KHR_meshopt_compression",    "KHR_texture_basisu",  "MSFT_texture_dds",      "KHR_materials_emissive_strength",
+    "KHR_materials_transmission", "KHR_materials_unlit", "KHR_mesh_quantization", "KHR_texture_transform"};
 
 // Applies the tables to one document. `where` names the object that is looked at, `path` the property inside it.
 class Checker {
@@ -327,8 +357,6 @@ void checkChoices(const Json& value, std::string_view section, const std::string
     if (type != "perspective" && type != "orthographic")
       throw LoadError(fmt::format("{}: type is \"{}\", neither perspective nor orthographic", where, oneLine(type)));
     if (!value.contains(type)) throw LoadError(fmt::format("{}: {} is missing", where, type));
-  } else if (section == "images" && value.contains("uri") == value.contains("bufferView")) {
-    throw LoadError(fmt::format("{}: has {} of uri and bufferView", where, value.contains("uri") ? "both" : "neither"));
   }
 }
 

@@ -12,6 +12,8 @@
 #include "../load.h"
 #include "../message.h"
 #include "check.h"
+#include "draco.h"
+#include "meshopt.h"
 #include "uri.h"
 
 namespace vitrail::tool {
@@ -104,6 +106,17 @@ Json parseJson(std::string_view text) {
   }
 }
 
+// Whether a buffer only says where the decoded bytes of compressed buffer views would lie.
+bool isFallback(const Json& buffer) {
+  const auto extensions = buffer.find("extensions");
+  if (extensions == buffer.end()) return false;
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+    const auto extension = extensions->find(name);
+    if (extension != extensions->end() && extension->value("fallback", false)) return true;
+  }
+  return false;
+}
+
 std::vector<std::vector<std::byte>> readBuffers(const Json& json, const Container& container,
                                                 const std::filesystem::path& base) {
   std::vector<std::vector<std::byte>> buffers;
@@ -113,6 +126,10 @@ std::vector<std::vector<std::byte>> readBuffers(const Json& json, const Containe
     const Json& buffer = (*array)[i];
     const std::string where = objectName("buffer", i, buffer.value("name", std::string{}));
     const auto byteLength = buffer.at("byteLength").get<std::uint64_t>();
+    if (isFallback(buffer) && !(i == 0 && container.binary)) {
+      buffers.emplace_back();
+      continue;
+    }
     if (buffer.contains("uri")) {
       try {
         buffers.push_back(readUri(buffer.at("uri").get_ref<const std::string&>(), base));
@@ -200,17 +217,38 @@ GltfDocument openGltf(std::span<const std::byte> file, const std::filesystem::pa
   document.model = parseModel(std::move(json));
   document.totalBytes = file.size();
   for (const auto& buffer : document.buffers) document.totalBytes += buffer.size();
+  decodeMeshopt(document);
+  decodeDraco(document);
   return document;
 }
 
+std::span<const std::byte> bufferBytes(const GltfDocument& document, std::size_t buffer, std::size_t byteOffset,
+                                       std::size_t byteLength) {
+  const std::span<const std::byte> bytes = document.buffers[buffer];
+  if (byteOffset > bytes.size() || byteLength > bytes.size() - byteOffset)
+    throw LoadError(fmt::format("{} bytes at offset {} reach past the end of buffer {}, which has {}", byteLength,
+                                byteOffset, buffer, bytes.size()));
+  return bytes.subspan(byteOffset, byteLength);
+}
+
+void keepDecoded(GltfDocument& document, std::size_t bufferView, std::vector<std::byte> bytes) {
+  constexpr std::uint64_t alwaysAllowed = std::uint64_t{256} << 20U;
+  constexpr std::uint64_t perByte = 256;
+  document.decodedBytes += bytes.size();
+  if (document.decodedBytes > alwaysAllowed + perByte * document.totalBytes)
+    throw LoadError(fmt::format("the file's {} bytes hold too much compressed data", document.totalBytes));
+  document.decodedViews[bufferView] = std::move(bytes);
+}
+
 std::span<const std::byte> bufferViewBytes(const GltfDocument& document, std::size_t bufferView) {
+  const auto decoded = document.decodedViews.find(bufferView);
+  if (decoded != document.decodedViews.end()) return decoded->second;
   const tinygltf::BufferView& view = document.model.bufferViews[bufferView];
-  const std::vector<std::byte>& buffer = document.buffers[static_cast<std::size_t>(view.buffer)];
-  if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
-    throw LoadError(fmt::format("{}: {} bytes at offset {} reach past the end of buffer {}, which has {}",
-                                objectName("buffer view", bufferView, view.name), view.byteLength, view.byteOffset,
-                                view.buffer, buffer.size()));
-  return std::span(buffer).subspan(view.byteOffset, view.byteLength);
+  try {
+    return bufferBytes(document, static_cast<std::size_t>(view.buffer), view.byteOffset, view.byteLength);
+  } catch (const LoadError& error) {
+    throw LoadError(fmt::format("{}: {}", objectName("buffer view", bufferView, view.name), error.what()));
+  }
 }
 
 } // namespace vitrail::tool

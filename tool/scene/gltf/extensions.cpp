@@ -29,9 +29,9 @@ constexpr GltfExtension kExtensions[] = {
 
     // Meshes.
     {"KHR_mesh_quantization", Drawn, ""},
-    {"KHR_draco_mesh_compression", Unreadable, "compressed meshes are missing"},
-    {"EXT_meshopt_compression", Unreadable, "compressed meshes are missing"},
-    {"KHR_meshopt_compression", Unreadable, "compressed meshes are missing"},
+    {"KHR_draco_mesh_compression", Drawn, ""},
+    {"EXT_meshopt_compression", Drawn, ""},
+    {"KHR_meshopt_compression", Named, "data of its version 1 and its colour filter are refused"},
     {"EXT_mesh_manifold", Nothing, ""},
     {"KHR_mesh_primitive_restart", Left, "indices that restart a strip are not understood"},
     {"CESIUM_primitive_outline", Left, "outlines of faces are not drawn"},
@@ -39,10 +39,10 @@ constexpr GltfExtension kExtensions[] = {
 
     // Textures.
     {"KHR_texture_transform", Drawn, ""},
-    {"KHR_texture_basisu", Unreadable, "KTX2 textures are missing"},
-    {"EXT_texture_webp", Unreadable, "WebP textures are missing"},
-    {"EXT_texture_avif", Unreadable, "AVIF textures are missing"},
-    {"MSFT_texture_dds", Unreadable, "DDS textures are missing"},
+    {"KHR_texture_basisu", Named, "textures of Basis Universal (ETC1S, UASTC) are missing where the file has no others"},
+    {"EXT_texture_webp", Drawn, ""},
+    {"EXT_texture_avif", Named, "AVIF textures are missing where the file has no others"},
+    {"MSFT_texture_dds", Named, "DDS textures are missing where the file has no others"},
     {"EXT_texture_video", Unreadable, "videos are missing"},
 
     // Materials.
@@ -128,6 +128,7 @@ std::string extensionWarning(std::string_view name) {
   switch (extension.support) {
     case Drawn:
     case Nothing:
+    case Named:
       return {};
     case Partly:
       return fmt::format("the extension {} is drawn in part: {}", oneLine(name), extension.lost);

@@ -14,6 +14,7 @@ enum class GltfSupport : std::uint8_t {
   Partly,    // honoured but for what `lost` says
   Nothing,   // not read, and no picture is the worse for it
   Left,      // not read: the picture lacks what `lost` says
+  Named,     // honoured where it can be; of each object that lacks something a line of its own says so
   Unreadable // not read, and the data that it holds cannot be drawn without: refused where a file requires it
 };
 

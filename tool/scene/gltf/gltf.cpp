@@ -67,7 +67,9 @@ SceneCamera convertCamera(const tinygltf::Camera& source, const std::string& whe
 class SceneBuilder {
  public:
   explicit SceneBuilder(const GltfDocument& document)
-      : document_(document), world_(placeNodes(document)), materials_(document, scene_), meshes_(document) {}
+      : document_(document), world_(placeNodes(document)), materials_(document, scene_), meshes_(document) {
+    scene_.warnings = document.warnings;
+  }
 
   Scene build() {
     for (const std::size_t index : sceneNodes(document_)) {

@@ -128,39 +128,67 @@ Sampler GltfMaterialReader::sampler(std::size_t index) const {
   return sampler;
 }
 
-std::int32_t GltfMaterialReader::image(std::size_t index) {
-  const auto known = decoded_.find(index);
-  if (known != decoded_.end()) return known->second;
+std::int32_t GltfMaterialReader::decode(std::size_t index) {
   const GltfImageSource& source = document_.images[index];
-  const std::string where = objectName("image", index, source.name);
+  std::vector<std::byte> outside;
+  if (source.bufferView && !source.uri.empty()) throw LoadError("has both of uri and bufferView");
+  if (!source.bufferView && source.uri.empty()) throw LoadError("has neither uri nor bufferView");
+  if (!source.bufferView) outside = readUri(source.uri, document_.base);
+  const bool isFile = !source.bufferView && !source.uri.starts_with("data:");
   try {
-    std::vector<std::byte> outside;
-    if (!source.bufferView) outside = readUri(source.uri, document_.base);
-    const std::span<const std::byte> file =
-        source.bufferView ? bufferViewBytes(document_, *source.bufferView) : outside;
-    if (!isPngOrJpeg(file)) throw LoadError("is neither PNG nor JPEG");
-    Image image = decodeImage(file);
+    Image image = decodeImage(source.bufferView ? bufferViewBytes(document_, *source.bufferView)
+                                                : std::span<const std::byte>(outside));
     pixels_ += std::uint64_t{image.width} * image.height;
     if (pixels_ > mostPixels) throw LoadError("makes the images of this file larger than 4 GiB together");
     scene_.images.push_back(std::move(image));
   } catch (const LoadError& error) {
-    throw LoadError(fmt::format("{}: {}", where, error.what()));
+    if (!isFile) throw;
+    throw LoadError(fmt::format("{}: {}", oneLine(source.uri), error.what()));
   }
-  const auto result = static_cast<std::int32_t>(scene_.images.size() - 1);
-  decoded_.emplace(index, result);
-  return result;
+  return static_cast<std::int32_t>(scene_.images.size() - 1);
+}
+
+const GltfMaterialReader::DecodedImage& GltfMaterialReader::image(std::size_t index) {
+  const auto known = decoded_.find(index);
+  if (known != decoded_.end()) return known->second;
+  DecodedImage result;
+  try {
+    result.image = decode(index);
+  } catch (const LoadError& error) {
+    result.problem = fmt::format("{}: {}", objectName("image", index, document_.images[index].name), error.what());
+  }
+  return decoded_.emplace(index, std::move(result)).first->second;
+}
+
+// The first of a texture's images that can be read; -1, with a warning, where there is none.
+std::int32_t GltfMaterialReader::imageOf(std::size_t index) {
+  const tinygltf::Texture& texture = document_.model.textures[index];
+  std::vector<std::pair<int, std::string>> sources; // with what the warning begins with
+  for (const char* name : {"EXT_texture_webp", "KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"}) {
+    const auto extension = texture.extensions.find(name);
+    if (extension != texture.extensions.end() && extension->second.Has("source"))
+      sources.emplace_back(extension->second.Get("source").GetNumberAsInt(), fmt::format("{}: ", name));
+  }
+  if (texture.source >= 0) sources.emplace_back(texture.source, "");
+  std::string problem;
+  for (const auto& [source, extension] : sources) {
+    const DecodedImage& found = image(static_cast<std::size_t>(source));
+    if (found.image >= 0) return found.image;
+    if (problem.empty()) problem = extension + found.problem; // of the best image that the file has
+  }
+  if (sources.empty()) problem = fmt::format("{}: has no image", objectName("texture", index, texture.name));
+  warn(scene_, fmt::format("{}; the material is drawn without it", problem));
+  return -1;
 }
 
 template <typename TextureInfo>
-TextureSlot GltfMaterialReader::slot(const TextureInfo& info, const std::string& where) {
+TextureSlot GltfMaterialReader::slot(const TextureInfo& info, const std::string& /*where*/) {
   TextureSlot slot;
   if (info.index < 0) return slot;
   const auto index = static_cast<std::size_t>(info.index);
   const tinygltf::Texture& texture = document_.model.textures[index];
-  if (texture.source < 0)
-    throw LoadError(
-        fmt::format("{}: {} has no image that can be read", where, objectName("texture", index, texture.name)));
-  slot.image = image(static_cast<std::size_t>(texture.source));
+  slot.image = imageOf(index);
+  if (slot.image < 0) return {};
   if (texture.sampler >= 0) slot.sampler = sampler(static_cast<std::size_t>(texture.sampler));
   slot.texCoord = static_cast<std::uint32_t>(info.texCoord);
   const auto transform = info.extensions.find("KHR_texture_transform");

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -31,11 +32,18 @@ class GltfMaterialReader {
   TextureSlot slot(const TextureInfo& info, const std::string& where);
   void readTransmission(Material& material, const tinygltf::Value& extension, const std::string& where);
   Sampler sampler(std::size_t index) const;
-  std::int32_t image(std::size_t index);
+  // What became of one image of the file.
+  struct DecodedImage {
+    std::int32_t image = -1; // of the scene
+    std::string problem;     // why there is none
+  };
+  std::int32_t decode(std::size_t image);
+  const DecodedImage& image(std::size_t index);
+  std::int32_t imageOf(std::size_t texture);
 
   const GltfDocument& document_;
   Scene& scene_;
-  std::unordered_map<std::size_t, std::int32_t> decoded_; // from the file's image to the scene's
+  std::unordered_map<std::size_t, DecodedImage> decoded_; // by the file's image, good or bad
   std::uint64_t pixels_ = 0;
 };
 

@@ -1,0 +1,33 @@
+"""Streams of compressed geometry and pictures, which make_corpus.py puts into models.
+
+Made once by a C++ program with Debian 12's libdraco 1.5.5, libmeshoptimizer 0.18 and libwebp 1.2.4. All meshes are the
+quad (0 0 0), (1 0 0), (0 1 0), (1 1 0.5) of the triangles 0 1 2 and 2 1 3.
+
+Draco: a draco::ExpertEncoder of either method; POSITION (3 floats, unique id 7), NORMAL (3 floats, up, id 2), TEX_COORD
+(2 floats: 0 1, 1 1, 0 0, 1 0, id 5), COLOR (4 normalized bytes: red, green of alpha 51, blue, white, id 3). Edgebreaker
+quantizes them to 11, 8 and 10 bits; sequential keeps the floats.
+meshoptimizer: meshopt_encodeVertexBuffer, after meshopt_encodeFilterOct (8 bits, stride 4: +z, +x, (0, 0.6, 0.8), -z),
+meshopt_encodeFilterQuat (8 bits: identity, a quarter turn about z, one about x, (0.5, 0.5, -0.5, 0.5)) or
+meshopt_encodeFilterExp (15 bits: (0 0 0), (8 0 0), (0 -4 0), (3 0.25 100) to within an eighth where 100 stands);
+meshopt_encodeIndexBuffer of the triangles, meshopt_encodeIndexSequence of 0 1 2 3.
+WebP: WebPEncodeLosslessRGBA of the pixels (255 0 0 255), (0 255 0 128); WebPEncodeRGB of 8 x 8 pixels (200 100 50).
+"""
+
+import base64
+
+STREAMS = {
+    "DRACO_EDGEBREAKER": "RFJBQ08CAgEBAAAABAIDAgAAAR//ARH/ARH/ARH/AREE/wAAAAAAAQAAAgAAAQAJAwAHAgEBCQMAAgMBAwkCAAUCAQICBAEDAQEBAQAMAwEgARAfARADADCQSgAQgP8DAAAAAP8HAAAAAAAAAAAAAAAAAAAAAIA/CwADAQEBgAEBOP/3AQgDAJiE/wAAAH8AAAAIAQEBAAMDATABEAMAKIKMAAAAAAD/AwAAAAAAAAAAAAAAAIA/CgEBAQECaQEYARgBBP+PAQgBBAYAt1v4RaAAAAAA/wAAAA==",
+    "DRACO_SEQUENTIAL": "RFJBQ08CAgEAAAACBAEAAQICAQMBBAAJAwAHAQkDAAIDCQIABQICBAEDAAAAAQAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAgD8AAIA/AAAAPwAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAAAAAAIA/AACAPwAAgD8AAAAAAAAAAAAAgD8AAAAAAAEBAAgDASATASADAPCDKQgA0ABB4DwAAAAA/wAAAA==",
+    "MESHOPT_POSITIONS": "oAAAAT8AAAD///8BPwAAAH59fgAAAQwAAAD/AQwAAAB+AAAAAQMAAAB+AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA=",
+    "MESHOPT_NORMALS_OCTAHEDRAL": "oAE/AAAA/v3+AQ8AAABskgAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAfwA=",
+    "MESHOPT_ROTATIONS_QUATERNION": "oAEbAAAA+wE/AAAA/v20AQMAAAD8AQMAAAC1AQcAAAD5AQ8AAAD+SQEcAAAAAwAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAD/fw==",
+    "MESHOPT_POSITIONS_EXPONENTIAL": "oAEDAAAA/wE+AAAAQD8AATcAAAAICAEDAAAAQAEPAAAAP0ABBgAAAAE3AAAACAgAAQMAAABkAAE3AAAACAgAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAPIAAADyAAAA8g==",
+    "MESHOPT_TRIANGLES": "4PAQAHaHVmd4qYZliWiYAWkAAA==",
+    "MESHOPT_INDICES": "0AAEBAQAAAAA",
+    "WEBP_LOSSLESS": "UklGRiAAAABXRUJQVlA4TBMAAAAvAQAAEA8w//sfD/wPBxWI6H8AAA==",
+    "WEBP_LOSSY": "UklGRj4AAABXRUJQVlA4IDIAAADQAQCdASoIAAgAAMASJaACdLoB+AADsAD+2ib/7vN+09e09f1M//jKnyA/4yp/xcwAAA==",
+}
+
+
+def stream(name):
+    return base64.b64decode(STREAMS[name])
