@@ -142,6 +142,38 @@ def write_good_shapes():
         )
         m.save(f"{name}.gltf")
 
+    for name, mode in (("points", 0), ("lines", 1), ("line_loop", 2), ("line_strip", 3)):
+        m = Model()
+        # Vertex 4 is not named; the last line of the list is not whole; a line from vertex 2 to itself is none.
+        indices = m.accessor([0, 1, 2, 2, 3, 2, 0], "SCALAR", UBYTE)
+        m.mesh({"POSITION": m.accessor(QUAD + [9, 9, 9], "VEC3")}, mode=mode, indices=indices)
+        m.save(f"{name}.gltf")
+    m = quad()
+    m.doc["meshes"][0]["primitives"][0]["material"] = m.put(
+        "materials",
+        {
+            "doubleSided": True,
+            "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]},
+            "extensions": {"KHR_materials_unlit": {}},
+        },
+    )
+    lines = m.mesh({"POSITION": m.accessor([-1, 0.5, 1, 1, 0.5, 1], "VEC3")}, mode=1, material=0)
+    m.doc["nodes"] = [
+        {"camera": 0, "translation": [0, 0, 10]},
+        {"mesh": 0, "translation": [-1, -1, 0]},
+        {"mesh": lines},
+    ]
+    m.doc["scenes"] = [{"nodes": [0, 1, 2]}]
+    m.put("cameras", {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0.1, "zfar": 100}})
+    m.save("lines_beside_triangles.gltf")
+    m = Model()
+    # A normal that is none leaves all points unlit.
+    m.mesh({"POSITION": m.accessor(TRIANGLE, "VEC3"), "NORMAL": m.accessor([0, 0, 2] * 2 + [0, 0, 0], "VEC3")}, mode=0)
+    m.mesh({"POSITION": m.accessor(TRIANGLE, "VEC3"), "NORMAL": m.accessor([0, 0, 2] * 3, "VEC3")}, mode=0)
+    m.doc["nodes"] = [{"mesh": 0}, {"mesh": 1}]
+    m.doc["scenes"] = [{"nodes": [0, 1]}]
+    m.save("points_with_normals.gltf")
+
     m = Model()
     attributes = {"POSITION": m.accessor(QUAD, "VEC3"), "NORMAL": m.accessor(UP * 4, "VEC3")}
     primitives = [
@@ -813,7 +845,6 @@ def bad_documents():
     yield "material_transmission_range", change(setter("materials", [{"extensions": glass}]), triangle_with(**image))
     yield simple("material_factor_type", "materials", [{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]}}])
     yield simple("mesh_mode", "meshes", 0, "primitives", 0, "mode", 7)
-    yield simple("mesh_points_only", "meshes", 0, "primitives", 0, "mode", 0)
     yield simple("node_cycle", "nodes", [{"mesh": 0}, {"children": [2]}, {"children": [1]}])
     yield simple("node_two_parents", "nodes", [{"children": [2]}, {"children": [2]}, {"mesh": 0}])
     yield simple("node_child_range", "nodes", 0, "children", [5])

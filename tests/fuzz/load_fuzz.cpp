@@ -30,9 +30,9 @@ void checkImage(const Image& image) {
 }
 
 void checkScene(const Scene& scene) {
-  std::size_t triangles = 0;
+  bool anything = false;
   for (const Mesh& mesh : scene.meshes) {
-    require(mesh.indices.size() % 3 == 0, "whole triangles");
+    require(mesh.indices.size() % cornersOf(mesh.primitive) == 0, "whole triangles and lines");
     for (const std::uint32_t index : mesh.indices) require(index < mesh.vertexCount(), "indices in range");
     for (const Vertex& vertex : mesh.vertices()) {
       require(isUnit(vertex.normal), "unit normals");
@@ -44,9 +44,9 @@ void checkScene(const Scene& scene) {
   for (const Image& image : scene.images) checkImage(image);
   for (const Draw& draw : scene.draws) {
     require(draw.mesh < scene.meshes.size() && draw.material < scene.materials.size(), "draws in range");
-    triangles += scene.meshes[draw.mesh].indices.size() / 3;
+    anything = anything || !scene.meshes[draw.mesh].indices.empty();
   }
-  require(triangles > 0, "at least one triangle");
+  require(anything, "at least one triangle, line or point");
 }
 
 } // namespace

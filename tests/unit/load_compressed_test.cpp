@@ -15,7 +15,7 @@ namespace {
 // The corners of a mesh's triangles, in order.
 std::vector<Vertex> cornerVertices(const Mesh& mesh) {
   std::vector<Vertex> vertices;
-  for (const std::uint32_t index : mesh.indices) vertices.push_back(mesh.vertices[index]);
+  for (const std::uint32_t index : mesh.indices) vertices.push_back(mesh.vertex(index));
   return vertices;
 }
 

@@ -1,6 +1,8 @@
 // The values that glTF files load to: one small file of the corpus a feature.
 #include <algorithm>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -67,6 +69,40 @@ TEST(LoadGltf, Fans) {
 
 TEST(LoadGltf, IndicesThatFillNoLastTriangleAreDropped) {
   EXPECT_EQ(loadGood("list.gltf").meshes.at(0).indices, (Indices{0, 1, 2}));
+}
+
+TEST(LoadGltf, PointsAndLines) {
+  const std::map<std::string, std::pair<Primitive, Indices>> expected{
+      {"points.gltf", {Primitive::Points, {0, 1, 2, 2, 3, 2, 0}}},
+      {"lines.gltf", {Primitive::Lines, {0, 1, 3, 2}}},
+      {"line_strip.gltf", {Primitive::Lines, {0, 1, 1, 2, 2, 3, 3, 2, 2, 0}}},
+      {"line_loop.gltf", {Primitive::Lines, {0, 1, 1, 2, 2, 3, 3, 2, 2, 0}}},
+  };
+  for (const auto& [name, content] : expected) {
+    SCOPED_TRACE(name);
+    const Scene scene = loadGood(name);
+    EXPECT_TRUE(scene.warnings.empty());
+    const Mesh& mesh = scene.meshes.at(0);
+    EXPECT_EQ(mesh.primitive, content.first);
+    EXPECT_EQ(mesh.indices, content.second);
+    EXPECT_EQ(mesh.vertexCount(), 4U) << "vertices that nothing uses are dropped";
+    EXPECT_TRUE(mesh.normals.empty()) << "they are not lit";
+    EXPECT_EQ(triangleCount(scene), 0U);
+    EXPECT_EQ(worldBounds(scene).max, glm::vec3(1, 1, 0));
+  }
+}
+
+TEST(LineList, LoopsEndWhereTheyBegin) {
+  EXPECT_EQ(lineList(Indices{0, 1, 2}, LineTopology::Loop), (Indices{0, 1, 1, 2, 2, 0}));
+  EXPECT_EQ(lineList(Indices{0, 1}, LineTopology::Loop), (Indices{0, 1})) << "once there and not back";
+  EXPECT_TRUE(lineList(Indices{0}, LineTopology::Strip).empty());
+}
+
+TEST(LoadGltf, PointsHaveTheNormalsOfTheFileOrNone) {
+  const Scene scene = loadGood("points_with_normals.gltf");
+  EXPECT_TRUE(scene.meshes.at(0).normals.empty());
+  ASSERT_EQ(scene.meshes.at(1).normals.size(), 3U);
+  expectNear(scene.meshes[1].vertex(2).normal, {0.0F, 0.0F, 1.0F});
 }
 
 TEST(LoadGltf, IndicesOf8And16And32Bits) {

@@ -68,6 +68,15 @@ void addOpacity(CLI::App& command, std::optional<float>& opacity) {
   });
 }
 
+void addPointSize(CLI::App& command, std::optional<float>& size) {
+  command.add_option_function<std::string>("--point-size", [&size](const std::string& text) {
+    size = numberOf<float>(text);
+    if (!size || !(*size >= 1.0F) || *size > 65536.0F) {
+      throw CLI::ValidationError("--point-size", fmt::format("'{}' is not a number of pixels from 1 to 65536", text));
+    }
+  });
+}
+
 void addCount(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& target) {
   command.add_option_function<std::string>(name, [name, &target](const std::string& text) {
     target = numberOf<std::uint32_t>(text);

@@ -40,6 +40,8 @@ std::vector<std::string> split(const std::string& text, char separator);
 void addSize(CLI::App& command, std::uint32_t& width, std::uint32_t& height);
 // --opacity A
 void addOpacity(CLI::App& command, std::optional<float>& opacity);
+// --point-size N
+void addPointSize(CLI::App& command, std::optional<float>& size);
 // A whole number from 0; CLI11's own conversion takes -1 and 1e3 for some types.
 void addCount(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& target);
 // A number of frames to draw.

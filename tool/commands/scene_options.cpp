@@ -30,6 +30,7 @@ How to look at it:
                         without one the whole model is seen from a three-quarter view)
   --orbit AZ,EL[,ZOOM]  look from azimuth and elevation in degrees: 0,0 is the front, 90,0 the right,
                         0,90 the top; ZOOM 2 shows it twice as large
+  --point-size N        how many pixels the points of point clouds are across (default 3)
   --opacity A           X-ray: makes every material translucent, 0.004 to 1
   --background B        a colour as #rrggbb (sRGB), sky, or transparent (a PNG with alpha))";
 
@@ -94,6 +95,7 @@ void addSceneOptions(CLI::App& command, SceneArguments& arguments) {
   addCount(command, "--camera", arguments.camera);
   addSize(command, arguments.width, arguments.height);
   addOpacity(command, arguments.opacity);
+  addPointSize(command, arguments.pointSize);
   command.add_option_function<std::string>("--orbit",
                                            [&arguments](const std::string& text) { arguments.orbit = orbitOf(text); });
   command.add_option_function<std::string>(
@@ -133,8 +135,11 @@ Scene openBuiltin(const std::string& name, const BuiltinOptions& options) {
 }
 
 Scene openScene(const SceneArguments& arguments) {
-  if (arguments.scene.empty()) return openModel(arguments.model);
-  return openBuiltin(arguments.scene, {arguments.count, arguments.seed.value_or(BuiltinOptions{}.seed)});
+  Scene scene = arguments.scene.empty()
+                    ? openModel(arguments.model)
+                    : openBuiltin(arguments.scene, {arguments.count, arguments.seed.value_or(BuiltinOptions{}.seed)});
+  scene.pointSize = arguments.pointSize.value_or(scene.pointSize);
+  return scene;
 }
 
 RenderOptions pictureOf(const SceneArguments& arguments, const Scene& scene) {

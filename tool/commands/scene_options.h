@@ -24,6 +24,7 @@ struct SceneArguments : WarningOptions {
   std::uint32_t height = 720;
   std::optional<std::uint32_t> camera;
   std::optional<Orbit> orbit;
+  std::optional<float> pointSize; // pixels
   std::optional<float> opacity;
   std::optional<Background> background;
 };

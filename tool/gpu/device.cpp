@@ -369,6 +369,7 @@ void Gpu::Impl::createDevice() {
   enabled.pNext = &features12;
   enabled.features.fragmentStoresAndAtomics = VK_TRUE;
   enabled.features.dualSrcBlend = features.dualSourceBlending ? VK_TRUE : VK_FALSE;
+  enabled.features.largePoints = features.largePoints ? VK_TRUE : VK_FALSE;
   enabled.features.sampleRateShading = features.sampleRateShading ? VK_TRUE : VK_FALSE;
   enabled.features.geometryShader = features.primitiveNumbers ? VK_TRUE : VK_FALSE;
   enabled.features.shaderInt64 = features.int64Atomics ? VK_TRUE : VK_FALSE;

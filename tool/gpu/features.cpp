@@ -81,6 +81,7 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   result.poolByAddress = result.bufferDeviceAddress && properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
   result.dualSourceBlending = features.features.dualSrcBlend == VK_TRUE;
   result.sampleRateShading = features.features.sampleRateShading == VK_TRUE;
+  result.largePoints = features.features.largePoints == VK_TRUE;
   result.primitiveNumbers = features.features.geometryShader == VK_TRUE;
   result.independentBlending = features.features.independentBlend == VK_TRUE;
   result.floatBlending = blends(device, VK_FORMAT_R32_SFLOAT) && blends(device, VK_FORMAT_R32G32B32A32_SFLOAT);

@@ -16,6 +16,7 @@ struct GpuFeatures {
   bool poolByAddress = false;
   bool dualSourceBlending = false;
   bool sampleRateShading = false;
+  bool largePoints = false;             // points of more than a pixel
   bool primitiveNumbers = false;        // gl_PrimitiveID in fragment shaders, which comes with geometry shaders
   bool independentBlending = false;     // colour attachments differ in how they blend
   bool floatBlending = false;           // 32-bit float colour attachments blend

@@ -56,6 +56,7 @@ struct GraphicsPipelineInfo {
   std::span<const std::uint32_t> fragmentShader;
   PipelineConstants constants; // of both shaders
   VertexLayout vertices;       // with them front face, cull mode and strides are dynamic
+  VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   std::uint32_t sampleMask = UINT32_MAX; // samples that are drawn, one bit each
   bool shadeEverySample = false;         // at the place of each, where the device has GpuFeatures::sampleRateShading

@@ -1,5 +1,7 @@
 #include "still.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "../gpu/submit.h"
@@ -26,6 +28,7 @@ struct StillRenderer::Impl {
   std::unique_ptr<Method> method; // draws on it
   EncodePass encode;
   Timers timers;
+  std::vector<std::string> warnings; // of what the device draws otherwise
 
   Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, const MethodOptions& chosen);
   void prepare(const RenderOptions& picture);
@@ -42,6 +45,13 @@ StillRenderer::Impl::Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, c
       encode(gpu),
       timers(gpu, Frame::kMostPasses) {
   stage.setNeeds(method->needs());
+  const bool hasPoints = std::ranges::any_of(
+      scene.draws, [&scene](const Draw& draw) { return scene.meshes[draw.mesh].primitive == Primitive::Points; });
+  const float drawn = stage.surfaces().pointSize();
+  if (hasPoints && drawn != scene.pointSize) {
+    warnings.push_back(fmt::format("points of {} pixels are drawn with {}, the nearest that {} offers", scene.pointSize,
+                                   drawn, gpu.properties().deviceName));
+  }
 }
 
 void StillRenderer::Impl::prepare(const RenderOptions& picture) {
@@ -103,6 +113,7 @@ FrameReport StillRenderer::Impl::report(const RenderOptions& picture, const Fram
   report.device = stage.gpu().properties().deviceName;
   report.api = "Vulkan 1.3";
   report.method = options.name;
+  report.warnings = warnings;
   report.width = picture.width;
   report.height = picture.height;
   report.samples = options.samples;

@@ -116,6 +116,17 @@ std::vector<std::uint32_t> triangleList(std::span<const std::uint32_t> indices, 
   return list;
 }
 
+std::vector<std::uint32_t> lineList(std::span<const std::uint32_t> indices, LineTopology topology) {
+  std::vector<std::uint32_t> list;
+  const auto add = [&list](std::uint32_t a, std::uint32_t b) {
+    if (a != b) list.insert(list.end(), {a, b});
+  };
+  const std::size_t step = topology == LineTopology::Lines ? 2 : 1;
+  for (std::size_t i = 0; i + 1 < indices.size(); i += step) add(indices[i], indices[i + 1]);
+  if (topology == LineTopology::Loop && indices.size() > 2) add(indices.back(), indices.front());
+  return list;
+}
+
 void dropDegenerateTriangles(Mesh& mesh) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -290,7 +301,7 @@ void requireDrawable(const Scene& scene) {
           throw LoadError(fmt::format("the model reaches to {:.3g}, farther than {:.0e}", world[axis], farthest));
     }
   }
-  if (!anything) throw LoadError("the file holds no triangles");
+  if (!anything) throw LoadError("the file holds no triangles, lines or points");
 }
 
 } // namespace vitrail::tool

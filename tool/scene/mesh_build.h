@@ -14,6 +14,7 @@
 namespace vitrail::tool {
 
 enum class Topology { Triangles, Strip, Fan };
+enum class LineTopology { Lines, Strip, Loop };
 
 // The triangle list of an index sequence. Triangles of a strip keep the winding of its first one. Indices that do not
 // fill a last triangle are dropped, as GPUs do; so are triangles that name a vertex twice.
@@ -31,6 +32,9 @@ void forEachAttribute(Mesh& mesh, Change change) {
 }
 
 // What follows is for meshes of triangles.
+
+// The list of lines of an index sequence, likewise.
+std::vector<std::uint32_t> lineList(std::span<const std::uint32_t> indices, LineTopology topology);
 
 // Removes the triangles that have no area, in place. Every index is below vertexCount().
 void dropDegenerateTriangles(Mesh& mesh);
@@ -67,7 +71,7 @@ void makeTangents(Mesh& mesh, const TextureSlot& slot);
 // +1 or -1. One that cannot be used is replaced by any direction orthogonal to the normal.
 void setRepairedTangents(Mesh& mesh, std::span<const glm::vec4> tangents);
 
-// Throws LoadError where a scene holds no triangle or reaches beyond what 32-bit floats can draw.
+// Throws LoadError where a scene holds no triangle, line or point, or reaches beyond what 32-bit floats can draw.
 void requireDrawable(const Scene& scene);
 
 } // namespace vitrail::tool

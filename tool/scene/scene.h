@@ -228,6 +228,7 @@ struct Scene {
   std::vector<Light> lights;
   FileFacts file;
   std::vector<std::string> warnings;    // see warn()
+  float pointSize = 3.0F;               // how many pixels a point is across
   std::optional<Background> background; // what the scene asks for where the user does not choose
 };
 

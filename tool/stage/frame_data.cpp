@@ -22,7 +22,7 @@ shaders::FrameData makeFrameData(const View& view, std::uint32_t width, std::uin
   shaders::FrameData data{};
   const glm::mat4 projection = projectionMatrix(local, aspect);
   data.viewProjection = projection * viewMatrix(local);
-  data.depth = glm::vec4(-projection[2][2], projection[3][2], 0.0F, 0.0F);
+  data.depth = glm::vec4(-projection[2][2], projection[3][2], 2.0 / 256.0 / w, 2.0 / 256.0 / h);
   data.cameraToWorld = local.cameraToWorld;
   data.eye = glm::vec4(glm::vec3(local.cameraToWorld[3]), view.orthographic ? 1.0F : 0.0F);
   data.toLight = glm::vec4(glm::normalize(axes * kLightInCamera), 0.0);

@@ -36,12 +36,17 @@ shaders::MaterialData makeMaterialData(const Material& material, std::optional<f
 
 std::uint32_t featuresOf(const Scene& scene, const Material& material, const Mesh& mesh) {
   std::uint32_t features = MaterialTextures::filledSlots(scene, material);
-  if (material.unlit) features = (features & 1U << shaders::SLOT_BASE_COLOR) | shaders::FEATURE_UNLIT;
+  const bool triangles = mesh.primitive == Primitive::Triangles;
+  const bool unlit = material.unlit || (!triangles && mesh.normals.empty());
+  if (!triangles) features &= ~(1U << shaders::SLOT_NORMAL); // they have no surface that tangents could lie in
+  if (mesh.primitive == Primitive::Lines) features |= shaders::FEATURE_LINES;
+  if (mesh.primitive == Primitive::Points) features |= shaders::FEATURE_POINTS;
+  constexpr std::uint32_t kept = 1U << shaders::SLOT_BASE_COLOR | shaders::FEATURE_LINES | shaders::FEATURE_POINTS;
+  if (unlit) features = (features & kept) | shaders::FEATURE_UNLIT;
   if (material.alphaMode == AlphaMode::Mask) features |= shaders::FEATURE_MASK;
   if (!mesh.colors.empty()) features |= shaders::FEATURE_VERTEX_COLOR;
-  const bool flat = mesh.normals.empty() && mesh.primitive == Primitive::Triangles;
-  if (flat && !material.unlit) features |= shaders::FEATURE_FLAT;
-  const bool transmissive = material.transmission > 0.0F && !material.unlit;
+  if (triangles && mesh.normals.empty() && !unlit) features |= shaders::FEATURE_FLAT;
+  const bool transmissive = material.transmission > 0.0F && !unlit;
   if (transmissive) features |= shaders::FEATURE_TRANSMISSION;
   if (!transmissive) features &= ~(1U << shaders::SLOT_TRANSMISSION);
   if (!transmissive && material.blend == BlendMode::Additive) features |= shaders::FEATURE_ADDITIVE;

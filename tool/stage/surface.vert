@@ -4,6 +4,7 @@
 #include "surface_shared.h"
 
 layout(constant_id = 0) const uint kFeatures = 0u;
+layout(constant_id = 63) const float kPointSize = 1.0; // POINT_SIZE_CONSTANT
 
 layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameData frame; };
 layout(set = 0, binding = 1, std140) uniform MaterialBlock { MaterialData material; };
@@ -49,6 +50,9 @@ void main() {
   vec4 local = vec4(inPosition, 1.0);
   vec4 position = vec4(dot(inRow0, local), dot(inRow1, local), dot(inRow2, local), 1.0);
   gl_Position = frame.viewProjection * position;
+  // Along the edge between two rows or columns of pixels a line is drawn in the lower or right one, on every device.
+  if ((kFeatures & FEATURE_LINES) != 0u) gl_Position.xy += gl_Position.w * frame.depth.zw;
+  if ((kFeatures & FEATURE_POINTS) != 0u) gl_PointSize = kPointSize;
   outPosition = position.xyz;
 
   // Normals turn as planes do: by the cofactors, which exist even where the transform has no inverse, scaled so that

@@ -14,7 +14,8 @@ using glm::vec4;
 
 VITRAIL_SHARED_BEGIN
 
-const float LARGEST_HALF = 65504.0f; // of 16-bit floats
+const uint POINT_SIZE_CONSTANT = 63u; // the specialization constant of surface.vert that is the size of points
+const float LARGEST_HALF = 65504.0f;  // of 16-bit floats
 
 // The texture slots of a material, which are also the bindings of its descriptor set.
 const uint SLOT_BASE_COLOR = 0u;
@@ -32,6 +33,8 @@ const uint FEATURE_VERTEX_COLOR = 256u; // without it colours are exact: interpo
 const uint FEATURE_TRANSMISSION = 512u; // light passes through, tinted
 const uint FEATURE_ADDITIVE = 1024u;    // adds its light to what is behind it
 const uint FEATURE_FLAT = 2048u;        // there are no vertex normals: each triangle has that of its plane
+const uint FEATURE_LINES = 1048576u;    // lines, a pixel wide, in place of triangles
+const uint FEATURE_POINTS = 2097152u;   // points
 
 // What all draws of a frame share (std140).
 struct FrameData {
@@ -40,7 +43,7 @@ struct FrameData {
   vec4 eye;     // xyz: the camera's position; w: 1 if orthographic
   vec4 toLight; // xyz: unit vector in the world
   vec4 ray;     // a pixel at (x, y) looks along (x * ray.x - ray.z, ray.w - y * ray.y, -1) in camera axes
-  vec4 depth;   // a perspective camera's depths are depth.x + depth.y * gl_FragCoord.w
+  vec4 depth;   // a perspective camera's depths are depth.x + depth.y * gl_FragCoord.w; zw: 1/256 pixel in clip space
 };
 
 // Where a texture slot samples: (u, v, 1) times two rows, row0.w: which texture coordinates, 0 or 1.

@@ -1,6 +1,8 @@
 #include "surfaces.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -17,7 +19,19 @@ Unique<VkPipelineLayout> makeLayout(const Surfaces& surfaces, const SurfaceProgr
   return makePipelineLayout(surfaces.gpu(), sets, {VK_SHADER_STAGE_FRAGMENT_BIT, program.constantBytes}, program.name);
 }
 
+VkPrimitiveTopology topologyOf(std::uint32_t features) {
+  if ((features & shaders::FEATURE_LINES) != 0) return VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+  if ((features & shaders::FEATURE_POINTS) != 0) return VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+  return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+}
+
 } // namespace
+
+float drawnPointSize(const Gpu& gpu, float wanted) {
+  if (!gpu.features().largePoints) return 1.0F;
+  const auto& range = gpu.properties().limits.pointSizeRange;
+  return std::clamp(wanted, range[0], range[1]);
+}
 
 SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const GpuDraw> draws,
                                    const SurfaceProgram& program, const Describe& describe)
@@ -27,10 +41,12 @@ SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const Gpu
     GraphicsPipelineInfo info;
     info.vertexShader = shaders::surface_vert;
     info.vertices = surfaceVertexLayout();
+    info.topology = topologyOf(draw.features);
     info.depthTest = VK_COMPARE_OP_GREATER;
     describe(draw.features, info);
     info.layout = layout_.get();
     info.constants.emplace_back(0, draw.features);
+    info.constants.emplace_back(shaders::POINT_SIZE_CONSTANT, std::bit_cast<std::uint32_t>(surfaces.pointSize()));
     info.name = fmt::format("{} (features {:#x})", program.name, draw.features);
     pipelines_.emplace(draw.features, makeGraphicsPipeline(surfaces.gpu(), info));
   }
@@ -39,6 +55,7 @@ SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const Gpu
 Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order)
     : gpu_(gpu),
       scene_(gpu, scene, opacity, order),
+      pointSize_(drawnPointSize(gpu, scene.pointSize)),
       transparentRuns_(runsOf(scene_.transparentDraws())),
       viewBuffer_(gpu, sizeof(shaders::FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::Upload,
                   "frame data"),

@@ -55,6 +55,9 @@ struct SurfaceRun {
   std::uint32_t instanceCount = 1;
 };
 
+// What a device makes of the wanted size of points, in pixels: it has bounds of its own.
+float drawnPointSize(const Gpu& gpu, float wanted);
+
 class Surfaces {
  public:
   // With `opacity` every material is transparent. `order` is that of the transparent draws. Throws GpuError.
@@ -62,6 +65,7 @@ class Surfaces {
 
   Gpu& gpu() const { return gpu_; }
   const GpuScene& scene() const { return scene_; }
+  float pointSize() const { return pointSize_; } // in pixels
   // What draws all of a list of draws, in its order.
   static std::vector<SurfaceRun> runsOf(std::span<const GpuDraw> draws);
   const std::vector<SurfaceRun>& transparentRuns() const { return transparentRuns_; }
@@ -85,6 +89,7 @@ class Surfaces {
 
   Gpu& gpu_;
   GpuScene scene_;
+  float pointSize_;
   std::vector<SurfaceRun> transparentRuns_;
   shaders::FrameData view_{};
   GpuBuffer viewBuffer_; // shaders::FrameData

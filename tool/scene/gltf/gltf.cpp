@@ -110,7 +110,7 @@ class SceneBuilder {
     }
   }
 
-  // None where the primitive has no triangles.
+  // None where the primitive shows nothing.
   std::optional<std::uint32_t> meshFor(const MeshKey& key, const GltfMaterial& material, const GltfPose& pose) {
     const auto known = meshIndices_.find(key);
     if (known != meshIndices_.end()) return known->second;

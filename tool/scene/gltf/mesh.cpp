@@ -103,27 +103,45 @@ void repairAttributes(std::vector<Vertex>& vertices, const std::string& where) {
   }
 }
 
-std::optional<Topology> topologyOf(int mode, const std::string& where) {
+Primitive primitiveOf(int mode, const std::string& where) {
   switch (mode) {
     case TINYGLTF_MODE_TRIANGLES:
-      return Topology::Triangles;
     case TINYGLTF_MODE_TRIANGLE_STRIP:
-      return Topology::Strip;
     case TINYGLTF_MODE_TRIANGLE_FAN:
-      return Topology::Fan;
-    case TINYGLTF_MODE_POINTS:
+      return Primitive::Triangles;
     case TINYGLTF_MODE_LINE:
     case TINYGLTF_MODE_LINE_LOOP:
     case TINYGLTF_MODE_LINE_STRIP:
-      return std::nullopt;
+      return Primitive::Lines;
+    case TINYGLTF_MODE_POINTS:
+      return Primitive::Points;
     default:
       throw LoadError(fmt::format("{}: mode is {}, which is none", where, mode));
   }
 }
 
-// The triangle list of a primitive with that many vertices.
-std::vector<std::uint32_t> readTriangles(const GltfDocument& document, const tinygltf::Primitive& primitive,
-                                         Topology topology, std::size_t vertexCount, const std::string& where) {
+std::vector<std::uint32_t> listOf(std::vector<std::uint32_t> indices, int mode) {
+  switch (mode) {
+    case TINYGLTF_MODE_TRIANGLES:
+      return triangleList(indices, Topology::Triangles);
+    case TINYGLTF_MODE_TRIANGLE_STRIP:
+      return triangleList(indices, Topology::Strip);
+    case TINYGLTF_MODE_TRIANGLE_FAN:
+      return triangleList(indices, Topology::Fan);
+    case TINYGLTF_MODE_LINE:
+      return lineList(indices, LineTopology::Lines);
+    case TINYGLTF_MODE_LINE_LOOP:
+      return lineList(indices, LineTopology::Loop);
+    case TINYGLTF_MODE_LINE_STRIP:
+      return lineList(indices, LineTopology::Strip);
+    default:
+      return indices; // points
+  }
+}
+
+// The list of what a primitive with that many vertices consists of.
+std::vector<std::uint32_t> readList(const GltfDocument& document, const tinygltf::Primitive& primitive,
+                                    std::size_t vertexCount, const std::string& where) {
   std::vector<std::uint32_t> indices;
   if (primitive.indices >= 0) {
     indices = readIndices(document, static_cast<std::size_t>(primitive.indices));
@@ -135,7 +153,21 @@ std::vector<std::uint32_t> readTriangles(const GltfDocument& document, const tin
     indices.resize(vertexCount);
     std::iota(indices.begin(), indices.end(), 0U);
   }
-  return triangleList(indices, topology);
+  return listOf(std::move(indices), primitive.mode);
+}
+
+// Lines and points have no plane that a normal could be mended with: one that is none leaves all of them unlit.
+void finishWithoutTriangles(Mesh& mesh, std::span<const glm::vec3> normals) {
+  mesh.normals.clear();
+  for (const glm::vec3& normal : normals) {
+    const float length = glm::length(normal);
+    if (!(length > 0.0F) || !std::isfinite(length)) {
+      mesh.normals.clear();
+      break;
+    }
+    mesh.normals.push_back(packDirection(normal / length));
+  }
+  dropUnusedVertices(mesh);
 }
 
 // Keeps of the vertices what the mesh has. Tangents mean nothing without the normals that they were made for.
@@ -152,6 +184,7 @@ void finish(Mesh& mesh, const std::vector<Vertex>& vertices, const AccessorIndic
     for (const Vertex& vertex : vertices) tangents.push_back(vertex.tangent);
   mesh.normals.clear();
   mesh.tangents.clear();
+  if (mesh.primitive != Primitive::Triangles) return finishWithoutTriangles(mesh, normals);
   dropDegenerateTriangles(mesh);
   if (hasNormals) setRepairedNormals(mesh, std::move(normals));
   if (hasTangents) setRepairedTangents(mesh, tangents);
@@ -178,9 +211,9 @@ Mesh GltfMeshReader::read(std::size_t mesh, std::size_t primitive, const GltfMat
   const tinygltf::Mesh& parent = document_.model.meshes[mesh];
   const tinygltf::Primitive& source = parent.primitives[primitive];
   const std::string where = fmt::format("{} primitive {}", objectName("mesh", mesh, parent.name), primitive);
-  const std::optional<Topology> topology = topologyOf(source.mode, where);
   Mesh result;
-  if (!topology || !source.attributes.contains("POSITION")) return result;
+  result.primitive = primitiveOf(source.mode, where);
+  if (!source.attributes.contains("POSITION")) return result;
 
   VertexReader reader(document_, where);
   std::vector<Vertex> vertices = reader.read(source.attributes, material);
@@ -188,7 +221,7 @@ Mesh GltfMeshReader::read(std::size_t mesh, std::size_t primitive, const GltfMat
   for (std::size_t i = 0; i < std::min(source.targets.size(), pose.weights.size()); ++i)
     if (pose.weights[i] != 0.0)
       reader.morph(source.targets[i], material, static_cast<float>(pose.weights[i]), vertices);
-  result.indices = readTriangles(document_, source, *topology, vertices.size(), where);
+  result.indices = readList(document_, source, vertices.size(), where);
   take(result.indices.size());
   if (pose.skin) applySkin(document_, pose.nodes, *pose.skin, source, where, vertices, result.indices);
   repairAttributes(vertices, where);

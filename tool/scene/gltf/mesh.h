@@ -26,7 +26,7 @@ class GltfMeshReader {
  public:
   explicit GltfMeshReader(const GltfDocument& document);
 
-  // The mesh of one primitive; empty where it holds points or lines. Throws LoadError.
+  // The mesh of one primitive. Throws LoadError.
   Mesh read(std::size_t mesh, std::size_t primitive, const GltfMaterial& material, const GltfPose& pose);
 
  private:
