@@ -15,7 +15,7 @@ import pathlib
 import struct
 import zlib
 
-from streams import stream
+from streams import STREAMS, stream
 
 HERE = pathlib.Path(__file__).resolve().parent
 GOOD = HERE / "good"
@@ -1008,6 +1008,25 @@ def write_seeds(folder):
     for path in sorted([*GOOD.iterdir(), *BAD.iterdir()]):
         if path.suffix in readers:
             (folder / f"{path.parent.name}-{path.name}").write_bytes(bytes([readers[path.suffix]]) + path.read_bytes())
+    # Images, and compressed geometry, outside of glTF.
+    for path in sorted(GOOD.glob("*image_*.gltf")):
+        for image in json.loads(path.read_text()).get("images", []):
+            if "base64," in image.get("uri", "") and "!" not in image["uri"]:
+                data = base64.b64decode(image["uri"].split(",")[1])
+                (folder / f"image-{path.stem}").write_bytes(bytes([4]) + data)
+    for name in STREAMS:
+        if name.startswith("DRACO"):
+            (folder / f"stream-{name}").write_bytes(bytes([5]) + stream(name))
+    meshopt = {
+        "MESHOPT_POSITIONS": (0, 12, 4),
+        "MESHOPT_NORMALS_OCTAHEDRAL": (3, 4, 4),
+        "MESHOPT_ROTATIONS_QUATERNION": (6, 8, 4),
+        "MESHOPT_POSITIONS_EXPONENTIAL": (9, 12, 4),
+        "MESHOPT_TRIANGLES": (1, 4, 6),
+        "MESHOPT_INDICES": (2, 4, 4),
+    }
+    for name, choices in meshopt.items():
+        (folder / f"stream-{name}").write_bytes(bytes([6, *choices]) + stream(name))
 
 
 def main():

@@ -1,13 +1,14 @@
-// Feeds model loading with whatever libFuzzer makes up. The first byte selects the reader (glTF, OBJ, PLY,
-// STL, images, Draco and meshoptimizer inside glTF), the rest is the file. A file
-// either loads and keeps the promises of scene.h, or is refused with a LoadError of one line: anything else is a
-// finding.
+// Feeds model loading with whatever libFuzzer makes up. The first byte selects the reader (glTF, OBJ, PLY, STL, images,
+// and what glTF holds compressed: Draco's and meshoptimizer's data), the rest is the file. A file either loads and
+// keeps the promises of scene.h, or is refused with a LoadError of one line: anything else is a finding.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "scene/image_decode.h"
 #include "scene/load.h"
@@ -49,13 +50,71 @@ void checkScene(const Scene& scene) {
   require(anything, "at least one triangle, line or point");
 }
 
+// A GLB of a JSON text and a binary chunk.
+std::vector<std::byte> glb(std::string json, std::span<const std::byte> binary) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::vector<std::byte> file;
+  const auto text = [&file](const std::string& part) {
+    for (const char c : part) file.push_back(static_cast<std::byte>(c));
+  };
+  const auto number = [&file](std::size_t value) {
+    for (unsigned i = 0; i < 4; ++i) file.push_back(static_cast<std::byte>(value >> 8 * i & 0xffU));
+  };
+  text("glTF");
+  number(2);
+  number(28 + json.size() + binary.size());
+  number(json.size());
+  text("JSON" + json);
+  number(binary.size());
+  text(std::string("BIN\0", 4));
+  file.insert(file.end(), binary.begin(), binary.end());
+  return file;
+}
+
+std::string bufferOf(std::size_t size) { return R"("buffers":[{"byteLength":)" + std::to_string(size) + "}]"; }
+
+// A primitive of those bytes, compressed by Draco.
+std::vector<std::byte> dracoModel(std::span<const std::byte> data) {
+  return glb(
+      R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],)"
+      R"("accessors":[{"componentType":5126,"count":4,"type":"VEC3"},{"componentType":5126,"count":4,"type":"VEC3"},)"
+      R"({"componentType":5126,"count":4,"type":"VEC2"},)"
+      R"({"componentType":5121,"count":4,"type":"VEC4","normalized":true}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2,"COLOR_0":3},)"
+      R"("extensions":{"KHR_draco_mesh_compression":{"bufferView":0,)"
+      R"("attributes":{"POSITION":7,"NORMAL":2,"TEXCOORD_0":5,"COLOR_0":3}}}}]}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":)" +
+          std::to_string(data.size()) + "}]," + bufferOf(data.size()) + "}",
+      data);
+}
+
+// Points at what meshoptimizer makes of those bytes. The first three choose mode and filter, stride and count.
+std::vector<std::byte> meshoptModel(std::span<const std::byte> data) {
+  if (data.size() < 3) return {};
+  const auto choice = std::to_integer<unsigned>(data[0]);
+  const std::array modes{"ATTRIBUTES", "TRIANGLES", "INDICES"};
+  const std::array filters{"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+  const auto stride = std::to_string(std::to_integer<unsigned>(data[1]));
+  const auto count = std::to_string(std::to_integer<unsigned>(data[2]));
+  const std::span<const std::byte> stream = data.subspan(3);
+  return glb(
+      R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":1,"type":"VEC3"}],)"
+      R"("meshes":[{"primitives":[{"mode":0,"attributes":{"POSITION":0}}]}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":12,"extensions":{"EXT_meshopt_compression":{"buffer":0,"byteLength":)" +
+          std::to_string(stream.size()) + R"(,"byteStride":)" + stride + R"(,"count":)" + count + R"(,"mode":")" +
+          modes.at(choice % 3) + R"(","filter":")" + filters.at(choice / 3 % 4) + R"("}}}],)" +
+          bufferOf(stream.size()) + "}",
+      stream);
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto file = std::as_bytes(std::span(data + 1, size - 1));
   try {
-    switch (data[0] % 5) {
+    switch (data[0] % 7) {
       case 0:
         checkScene(loadGltf(file, {}));
         break;
@@ -68,8 +127,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 3:
         checkScene(loadStl(file));
         break;
-      default:
+      case 4:
         checkImage(decodeImage(file));
+        break;
+      case 5:
+        checkScene(loadGltf(dracoModel(file), {}));
+        break;
+      default:
+        checkScene(loadGltf(meshoptModel(file), {}));
         break;
     }
   } catch (const LoadError& error) {
