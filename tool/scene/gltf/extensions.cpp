@@ -39,11 +39,11 @@ constexpr GltfExtension kExtensions[] = {
 
     // Textures.
     {"KHR_texture_transform", Drawn, ""},
-    {"KHR_texture_basisu", Unreadable, "KTX2 textures are missing"},
-    {"EXT_texture_webp", Unreadable, "WebP textures are missing"},
-    {"EXT_texture_avif", Unreadable, "AVIF textures are missing"},
-    {"MSFT_texture_dds", Unreadable, "DDS textures are missing"},
-    {"EXT_texture_video", Unreadable, "videos are missing"},
+    {"KHR_texture_basisu", Left, "KTX2 textures are missing"},
+    {"EXT_texture_webp", Left, "WebP textures are missing"},
+    {"EXT_texture_avif", Left, "AVIF textures are missing"},
+    {"MSFT_texture_dds", Left, "DDS textures are missing"},
+    {"EXT_texture_video", Left, "videos are missing"},
 
     // Materials.
     {"KHR_materials_emissive_strength", Drawn, ""},
