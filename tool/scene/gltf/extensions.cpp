@@ -16,11 +16,11 @@ using enum GltfSupport;
 // clang-format off
 constexpr GltfExtension kExtensions[] = {
     // The scene.
-    {"EXT_mesh_gpu_instancing", Left, "of each instanced mesh one copy is drawn, at its node"},
+    {"EXT_mesh_gpu_instancing", Drawn, ""},
     {"KHR_animation_pointer", Left, "what it animates beside nodes (materials, lights, cameras) stands still"},
     {"KHR_lights_punctual", Left, "the file's lights do not shine"},
-    {"KHR_materials_variants", Left, "the default materials are drawn"},
-    {"KHR_node_visibility", Left, "hidden nodes are drawn"},
+    {"KHR_materials_variants", Drawn, ""},
+    {"KHR_node_visibility", Drawn, ""},
     {"EXT_lights_image_based", Left, "the file's surroundings do not light it"},
     {"EXT_lights_ies", Left, "lights shine the same in all directions"},
     {"MSFT_lod", Left, "the most detailed level is drawn"},
@@ -120,7 +120,7 @@ constexpr GltfExtension kExtensions[] = {
 GltfExtension gltfExtension(std::string_view name) {
   const auto row = std::ranges::find(kExtensions, name, &GltfExtension::name);
   if (row != std::ranges::end(kExtensions)) return *row;
-  return {name, Left, "what it adds to the picture is missing"};
+  return {name, Left, "what it adds to the picture is missing", false};
 }
 
 std::string extensionWarning(std::string_view name) {

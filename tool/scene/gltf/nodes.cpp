@@ -109,10 +109,11 @@ void GltfHierarchy::chooseRoots(Scene& scene) {
     if (parents_[root] == none) continue;
     if (below[root]) {
       if (drawnBelow++ == 0) first[0] = root;
-    } else {
+    } else if (placeOf(parents_[root]) != glm::dmat4(1.0)) {
       if (cutOff++ == 0) first[1] = root;
     }
   }
+  places_.clear();
   if (drawnBelow > 0)
     warn(scene, fmt::format("{}: lists {}{} as a root, which is below another one: it is drawn there alone", where,
                             document_.nodes.name(first[0]), andMore(drawnBelow)));
