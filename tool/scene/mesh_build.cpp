@@ -274,19 +274,10 @@ void requireReach(const glm::dvec3& place) {
       throw LoadError(fmt::format("the model reaches to {:.3g}, farther than {:.0e}", place[axis], farthest));
 }
 
-Bounds boundsOf(const Mesh& mesh) {
-  if (mesh.positions.empty()) return {};
-  Bounds box{mesh.positions[0], mesh.positions[0]};
-  for (const glm::vec3& position : mesh.positions) {
-    box.min = glm::min(box.min, position);
-    box.max = glm::max(box.max, position);
-  }
-  return box;
-}
-
 void requireDrawable(const Scene& scene) {
   std::vector<Bounds> boxes(scene.meshes.size());
-  for (std::size_t i = 0; i < scene.meshes.size(); ++i) boxes[i] = boundsOf(scene.meshes[i]);
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i)
+    if (!scene.meshes[i].indices.empty()) boxes[i] = boundsOf(scene.meshes[i]);
   bool anything = false;
   for (const Draw& draw : scene.draws) {
     anything = anything || !scene.meshes[draw.mesh].indices.empty();

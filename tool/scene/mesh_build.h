@@ -67,9 +67,6 @@ void makeTangents(Mesh& mesh, const TextureSlot& slot);
 // +1 or -1. One that cannot be used is replaced by any direction orthogonal to the normal.
 void setRepairedTangents(Mesh& mesh, std::span<const glm::vec4> tangents);
 
-// The box around a mesh's vertices.
-Bounds boundsOf(const Mesh& mesh);
-
 // Throws LoadError where a place in the world is beyond what 32-bit floats can draw.
 void requireReach(const glm::dvec3& place);
 

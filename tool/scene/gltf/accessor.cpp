@@ -147,10 +147,18 @@ void widen(const Elements& elements, std::size_t first, std::size_t components, 
   }
 }
 
-// Large stretches of a mapped file leave the memory once they are read.
-void releaseLarge(const GltfDocument& document, const Elements& elements) {
-  constexpr std::size_t large = std::size_t{1} << 20U;
-  if (elements.count * elements.stride >= large) releaseBytes(document, elements.bytes);
+// Reads elements part by part. Of a mapped file the memory holds one part at a time.
+template <typename Read>
+void inParts(const GltfDocument& document, const Elements& elements, std::size_t size, Read read) {
+  constexpr std::size_t stretch = std::size_t{1} << 22U; // bytes that are released at once
+  std::size_t released = 0;
+  for (std::size_t first = 0; first < elements.count; first += size) {
+    read(first, std::min(size, elements.count - first));
+    const std::size_t done = std::min((first + size) * elements.stride, elements.bytes.size());
+    if (done - released < stretch) continue;
+    releaseBytes(document, elements.bytes.subspan(released, done - released));
+    released = done;
+  }
 }
 
 // Reads accessors into arrays of `width` components an element; those that the accessor lacks keep the fill value.
@@ -249,11 +257,10 @@ std::vector<std::uint32_t> plainIndices(const GltfDocument& document, std::size_
                  componentSize(source.componentType), true, accessorName(document, accessor));
   std::vector<std::uint32_t> indices(elements.count);
   const auto read = [&]<typename Raw>(Raw) {
-    const std::byte* from = elements.bytes.data();
-    for (std::uint32_t& index : indices) {
-      index = load<Raw>(from);
-      from += elements.stride;
-    }
+    inParts(document, elements, 4096, [&](std::size_t first, std::size_t count) {
+      for (std::size_t i = first; i < first + count; ++i)
+        indices[i] = load<Raw>(elements.bytes.data() + i * elements.stride);
+    });
   };
   if (source.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE)
     read(std::uint8_t{});
@@ -261,7 +268,6 @@ std::vector<std::uint32_t> plainIndices(const GltfDocument& document, std::size_
     read(std::uint16_t{});
   else
     read(std::uint32_t{});
-  releaseLarge(document, elements);
   return indices;
 }
 
@@ -287,13 +293,12 @@ void visitVectors(const GltfDocument& document, std::size_t accessor, int least,
       elementsIn(document, static_cast<std::size_t>(source.bufferView), source.byteOffset, source.count,
                  components * componentSize(source.componentType), true, accessorName(document, accessor));
   std::array<glm::vec4, 1024> part;
-  for (std::size_t first = 0; first < elements.count; first += part.size()) {
-    const std::span<glm::vec4> target = std::span(part).first(std::min(part.size(), elements.count - first));
+  inParts(document, elements, part.size(), [&](std::size_t first, std::size_t count) {
+    const std::span<glm::vec4> target = std::span(part).first(count);
     std::ranges::fill(target, fill);
     widen(elements, first, components, source.componentType, source.normalized, target);
     visit(first, target);
-  }
-  releaseLarge(document, elements);
+  });
 }
 
 std::vector<glm::vec4> readVectors(const GltfDocument& document, std::size_t accessor, int least, int most,

@@ -23,7 +23,7 @@ constexpr GltfExtension kExtensions[] = {
     {"KHR_node_visibility", Drawn, ""},
     {"EXT_lights_image_based", Left, "the file's surroundings do not light it"},
     {"EXT_lights_ies", Left, "lights shine the same in all directions"},
-    {"MSFT_lod", Left, "the most detailed level is drawn"},
+    {"MSFT_lod", Left, "only the most detailed level is drawn"},
     {"KHR_gaussian_splatting", Left, "splats are drawn as points"},
     {"KHR_gaussian_splatting_compression_spz_2", Unreadable, "the splats cannot be read"},
 
@@ -116,6 +116,8 @@ constexpr GltfExtension kExtensions[] = {
 // clang-format on
 
 } // namespace
+
+std::span<const GltfExtension> gltfExtensions() { return kExtensions; }
 
 GltfExtension gltfExtension(std::string_view name) {
   const auto row = std::ranges::find(kExtensions, name, &GltfExtension::name);

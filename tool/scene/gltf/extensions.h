@@ -24,6 +24,9 @@ struct GltfExtension {
   bool known = true;     // false: the table does not have it
 };
 
+// The whole table.
+std::span<const GltfExtension> gltfExtensions();
+
 // The row of an extension. Names that no row has are Left, and it cannot be told what they stand for.
 GltfExtension gltfExtension(std::string_view name);
 

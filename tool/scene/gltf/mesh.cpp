@@ -104,8 +104,9 @@ class MeshArrays {
 
   void readPlaces(const GltfMaterial& material) {
     const auto position = static_cast<std::size_t>(attributes_.at("POSITION"));
-    mesh_.positions.resize(accessorCount(document_, position));
     visitVectors(document_, position, 3, 3, "POSITION", [&](std::size_t first, std::span<const glm::vec4> part) {
+      // Only now it is known that the file has as many as it states.
+      if (first == 0) mesh_.positions.resize(accessorCount(document_, position));
       for (std::size_t i = 0; i < part.size(); ++i) {
         if (!std::isfinite(part[i].x) || !std::isfinite(part[i].y) || !std::isfinite(part[i].z))
           throw LoadError(
@@ -268,18 +269,18 @@ Mesh GltfMeshReader::read(std::size_t mesh, std::size_t primitive, const GltfMat
   Mesh result;
   if (!topology || !source.attributes.contains("POSITION")) return result;
 
-  const std::size_t vertexCount = accessorCount(document_, static_cast<std::size_t>(source.attributes.at("POSITION")));
-  take(vertexCount);
   if (isPosed(source, pose)) {
     std::vector<Vertex> vertices = posedVertices(source, material, pose, where);
-    result.indices = readTriangles(document_, source, *topology, vertexCount, where);
+    take(vertices.size());
+    result.indices = readTriangles(document_, source, *topology, vertices.size(), where);
     if (pose.skin != nullptr) applySkin(document_, *pose.skin, source, where, vertices, result.indices);
     repairAttributes(vertices, where);
     keep(result, vertices, source.attributes);
   } else {
     MeshArrays arrays(document_, source, where, result);
     arrays.readPlaces(material);
-    result.indices = readTriangles(document_, source, *topology, vertexCount, where);
+    take(result.vertexCount());
+    result.indices = readTriangles(document_, source, *topology, result.vertexCount(), where);
     dropDegenerateTriangles(result);
     arrays.readDirections();
   }

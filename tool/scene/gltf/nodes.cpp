@@ -142,7 +142,7 @@ void GltfHierarchy::visit(const std::function<void(const GltfPlacedNode&)>& visi
     std::uint32_t next; // of its children
   };
   const GltfNodes& nodes = document_.nodes;
-  constexpr std::uint64_t mostCopies = 4'000'000;
+  constexpr std::uint64_t mostCopies = 1'000'000;
   std::uint64_t left = nodes.size() + mostCopies;
   const auto arrive = [&](std::uint32_t node, const glm::dmat4& parent, bool visible) {
     if (left-- == 0)
