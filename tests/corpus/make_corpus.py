@@ -295,6 +295,213 @@ def write_good_poses():
     m.save("cameras.gltf")
 
 
+def write_good_hierarchies():
+    """Files whose nodes are no strict trees, and nodes that extensions hide or repeat."""
+    m = triangle()
+    m.doc["nodes"] = [{"mesh": 0}, {"name": "outside", "children": [0], "translation": [5, 0, 0]}]
+    m.save("root_is_child.gltf")
+    m.doc["nodes"][1]["translation"] = [0, 0, 0]
+    m.save("root_is_child_in_place.gltf")
+    # All nodes are listed, as some exporters do.
+    m.doc["nodes"] = [{"mesh": 0, "translation": [0, 1, 0]}, {"children": [0], "translation": [5, 0, 0]}]
+    m.doc["scenes"] = [{"nodes": [0, 1, 1]}]
+    m.save("all_nodes_listed.gltf")
+    m.doc["nodes"] = [
+        {"children": [2, 2], "translation": [1, 0, 0]},
+        {"children": [2], "translation": [0, 1, 0]},
+        {"mesh": 0},
+    ]
+    m.doc["scenes"] = [{"nodes": [0, 1]}]
+    m.save("node_two_parents.gltf")
+
+    m = triangle()
+    m.doc["extensionsUsed"] = ["KHR_node_visibility", "KHR_lights_punctual"]
+    hide = {"extensions": {"KHR_node_visibility": {"visible": False}}}
+    lights = [{"type": "point"}]
+    m.doc["extensions"] = {"KHR_lights_punctual": {"lights": lights}}
+    m.doc["nodes"] = [
+        {"mesh": 0, "extensions": {"KHR_node_visibility": {"visible": True}}},
+        {"mesh": 0, "children": [2, 3], **hide},
+        {"mesh": 0, "extensions": {"KHR_node_visibility": {"visible": True}}},
+        {"extensions": {"KHR_lights_punctual": {"light": 0}}},
+    ]
+    m.doc["scenes"] = [{"nodes": [0, 1]}]
+    m.save("visibility.gltf")
+
+    m = triangle()
+    m.doc["extensionsUsed"] = ["EXT_mesh_gpu_instancing"]
+    half = math.sqrt(0.5)
+    instancing = {
+        "TRANSLATION": m.accessor([0, 0, 0, 3, 0, 0], "VEC3"),
+        "ROTATION": m.accessor([0, 0, 0, 127, 0, 0, round(127 * half), round(127 * half)], "VEC4", BYTE, normalized=True),
+        "SCALE": m.accessor([1, 1, 1, 2, 2, 2], "VEC3"),
+    }
+    m.doc["nodes"] = [
+        {"mesh": 0, "translation": [0, 10, 0], "extensions": {"EXT_mesh_gpu_instancing": {"attributes": instancing}}}
+    ]
+    m.save("instancing.gltf")
+
+    # The same geometry in three meshes, one of which asks for other coordinates that the file does not have.
+    m = triangle()
+    m.put("meshes", copy.deepcopy(m.doc["meshes"][0]))
+    m.put("meshes", copy.deepcopy(m.doc["meshes"][0]))
+    m.doc["meshes"][1]["primitives"][0]["material"] = 0
+    m.doc["meshes"][2]["primitives"][0]["indices"] = m.accessor([0, 2, 1], "SCALAR", UBYTE)
+    m.put("materials", {"name": "other"})
+    m.doc["nodes"] = [{"mesh": 0}, {"mesh": 1}, {"mesh": 2}]
+    m.doc["scenes"] = [{"nodes": [0, 1, 2]}]
+    m.save("shared_geometry.gltf")
+
+    m = triangle()
+    m.doc["nodes"] = [
+        {"mesh": 0, "translation": [500000.25, 0, 4649776.25]},
+        {"camera": 0, "translation": [500000.25, 0, 4649780.25]},
+        {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [500000.25, 0.5, 4649776.25]},
+    ]
+    m.doc["scenes"] = [{"nodes": [0, 1, 2]}]
+    m.doc["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.25}}]
+    m.doc["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point"}]}}
+    m.doc["extensionsUsed"] = ["KHR_lights_punctual"]
+    m.save("far_away.gltf")
+
+
+def write_good_lights():
+    m = triangle()
+    m.doc["extensionsUsed"] = m.doc["extensionsRequired"] = ["KHR_lights_punctual"]
+    lights = [
+        {"type": "directional", "name": "sun", "color": [1, 0.5, 0], "intensity": 2},
+        {"type": "point", "range": 7},
+        {"type": "spot", "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}},
+        {"type": "area"},
+    ]
+    m.doc["extensions"] = {"KHR_lights_punctual": {"lights": lights}}
+    half = math.sqrt(0.5)
+
+    def light(index, **extra):
+        return {"extensions": {"KHR_lights_punctual": {"light": index}}, **extra}
+
+    # A quarter turn about x turns -z to +y; about y, -z to -x.
+    m.doc["nodes"] = [
+        {"mesh": 0},
+        light(0, rotation=[half, 0, 0, half], scale=[3, 3, 3]),
+        {"translation": [0, 0, 4], "children": [3]},
+        light(1, translation=[1, 2, 0]),
+        light(2, rotation=[0, half, 0, half]),
+        light(3),
+    ]
+    m.doc["scenes"] = [{"nodes": [0, 1, 2, 4, 5]}]
+    m.save("lights.gltf")
+
+
+def write_good_variants():
+    m = triangle()
+    m.doc["extensionsUsed"] = ["KHR_materials_variants"]
+    m.doc["extensions"] = {"KHR_materials_variants": {"variants": [{"name": "day"}, {"name": "night"}]}}
+    for name in ("plain", "bright", "dark"):
+        m.put("materials", {"name": name})
+    primitive = m.doc["meshes"][0]["primitives"][0]
+    primitive["material"] = 0
+    mappings = [{"material": 1, "variants": [0]}, {"material": 2, "variants": [1]}]
+    m.doc["meshes"][0]["primitives"] = [
+        primitive,
+        {**primitive, "extensions": {"KHR_materials_variants": {"mappings": mappings}}},
+    ]
+    m.save("variants.gltf")
+
+
+def write_good_extensions():
+    """Extensions that are not drawn: on what is drawn, on what is not, and one that nobody knows."""
+    m = quad(material=0)
+    m.doc["asset"]["generator"] = "make_corpus.py"
+    m.doc["extensionsUsed"] = ["MSFT_lod", "AGI_articulations", "EXAMPLE_unknown", "KHR_xmp_json_ld", "KHR_draco_mesh_compression"]
+    m.doc["extensionsRequired"] = ["EXAMPLE_required"]
+    m.put("materials", {"extensions": {"EXAMPLE_unknown": {}}})
+    m.doc["nodes"] = [
+        {"mesh": 0, "extensions": {"MSFT_lod": {"ids": [1]}}},
+        {"mesh": 0, "extensions": {"AGI_articulations": {}}},
+    ]
+    m.doc["extensions"] = {"KHR_xmp_json_ld": {}}
+    m.save("extensions.gltf")
+
+
+def write_good_animations():
+    """Each way of interpolating, on nodes, a skin and morph targets."""
+    m = triangle()
+    half = math.sqrt(0.5)
+    m.doc["nodes"] = [
+        {"mesh": 0, "name": "moved"},
+        {"mesh": 0, "name": "turned", "translation": [0, 0, 7]},
+        # A quarter turn about z, a scale of (2, 3, 4) and a translation.
+        {"mesh": 0, "name": "matrix", "matrix": [0, 2, 0, 0, -3, 0, 0, 0, 0, 0, 4, 0, 5, 6, 7, 1]},
+        {"mesh": 0, "name": "stepped"},
+        {"mesh": 0, "name": "curved"},
+    ]
+    m.doc["scenes"] = [{"nodes": [0, 1, 2, 3, 4]}]
+    times = m.accessor([1, 3], "SCALAR")
+    samplers = []
+
+    def sampler(values, kind, interpolation=None, component=FLOAT, **extra):
+        output = m.accessor(values, kind, component, **extra)
+        entry = {"input": times, "output": output}
+        if interpolation:
+            entry["interpolation"] = interpolation
+        samplers.append(entry)
+        return len(samplers) - 1
+
+    def channel(index, node, path):
+        return {"sampler": index, "target": {"node": node, "path": path}}
+
+    # The second rotation is a quarter turn about z, as the negated quaternion: the short way there is the other one.
+    # In 16-bit integers, of which 23170 is the root of a half.
+    turns = [0, 0, 0, 32767, 0, 0, -23170, -23170]
+    first = [
+        channel(sampler([0, 0, 0, 4, 0, 0], "VEC3"), 0, "translation"),
+        channel(sampler(turns, "VEC4", "LINEAR", SHORT, normalized=True), 1, "rotation"),
+        channel(sampler([1, 1, 1, 0, 0, 0], "VEC3"), 2, "scale"),
+        channel(sampler([1, 0, 0, 2, 0, 0], "VEC3", "STEP"), 3, "translation"),
+        # From 0 with slope 2 to 4 with slope 0, over 2 seconds.
+        channel(sampler([0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 4, 0, 0, 9, 9, 9], "VEC3", "CUBICSPLINE"), 4, "translation"),
+        {"sampler": 0, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": "/x"}}}},
+        {"sampler": 0, "target": {"path": "translation"}},
+    ]
+    m.put("animations", {"name": "walk", "channels": first, "samplers": samplers})
+    later = m.accessor([0, 0.5, 10.5], "SCALAR")
+    up = {"input": later, "output": m.accessor([0, 0, 0, 0, 1, 0, 0, 2, 0], "VEC3")}
+    m.put("animations", {"name": "rise", "channels": [channel(0, 0, "translation")], "samplers": [up]})
+    m.save("animations.gltf")
+
+    # A joint that turns by a quarter about z within 2 seconds; the triangle's second corner follows it.
+    m = Model()
+    m.doc["nodes"] = [{"mesh": 0, "skin": 0, "translation": [100, 0, 0]}, {"children": [2]}, {"translation": [0, 0, 1]}]
+    m.doc["scenes"] = [{"nodes": [0, 1]}]
+    identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+    m.put("skins", {"joints": [1, 2], "inverseBindMatrices": m.accessor(identity * 2, "MAT4")})
+    m.mesh(
+        {
+            "POSITION": m.accessor(TRIANGLE, "VEC3"),
+            "NORMAL": m.accessor(UP * 3, "VEC3"),
+            "JOINTS_0": m.accessor([0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0], "VEC4", UBYTE),
+            "WEIGHTS_0": m.accessor([1, 0, 0, 0] * 3, "VEC4"),
+        }
+    )
+    turn = {"input": m.accessor([0, 2], "SCALAR"), "output": m.accessor([0, 0, 0, 1, 0, 0, half, half], "VEC4")}
+    m.put("animations", {"channels": [channel(0, 1, "rotation")], "samplers": [turn]})
+    m.save("animated_skin.gltf")
+
+    m = triangle()
+    m.doc["meshes"][0]["primitives"][0]["targets"] = [
+        {"POSITION": m.accessor([0, 0, 1] * 3, "VEC3")},
+        {"POSITION": m.accessor([1, 0, 0] * 3, "VEC3")},
+    ]
+    m.doc["meshes"][0]["weights"] = [1, 1]
+    fade = {
+        "input": m.accessor([0, 1], "SCALAR"),
+        "output": m.accessor([0, 0, 255, 51], "SCALAR", UBYTE, normalized=True),
+    }
+    m.put("animations", {"name": "0", "channels": [channel(0, 0, "weights")], "samplers": [fade]})
+    m.save("animated_morph.gltf")
+
+
 def write_good_materials():
     m = quad(material=0)
     m.put("images", {"uri": data_uri(RED_GREEN, "image/png")})
@@ -829,7 +1036,7 @@ def bad_documents():
     doc["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0, "znear": 1}}]
     doc["nodes"][0]["camera"] = 0
     yield "camera_flat", doc
-    yield simple("extension_required", "extensionsRequired", ["KHR_techniques_webgl"])
+    yield simple("extension_required", "extensionsRequired", ["KHR_accessor_float64"])
     yield "index_range", plain(indexed([0, 1, 3]))
     yield "index_restart", plain(indexed([0, 1, 65535]))
     yield "index_floats", plain(indexed([0, 1, 2], FLOAT))
@@ -846,7 +1053,30 @@ def bad_documents():
     yield simple("material_factor_type", "materials", [{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]}}])
     yield simple("mesh_mode", "meshes", 0, "primitives", 0, "mode", 7)
     yield simple("node_cycle", "nodes", [{"mesh": 0}, {"children": [2]}, {"children": [1]}])
-    yield simple("node_two_parents", "nodes", [{"children": [2]}, {"children": [2]}, {"mesh": 0}])
+    yield simple("node_hidden", "nodes", [{"mesh": 0, "extensions": {"KHR_node_visibility": {"visible": False}}}])
+    yield simple("node_light_range", "nodes", [{"mesh": 0, "extensions": {"KHR_lights_punctual": {"light": 2}}}])
+    # Sixty-four levels that all lead to the next twice would make 2^64 triangles.
+    levels = [{"children": [2 * i + 2, 2 * i + 3]} for i in range(64) for _ in range(2)]
+    yield simple("node_copies", "nodes", [*levels, {"mesh": 0}, {"mesh": 0}])
+    wrong = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 7}}}
+    yield simple("instancing_range", "nodes", [{"mesh": 0, "extensions": wrong}])
+
+    def instanced():
+        m = triangle()
+        attributes = {"TRANSLATION": 0, "SCALE": m.accessor([1, 1, 1], "VEC3")}
+        m.doc["nodes"] = [{"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": attributes}}}]
+        return m
+
+    yield "instancing_counts", plain(instanced)
+    yield simple("variant_range", "meshes", 0, "primitives", 0, "extensions", {
+        "KHR_materials_variants": {"mappings": [{"material": 0, "variants": [0]}]}
+    })
+    yield simple("animation_accessor_range", "animations", [{"channels": [], "samplers": [{"input": 0, "output": 1}]}])
+    yield simple("light_type", "extensions", {"KHR_lights_punctual": {"lights": [{"color": [1, 1, 1]}]}})
+    doc = plain(triangle)
+    del doc["accessors"][0]["bufferView"]
+    doc["meshes"][0]["primitives"][0]["extensions"] = {"KHR_gaussian_splatting_compression_spz_2": {"bufferView": 0}}
+    yield "extension_unreadable", doc
     yield simple("node_child_range", "nodes", 0, "children", [5])
     yield simple("node_mesh_range", "nodes", 0, "mesh", 1)
     yield simple("node_matrix_short", "nodes", 0, "matrix", [1] * 15)
@@ -1040,6 +1270,11 @@ def main():
     BAD.mkdir(exist_ok=True)
     write_good_shapes()
     write_good_poses()
+    write_good_hierarchies()
+    write_good_lights()
+    write_good_variants()
+    write_good_extensions()
+    write_good_animations()
     write_good_materials()
     write_good_transmission()
     write_good_plain()

@@ -44,10 +44,11 @@ TEST(Cli, HelpPagesAndVersion) {
 
 TEST(Cli, TheHelpPageNamesEveryOption) {
   const std::string help = vitrail({"render", "--help"}).out;
-  for (const char* option : {"--scene",   "--count",      "--seed",          "--size",      "--camera",       "--orbit",
-                             "--opacity", "--background", "--output",        "-o",          "--json",         "--quiet",
-                             "--device",  "--validate",   "--method",        "--samples",   "--msaa-resolve", "--nodes",
-                             "--resolve", "--layers",     "--memory-budget", "--list-build"}) {
+  for (const char* option : {"--scene",         "--count",        "--seed",       "--size",      "--camera",
+                             "--orbit",         "--opacity",      "--background", "--output",    "-o",
+                             "--json",          "--quiet",        "--device",     "--validate",  "--method",
+                             "--samples",       "--msaa-resolve", "--nodes",      "--resolve",   "--layers",
+                             "--memory-budget", "--list-build",   "--time",       "--animation", "--variant"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
 }
@@ -133,6 +134,11 @@ TEST(Cli, WrongUsageIsOneLineAndExitCode2) {
       {with({"--method", "insertion", "--samples", "4"}), "one sample"},
       {with({"--method", "unsorted", "--memory-budget", "1"}), "--memory-budget"},
       {with({"--size"}), "--size"},
+      {with({"--time", "soon"}), "--time"},
+      {with({"--time", "nan"}), "--time"},
+      {with({"--time", "1"}), "a built-in scene has none"},
+      {with({"--animation", "0"}), "a built-in scene has none"},
+      {with({"--variant", "red"}), "a built-in scene has none"},
   };
   for (const auto& [arguments, reason] : cases) {
     for (const std::string& tool : kTools) expectRefusal(tool, arguments, 2, reason);
@@ -150,6 +156,18 @@ TEST(Cli, WhatCannotBeDoneIsOneLineAndExitCode1) {
   expectRefusal(kTool, {"render", "--scene", "spheres", "-o", "a.png", "--device", "abacus"}, 1, "abacus");
   expectRefusal(kTool, {"render", "--scene", "spheres", "-o", "a.png", "--device", "99"}, 1, "99");
   expectRefusal(kTool, {"render", "--scene", "spheres", "-o", "a.png", "--size", "65536x1"}, 1, "too large");
+}
+
+TEST(Cli, WhatAModelDoesNotHaveIsRefusedWithWhatItHas) {
+  const std::string good = std::string(VITRAIL_TEST_CORPUS) + "/good/";
+  for (const std::string& tool : kTools) {
+    expectRefusal(tool, {"render", good + "variants.gltf", "--variant", "dusk", "-o", "a.png"}, 1,
+                  "\"day\", \"night\"");
+    expectRefusal(tool, {"render", good + "triangle.gltf", "--time", "0", "-o", "a.png"}, 1, "holds no animations");
+    expectRefusal(tool, {"bench", good + "animations.gltf", "--animation", "fly"}, 1, "\"walk\"");
+    expectRefusal(tool, {"bench", "--scene", "spheres", "--time", "1"}, 2, "a built-in scene has none");
+    expectRefusal(tool, {"compare", good + "variants.gltf", "--variant", "dusk"}, 1, "\"day\"");
+  }
 }
 
 TEST(Cli, EveryBadFileOfTheCorpusIsRefused) {

@@ -86,7 +86,7 @@ TEST(LoadCompressed, MeshoptStripsAndExponents) {
 TEST(LoadCompressed, MeshoptQuaternions) {
   const std::filesystem::path path = std::filesystem::path(VITRAIL_TEST_CORPUS) / "good" / "meshopt_rotations.gltf";
   const std::vector<std::byte> file = readFile(path);
-  const GltfDocument document = openGltf(file, path.parent_path());
+  const GltfDocument document = openGltf(MappedFile(file), path.parent_path());
   const std::vector<glm::vec4> rotations = readVectors(document, 1, 4, 4, "rotations");
   const float h = std::sqrt(0.5F);
   const std::array<glm::vec4, 4> expected{{{0, 0, 0, 1}, {0, 0, h, h}, {h, 0, 0, h}, {0.5F, 0.5F, -0.5F, 0.5F}}};

@@ -16,10 +16,6 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-glm::vec3 placed(const Draw& draw, const glm::vec3& position) {
-  return glm::vec3(draw.transform * glm::vec4(position, 1.0F));
-}
-
 // The corners of a mesh's triangles, in order.
 std::vector<glm::vec3> corners(const Mesh& mesh) {
   std::vector<glm::vec3> positions;
@@ -130,7 +126,7 @@ TEST(LoadGltf, SparseAndZeroFilledAccessors) {
 TEST(LoadGltf, NormalizedIntegersAndQuantizedPositions) {
   const Scene scene = loadGood("normalized.gltf");
   const std::vector<Vertex> vertices = scene.meshes.at(0).vertices();
-  expectNear(placed(scene.draws.at(0), vertices[1].position), {2.0F, 0.0F, 0.0F});
+  expectNear(placed(scene, 0, vertices[1].position), {2.0F, 0.0F, 0.0F});
   expectNear(vertices[2].position, {0.0F, -1.0F, 0.0F});
   expectNear(vertices[0].normal, {0.0F, 0.0F, -1.0F});
   EXPECT_NEAR(vertices[1].texCoord0.x, 1.0F, 1e-6F);
@@ -181,8 +177,8 @@ TEST(LoadGltf, TheDefaultSceneIsDrawnThroughItsHierarchy) {
   const Scene scene = loadGood("two_scenes.gltf");
   ASSERT_EQ(scene.draws.size(), 1U);
   // The child moves by 10 along x; its parent doubles, turns x to y, and moves by (1, 2, 3).
-  expectNear(placed(scene.draws[0], {0.0F, 0.0F, 0.0F}), {1.0F, 22.0F, 3.0F}, 1e-4F);
-  expectNear(placed(scene.draws[0], {1.0F, 0.0F, 0.0F}), {1.0F, 24.0F, 3.0F}, 1e-4F);
+  expectNear(placed(scene, 0, {0.0F, 0.0F, 0.0F}), {1.0F, 22.0F, 3.0F}, 1e-4F);
+  expectNear(placed(scene, 0, {1.0F, 0.0F, 0.0F}), {1.0F, 24.0F, 3.0F}, 1e-4F);
 }
 
 TEST(LoadGltf, WithoutADefaultTheFirstSceneIsDrawn) {

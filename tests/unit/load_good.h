@@ -10,8 +10,23 @@
 
 namespace vitrail::tool {
 
-inline Scene loadGood(const std::string& name) {
-  return loadModel(std::filesystem::path(VITRAIL_TEST_CORPUS) / "good" / name);
+inline Scene loadGood(const std::string& name, const LoadOptions& options = {}) {
+  return loadModel(std::filesystem::path(VITRAIL_TEST_CORPUS) / "good" / name, options);
+}
+
+// What a good file is refused with under such options; empty where it loads.
+inline std::string refusalOf(const std::string& name, const LoadOptions& options) {
+  try {
+    loadGood(name, options);
+    return {};
+  } catch (const LoadError& error) {
+    return error.what();
+  }
+}
+
+// Where a draw puts a position of its mesh, in the space of the file.
+inline glm::dvec3 placed(const Scene& scene, std::size_t draw, const glm::vec3& position) {
+  return scene.origin + glm::dvec3(glm::dmat4(scene.draws.at(draw).transform) * glm::dvec4(position, 1.0));
 }
 
 inline void expectNear(const glm::vec3& actual, const glm::vec3& expected, float tolerance = 1e-5F) {

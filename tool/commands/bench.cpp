@@ -44,7 +44,7 @@ Subject openNamed(const std::string& name, std::optional<std::uint32_t> count) {
 // Subject `index` of the scenes that were asked for.
 Subject openSubject(const BenchArguments& arguments, std::size_t index) {
   if (!arguments.model.empty()) {
-    return {std::filesystem::path(arguments.model).filename().string(), {}, openModel(arguments.model)};
+    return {std::filesystem::path(arguments.model).filename().string(), {}, openModel(arguments.model, arguments.load)};
   }
   std::optional<std::uint32_t> count;
   if (!arguments.counts.empty()) count = arguments.counts[arguments.counts.size() > 1 ? index : 0];
@@ -203,7 +203,7 @@ void runBench(const CLI::App& command, BenchArguments arguments) {
 
 void addBenchCommand(CLI::App& app, std::function<void()>& run) {
   CLI::App* command = app.add_subcommand("bench");
-  setHelpPage(*command, kBenchHelp);
+  setHelpPage(*command, benchHelp());
   const auto arguments = std::make_shared<BenchArguments>();
   addBenchOptions(*command, *arguments);
   command->callback([command, arguments, &run] { run = [command, arguments] { runBench(*command, *arguments); }; });

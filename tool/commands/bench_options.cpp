@@ -8,10 +8,13 @@
 
 #include "errors.h"
 #include "option_values.h"
+#include "scene_options.h"
 
 namespace vitrail::tool {
 
-const char* const kBenchHelp =
+namespace {
+
+constexpr const char* kBenchHelp =
     R"(Measures what transparency methods cost on a device, against blending in no order, and tells
 which one to use there.
 
@@ -28,6 +31,7 @@ What to draw:
   MODEL                 a .gltf, .glb, .obj, .ply or .stl file
   --scene NAME,...      built-in scenes (default spheres,planes,hairball; vitrail scenes lists all)
   --count N,...         how many spheres, panes, ...: one number for all scenes, or one for each
+@load@
   --size WxH            pixels (default 1280x720; of sweeps on a CPU 320x180)
   --opacity A           makes every material translucent, 0.004 to 1
 
@@ -72,8 +76,6 @@ Examples:
   vitrail bench engine.glb --opacity 0.25 --methods linked-list --nodes compact,standard,hdr
 )";
 
-namespace {
-
 std::optional<std::uint32_t> sampleCount(const std::string& text) {
   constexpr std::array<std::string_view, 4> kCounts{"1", "2", "4", "8"};
   return std::ranges::count(kCounts, text) > 0 ? numberOf<std::uint32_t>(text) : std::nullopt;
@@ -106,6 +108,8 @@ void checkSweeps(const CLI::App& command, BenchArguments& arguments) {
 
 } // namespace
 
+std::string benchHelp() { return withText(kBenchHelp, "@load@", kLoadHelp); }
+
 void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
   command.add_option("MODEL", arguments.model);
   command.add_option("--json", arguments.json);
@@ -115,6 +119,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
                      sweepNamed);
   command.add_option("--device", arguments.device);
   addWarningOptions(command, arguments);
+  addLoadOptions(command, arguments.load);
   addSize(command, arguments.width, arguments.height);
   addOpacity(command, arguments.opacity);
   addFrames(command, "--repeat", arguments.repeats);
@@ -136,6 +141,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
 
 void checkBenchArguments(const CLI::App& command, BenchArguments& arguments) {
   checkLimitsOf(arguments.matrix.methods, arguments.matrix.limits);
+  checkLoadOptions(arguments.load, !arguments.model.empty());
   if (!arguments.model.empty()) {
     if (!arguments.scenes.empty()) throw UsageError("a model file and --scene exclude each other: name one of them");
     if (!arguments.counts.empty()) throw UsageError("--count is for built-in scenes: add --scene NAME");

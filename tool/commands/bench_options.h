@@ -10,12 +10,14 @@
 
 #include "../bench/matrix.h"
 #include "../bench/sweep.h"
+#include "../scene/load.h"
 #include "warnings.h"
 
 namespace vitrail::tool {
 
 struct BenchArguments : WarningOptions {
   std::string model; // empty: built-in scenes
+  LoadOptions load;
   std::vector<std::string> scenes;
   std::vector<std::uint32_t> counts; // none, one for all scenes, or one each
   BenchMatrix matrix;
@@ -37,6 +39,6 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments);
 // Checks what one option alone does not show, and fills in the default scenes. Throws UsageError.
 void checkBenchArguments(const CLI::App& command, BenchArguments& arguments);
 
-extern const char* const kBenchHelp;
+std::string benchHelp();
 
 } // namespace vitrail::tool

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "../scene/load.h"
 #include "errors.h"
 #include "option_values.h"
 
@@ -23,6 +22,7 @@ constexpr std::string_view kSceneHelp =
   --scene NAME          a built-in scene (vitrail scenes lists them)
   --count N             how many spheres, planes, ... the scene has
   --seed S              another arrangement of the same scene (default 1)
+@load@
 
 How to look at it:
   --size WxH            pixels (default 1280x720)
@@ -96,13 +96,36 @@ void addSceneOptions(CLI::App& command, SceneArguments& arguments) {
   addSize(command, arguments.width, arguments.height);
   addOpacity(command, arguments.opacity);
   addPointSize(command, arguments.pointSize);
+  addLoadOptions(command, arguments.load);
   command.add_option_function<std::string>("--orbit",
                                            [&arguments](const std::string& text) { arguments.orbit = orbitOf(text); });
   command.add_option_function<std::string>(
       "--background", [&arguments](const std::string& text) { arguments.background = backgroundOf(text); });
 }
 
-std::string withSceneHelp(const std::string& page) { return withText(page, "@scene@", kSceneHelp); }
+const std::string_view kLoadHelp =
+    R"(  --time T              shows the file's animation at T seconds (default: the rest pose)
+  --animation N         which animation: its name, or its number from 0 (default: the first)
+  --variant NAME        with the materials of one of the file's variants (default: its default ones))";
+
+std::string withSceneHelp(const std::string& page) {
+  return withText(withText(page, "@scene@", kSceneHelp), "@load@", kLoadHelp);
+}
+
+void addLoadOptions(CLI::App& command, LoadOptions& options) {
+  command.add_option_function<std::string>("--time", [&options](const std::string& text) {
+    options.time = numberOf<double>(text);
+    if (!options.time || !std::isfinite(*options.time))
+      throw CLI::ValidationError("--time", fmt::format("'{}' is not a number of seconds", text));
+  });
+  command.add_option("--animation", options.animation);
+  command.add_option("--variant", options.variant);
+}
+
+void checkLoadOptions(const LoadOptions& options, bool model) {
+  if (!model && (options.time || options.animation || options.variant))
+    throw UsageError("--time, --animation and --variant are for model files: a built-in scene has none");
+}
 
 void checkSceneArguments(const SceneArguments& arguments, const std::string& command) {
   if (arguments.model.empty() == arguments.scene.empty()) {
@@ -114,13 +137,14 @@ void checkSceneArguments(const SceneArguments& arguments, const std::string& com
   if (arguments.scene.empty() && (arguments.count || arguments.seed)) {
     throw UsageError("--count and --seed are for built-in scenes: add --scene NAME");
   }
+  checkLoadOptions(arguments.load, !arguments.model.empty());
   if (arguments.camera && arguments.orbit)
     throw UsageError("--camera and --orbit exclude each other: give one of them");
 }
 
-Scene openModel(const std::string& file) {
+Scene openModel(const std::string& file, const LoadOptions& options) {
   try {
-    return loadModel(file);
+    return loadModel(file, options);
   } catch (const LoadError& error) {
     throw std::runtime_error(fmt::format("{}: {}", file, error.what()));
   }
@@ -136,7 +160,7 @@ Scene openBuiltin(const std::string& name, const BuiltinOptions& options) {
 
 Scene openScene(const SceneArguments& arguments) {
   Scene scene = arguments.scene.empty()
-                    ? openModel(arguments.model)
+                    ? openModel(arguments.model, arguments.load)
                     : openBuiltin(arguments.scene, {arguments.count, arguments.seed.value_or(BuiltinOptions{}.seed)});
   scene.pointSize = arguments.pointSize.value_or(scene.pointSize);
   return scene;

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
 #include "../render/still.h"
 #include "../scene/builtin/builtin.h"
 #include "../scene/camera.h"
+#include "../scene/load.h"
 #include "../scene/scene.h"
 #include "warnings.h"
 
@@ -17,6 +19,7 @@ namespace vitrail::tool {
 
 struct SceneArguments : WarningOptions {
   std::string model; // empty: a built-in scene
+  LoadOptions load;
   std::string scene;
   std::optional<std::uint32_t> count;
   std::optional<std::uint32_t> seed;
@@ -35,11 +38,20 @@ void addSceneOptions(CLI::App& command, SceneArguments& arguments);
 // A help page with all of them and MODEL in place of the mark @scene@.
 std::string withSceneHelp(const std::string& page);
 
+// --time, --animation and --variant.
+void addLoadOptions(CLI::App& command, LoadOptions& options);
+
+// Their lines of a help page.
+extern const std::string_view kLoadHelp;
+
+// Throws UsageError where a built-in scene is to be drawn with one of them.
+void checkLoadOptions(const LoadOptions& options, bool model);
+
 // Checks what one option alone does not show. Throws UsageError.
 void checkSceneArguments(const SceneArguments& arguments, const std::string& command);
 
 // Throws std::runtime_error that names the file, or UsageError.
-Scene openModel(const std::string& file);
+Scene openModel(const std::string& file, const LoadOptions& options);
 Scene openBuiltin(const std::string& name, const BuiltinOptions& options);
 Scene openScene(const SceneArguments& arguments);
 

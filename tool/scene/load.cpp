@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cctype>
 #include <new>
+#include <span>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -37,10 +38,15 @@ Scene loadModel(const std::filesystem::path& path, const LoadOptions& options) {
   const std::string extension = extensionOf(path);
   try {
     // A missing file is the more helpful thing to say about a mistyped name.
-    const std::vector<std::byte> file = readFile(path);
+    MappedFile mapped(path);
+    const std::span<const std::byte> file = mapped.bytes();
     Scene scene;
     if (extension == "gltf" || extension == "glb")
-      scene = loadGltf(file, folderOf(path), options);
+      scene = loadGltf(std::move(mapped), folderOf(path), options);
+    else if (options.time || options.animation)
+      throw LoadError("holds no animations: files of its format cannot");
+    else if (options.variant)
+      throw LoadError("has no variants of its materials: files of its format cannot");
     else if (extension == "obj")
       scene = loadObj(file, folderOf(path));
     else if (extension == "ply")

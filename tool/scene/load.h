@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "read_file.h"
 #include "scene.h"
 
 namespace vitrail::tool {
@@ -33,6 +34,7 @@ Scene loadModel(const std::filesystem::path& path, const LoadOptions& options = 
 // The glTF part, also reachable from memory for fuzzing: `base` is the folder for external buffers and images; when it
 // is empty external files are refused.
 Scene loadGltf(std::span<const std::byte> file, const std::filesystem::path& base, const LoadOptions& options = {});
+Scene loadGltf(MappedFile file, const std::filesystem::path& base, const LoadOptions& options = {});
 
 // The other formats, likewise. `base` is the folder for an OBJ's .mtl and for textures; when it is empty none are read.
 // Missing ones leave a plain material and a warning.

@@ -138,13 +138,15 @@ void dropDegenerateTriangles(Mesh& mesh) {
 }
 
 void dropUnusedVertices(Mesh& mesh) {
+  // Most meshes have none, and find out at the cost of a bit a vertex.
+  std::vector<bool> used(mesh.vertexCount(), false);
+  for (const std::uint32_t index : mesh.indices) used[index] = true;
+  if (std::ranges::find(used, false) == used.end()) return;
   constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> newIndex(mesh.vertexCount(), unused);
-  for (const std::uint32_t index : mesh.indices) newIndex[index] = 0;
   std::uint32_t kept = 0;
-  for (std::uint32_t& place : newIndex)
-    if (place != unused) place = kept++;
-  if (kept == mesh.vertexCount()) return;
+  for (std::size_t i = 0; i < newIndex.size(); ++i)
+    if (used[i]) newIndex[i] = kept++;
   forEachAttribute(mesh, [&](auto& values) {
     for (std::size_t i = 0; i < newIndex.size(); ++i)
       if (newIndex[i] != unused) values[newIndex[i]] = values[i];
@@ -275,19 +277,18 @@ void setRepairedTangents(Mesh& mesh, std::span<const glm::vec4> tangents) {
   }
 }
 
-void requireDrawable(const Scene& scene) {
+void requireReach(const glm::dvec3& place) {
   // The squares of lengths up to here are still well inside the range of a 32-bit float.
   constexpr double farthest = 1e15;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(std::abs(place[axis]) <= farthest))
+      throw LoadError(fmt::format("the model reaches to {:.3g}, farther than {:.0e}", place[axis], farthest));
+}
+
+void requireDrawable(const Scene& scene) {
   std::vector<Bounds> boxes(scene.meshes.size());
-  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    const std::vector<glm::vec3>& positions = scene.meshes[i].positions;
-    if (positions.empty()) continue;
-    boxes[i] = {positions[0], positions[0]};
-    for (const glm::vec3& position : positions) {
-      boxes[i].min = glm::min(boxes[i].min, position);
-      boxes[i].max = glm::max(boxes[i].max, position);
-    }
-  }
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i)
+    if (!scene.meshes[i].indices.empty()) boxes[i] = boundsOf(scene.meshes[i]);
   bool anything = false;
   for (const Draw& draw : scene.draws) {
     anything = anything || !scene.meshes[draw.mesh].indices.empty();
@@ -295,10 +296,7 @@ void requireDrawable(const Scene& scene) {
     for (int corner = 0; corner < 8; ++corner) {
       const glm::dvec4 local((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
                              (corner & 4) != 0 ? box.max.z : box.min.z, 1.0);
-      const glm::dvec4 world = glm::dmat4(draw.transform) * local;
-      for (int axis = 0; axis < 3; ++axis)
-        if (!(std::abs(world[axis]) <= farthest))
-          throw LoadError(fmt::format("the model reaches to {:.3g}, farther than {:.0e}", world[axis], farthest));
+      requireReach(glm::dvec3(glm::dmat4(draw.transform) * local));
     }
   }
   if (!anything) throw LoadError("the file holds no triangles, lines or points");

@@ -71,6 +71,9 @@ void makeTangents(Mesh& mesh, const TextureSlot& slot);
 // +1 or -1. One that cannot be used is replaced by any direction orthogonal to the normal.
 void setRepairedTangents(Mesh& mesh, std::span<const glm::vec4> tangents);
 
+// Throws LoadError where a place in the world is beyond what 32-bit floats can draw.
+void requireReach(const glm::dvec3& place);
+
 // Throws LoadError where a scene holds no triangle, line or point, or reaches beyond what 32-bit floats can draw.
 void requireDrawable(const Scene& scene);
 

@@ -2,6 +2,7 @@
 #include "accessor.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <span>
 #include <string>
@@ -112,6 +113,54 @@ Value component(const std::byte* from, int type, bool normalized) {
   }
 }
 
+// Widens elements of floats, or of integers, to four components; those that they lack are the fill's already.
+template <typename Raw>
+void widen(const Elements& elements, std::size_t first, std::size_t components, float scale,
+           std::span<glm::vec4> target) {
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    const std::byte* from = elements.bytes.data() + (first + i) * elements.stride;
+    float values[4] = {target[i].x, target[i].y, target[i].z, target[i].w};
+    for (std::size_t c = 0; c < components; ++c) {
+      const auto value = static_cast<float>(load<Raw>(from + c * sizeof(Raw)));
+      values[c] = scale == 0.0F ? value : std::max(value / scale, -1.0F);
+    }
+    target[i] = {values[0], values[1], values[2], values[3]};
+  }
+}
+
+void widen(const Elements& elements, std::size_t first, std::size_t components, int type, bool normalized,
+           std::span<glm::vec4> target) {
+  const auto scale = [normalized](float largest) { return normalized ? largest : 0.0F; };
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return widen<std::int8_t>(elements, first, components, scale(127.0F), target);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return widen<std::uint8_t>(elements, first, components, scale(255.0F), target);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return widen<std::int16_t>(elements, first, components, scale(32767.0F), target);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return widen<std::uint16_t>(elements, first, components, scale(65535.0F), target);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return widen<std::uint32_t>(elements, first, components, scale(4294967295.0F), target);
+    default:
+      return widen<float>(elements, first, components, 0.0F, target);
+  }
+}
+
+// Reads elements part by part. Of a mapped file the memory holds one part at a time.
+template <typename Read>
+void inParts(const GltfDocument& document, const Elements& elements, std::size_t size, Read read) {
+  constexpr std::size_t stretch = std::size_t{1} << 22U; // bytes that are released at once
+  std::size_t released = 0;
+  for (std::size_t first = 0; first < elements.count; first += size) {
+    read(first, std::min(size, elements.count - first));
+    const std::size_t done = std::min((first + size) * elements.stride, elements.bytes.size());
+    if (done - released < stretch) continue;
+    releaseBytes(document, elements.bytes.subspan(released, done - released));
+    released = done;
+  }
+}
+
 // Reads accessors into arrays of `width` components an element; those that the accessor lacks keep the fill value.
 template <typename Value>
 class Reader {
@@ -200,20 +249,68 @@ bool holdsUnsigned(const tinygltf::Accessor& accessor) {
                                   accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
 }
 
+// Those that are neither sparse nor without data.
+std::vector<std::uint32_t> plainIndices(const GltfDocument& document, std::size_t accessor) {
+  const tinygltf::Accessor& source = document.model.accessors[accessor];
+  const Elements elements =
+      elementsIn(document, static_cast<std::size_t>(source.bufferView), source.byteOffset, source.count,
+                 componentSize(source.componentType), true, accessorName(document, accessor));
+  std::vector<std::uint32_t> indices(elements.count);
+  const auto read = [&]<typename Raw>(Raw) {
+    inParts(document, elements, 4096, [&](std::size_t first, std::size_t count) {
+      for (std::size_t i = first; i < first + count; ++i)
+        indices[i] = load<Raw>(elements.bytes.data() + i * elements.stride);
+    });
+  };
+  if (source.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE)
+    read(std::uint8_t{});
+  else if (source.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT)
+    read(std::uint16_t{});
+  else
+    read(std::uint32_t{});
+  return indices;
+}
+
 } // namespace
 
-std::vector<glm::vec4> readVectors(const GltfDocument& document, std::size_t accessor, int least, int most,
-                                   std::string_view use, const glm::vec4& fill) {
+void visitVectors(const GltfDocument& document, std::size_t accessor, int least, int most, std::string_view use,
+                  const std::function<void(std::size_t, std::span<const glm::vec4>)>& visit, const glm::vec4& fill) {
   const tinygltf::Accessor& source = document.model.accessors[accessor];
-  const auto components = static_cast<int>(componentCount(source.type));
-  if (source.type == TINYGLTF_TYPE_MAT2 || components < least || components > most)
+  const std::size_t components = componentCount(source.type);
+  if (source.type == TINYGLTF_TYPE_MAT2 || components < static_cast<std::size_t>(least) ||
+      components > static_cast<std::size_t>(most))
     failType(document, accessor, use,
              least == most ? fmt::format("vectors of {} components", least)
                            : fmt::format("vectors of {} to {} components", least, most));
-  const std::vector<float> values = Reader<float>(document, accessor).read(std::span<const float>(&fill.x, 4));
-  std::vector<glm::vec4> vectors(values.size() / 4);
-  for (std::size_t i = 0; i < vectors.size(); ++i)
-    vectors[i] = {values[4 * i], values[4 * i + 1], values[4 * i + 2], values[4 * i + 3]};
+  if (source.sparse.isSparse || source.bufferView < 0) {
+    const std::vector<float> values = Reader<float>(document, accessor).read(std::span<const float>(&fill.x, 4));
+    std::vector<glm::vec4> vectors(values.size() / 4);
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+      vectors[i] = {values[4 * i], values[4 * i + 1], values[4 * i + 2], values[4 * i + 3]};
+    return visit(0, vectors);
+  }
+  const Elements elements =
+      elementsIn(document, static_cast<std::size_t>(source.bufferView), source.byteOffset, source.count,
+                 components * componentSize(source.componentType), true, accessorName(document, accessor));
+  std::array<glm::vec4, 1024> part;
+  inParts(document, elements, part.size(), [&](std::size_t first, std::size_t count) {
+    const std::span<glm::vec4> target = std::span(part).first(count);
+    std::ranges::fill(target, fill);
+    widen(elements, first, components, source.componentType, source.normalized, target);
+    visit(first, target);
+  });
+}
+
+std::vector<glm::vec4> readVectors(const GltfDocument& document, std::size_t accessor, int least, int most,
+                                   std::string_view use, const glm::vec4& fill) {
+  std::vector<glm::vec4> vectors;
+  visitVectors(
+      document, accessor, least, most, use,
+      [&](std::size_t first, std::span<const glm::vec4> part) {
+        if (first == 0) vectors.reserve(std::max(part.size(), accessorCount(document, accessor)));
+        vectors.insert(vectors.end(), part.begin(), part.end());
+      },
+      fill);
   return vectors;
 }
 
@@ -221,6 +318,7 @@ std::vector<std::uint32_t> readIndices(const GltfDocument& document, std::size_t
   const tinygltf::Accessor& source = document.model.accessors[accessor];
   if (source.type != TINYGLTF_TYPE_SCALAR || !holdsUnsigned(source))
     failType(document, accessor, "indices", "unsigned integers");
+  if (!source.sparse.isSparse && source.bufferView >= 0) return plainIndices(document, accessor);
   constexpr std::uint32_t fill = 0;
   return Reader<std::uint32_t>(document, accessor).read(std::span(&fill, 1));
 }

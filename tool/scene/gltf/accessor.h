@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +22,11 @@ namespace vitrail::tool {
 // are taken from `fill`. The accessor's type has `least` to `most` components.
 std::vector<glm::vec4> readVectors(const GltfDocument& document, std::size_t accessor, int least, int most,
                                    std::string_view use, const glm::vec4& fill = glm::vec4(0.0F));
+
+// The same, a few at a time, so that nobody needs room for all: `visit` is given the place of the first of them.
+void visitVectors(const GltfDocument& document, std::size_t accessor, int least, int most, std::string_view use,
+                  const std::function<void(std::size_t, std::span<const glm::vec4>)>& visit,
+                  const glm::vec4& fill = glm::vec4(0.0F));
 
 // Unsigned integers of one component.
 std::vector<std::uint32_t> readIndices(const GltfDocument& document, std::size_t accessor);

@@ -14,6 +14,7 @@
 
 #include "../load.h"
 #include "../message.h"
+#include "extensions.h"
 
 namespace vitrail::tool {
 namespace {
@@ -147,8 +148,12 @@ constexpr std::array materialFields{nameField,
                                     Field{"doubleSided", Kind::Boolean},
                                     object("extensions", materialExtensionFields)};
 
+constexpr std::array variantMappingFields{required(index("material", "materials")),
+                                          required(index("variants", "variants", Kind::Indices))};
+constexpr std::array primitiveVariantsFields{required(object("mappings", variantMappingFields, Kind::Objects))};
 constexpr std::array dracoFields{required(index("bufferView", "bufferViews"))};
-constexpr std::array primitiveExtensionFields{object("KHR_draco_mesh_compression", dracoFields)};
+constexpr std::array primitiveExtensionFields{object("KHR_draco_mesh_compression", dracoFields),
+                                              object("KHR_materials_variants", primitiveVariantsFields)};
 constexpr std::array primitiveFields{required(index("attributes", "accessors", Kind::IndexMap)),
                                      index("indices", "accessors"),
                                      index("material", "materials"),
@@ -158,6 +163,12 @@ constexpr std::array primitiveFields{required(index("attributes", "accessors", K
 constexpr std::array meshFields{nameField, required(object("primitives", primitiveFields, Kind::Objects)),
                                 numbers("weights")};
 
+constexpr std::array instancingFields{required(index("attributes", "accessors", Kind::IndexMap))};
+constexpr std::array nodeLightFields{required(index("light", "lights"))};
+constexpr std::array visibilityFields{Field{"visible", Kind::Boolean}};
+constexpr std::array nodeExtensionFields{object("EXT_mesh_gpu_instancing", instancingFields),
+                                         object("KHR_lights_punctual", nodeLightFields),
+                                         object("KHR_node_visibility", visibilityFields)};
 constexpr std::array nodeFields{nameField,
                                 index("mesh", "meshes"),
                                 index("skin", "skins"),
@@ -167,10 +178,32 @@ constexpr std::array nodeFields{nameField,
                                 numbers("translation", 3),
                                 numbers("rotation", 4),
                                 numbers("scale", 3),
-                                numbers("weights")};
+                                numbers("weights"),
+                                object("extensions", nodeExtensionFields)};
 constexpr std::array sceneFields{nameField, index("nodes", "nodes", Kind::Indices)};
 constexpr std::array skinFields{nameField, required(index("joints", "nodes", Kind::Indices)),
                                 index("inverseBindMatrices", "accessors"), index("skeleton", "nodes")};
+
+constexpr std::array animationTargetFields{index("node", "nodes"), required({"path", Kind::Text})};
+constexpr std::array animationChannelFields{required({"sampler", Kind::Integer}),
+                                            required(object("target", animationTargetFields))};
+constexpr std::array animationSamplerFields{required(index("input", "accessors")),
+                                            required(index("output", "accessors")), Field{"interpolation", Kind::Text}};
+constexpr std::array animationFields{nameField, required(object("channels", animationChannelFields, Kind::Objects)),
+                                     required(object("samplers", animationSamplerFields, Kind::Objects))};
+
+constexpr std::array spotFields{Field{"innerConeAngle", Kind::Number}, Field{"outerConeAngle", Kind::Number}};
+constexpr std::array lightFields{nameField,
+                                 required({"type", Kind::Text}),
+                                 numbers("color", 3),
+                                 Field{"intensity", Kind::Number},
+                                 Field{"range", Kind::Number},
+                                 object("spot", spotFields)};
+constexpr std::array lightsFields{required(object("lights", lightFields, Kind::Objects))};
+constexpr std::array variantFields{required({"name", Kind::Text})};
+constexpr std::array variantsFields{required(object("variants", variantFields, Kind::Objects))};
+constexpr std::array documentExtensionFields{object("KHR_lights_punctual", lightsFields),
+                                             object("KHR_materials_variants", variantsFields)};
 
 struct Section {
   std::string_view array;    // the top-level array
@@ -178,7 +211,8 @@ struct Section {
   std::span<const Field> fields;
 };
 
-constexpr std::array<Section, 12> sections{{{"accessors", "accessor", accessorFields},
+constexpr std::array<Section, 13> sections{{{"accessors", "accessor", accessorFields},
+                                            {"animations", "animation", animationFields},
                                             {"buffers", "buffer", bufferFields},
                                             {"bufferViews", "buffer view", bufferViewFields},
                                             {"cameras", "camera", cameraFields},
@@ -191,16 +225,12 @@ constexpr std::array<Section, 12> sections{{{"accessors", "accessor", accessorFi
                                             {"skins", "skin", skinFields},
                                             {"textures", "texture", textureFields}}};
 
-// What is missing of a picture's textures never refuses the file, whatever requires them.
-constexpr std::array<std::string_view, 12> implementedExtensions{
-    "EXT_meshopt_compression",    "EXT_texture_avif",    "EXT_texture_webp",      "KHR_draco_mesh_compression",
-    "KHR_meshopt_compression",    "KHR_texture_basisu",  "MSFT_texture_dds",      "KHR_materials_emissive_strength",
-    "KHR_materials_transmission", "KHR_materials_unlit", "KHR_mesh_quantization", "KHR_texture_transform"};
-
 // Applies the tables to one document. `where` names the object that is looked at, `path` the property inside it.
 class Checker {
  public:
-  explicit Checker(const Json& document) : document_(document) {}
+  Checker(const Json& document, std::size_t nodeCount) : document_(&document), nodeCount_(nodeCount) {}
+  // One that does not know the document yet: indices are of any size.
+  Checker() = default;
 
   void fields(const Json& value, std::span<const Field> fields, const std::string& where, const std::string& path) {
     if (!value.is_object()) fail(where, path, "is not a JSON object");
@@ -215,11 +245,23 @@ class Checker {
   }
 
   void index(const Json& value, std::string_view target, const std::string& where, const std::string& path) {
-    const std::uint64_t number = unsignedNumber(value, std::numeric_limits<std::int32_t>::max(), where, path);
-    const auto array = document_.find(target);
-    const std::size_t size = array != document_.end() && array->is_array() ? array->size() : 0;
+    range(unsignedNumber(value, std::numeric_limits<std::int32_t>::max(), where, path), target, where, path);
+  }
+
+  void range(std::uint64_t number, std::string_view target, const std::string& where, const std::string& path) const {
+    if (document_ == nullptr) return;
+    const std::size_t size = sizeOf(target);
     if (number >= size)
       fail(where, path, fmt::format("is {}, but {} has {} element{}", number, target, size, size == 1 ? "" : "s"));
+  }
+
+  // The number of elements of a top-level array, or of one that an extension adds.
+  [[nodiscard]] std::size_t sizeOf(std::string_view target) const {
+    if (target == "nodes") return nodeCount_;
+    if (target == "lights") return sizeOf(Json::json_pointer("/extensions/KHR_lights_punctual/lights"));
+    if (target == "variants") return sizeOf(Json::json_pointer("/extensions/KHR_materials_variants/variants"));
+    const auto array = document_->find(target);
+    return array != document_->end() && array->is_array() ? array->size() : 0;
   }
 
   [[noreturn]] static void fail(const std::string& where, const std::string& path, std::string_view problem) {
@@ -229,6 +271,10 @@ class Checker {
   }
 
  private:
+  [[nodiscard]] std::size_t sizeOf(const Json::json_pointer& path) const {
+    return document_->contains(path) && document_->at(path).is_array() ? document_->at(path).size() : 0;
+  }
+
   void check(const Json& value, const Field& field, const std::string& where, const std::string& path) {
     switch (field.kind) {
       case Kind::Boolean:
@@ -270,7 +316,8 @@ class Checker {
     if (!value.is_array()) fail(where, path, "is not an array");
     if (length != 0 && value.size() != length)
       fail(where, path, fmt::format("has {} numbers where {} belong", value.size(), length));
-    for (std::size_t i = 0; i < value.size(); ++i) number(value[i], where, fmt::format("{}[{}]", path, i));
+    for (std::size_t i = 0; i < value.size(); ++i)
+      if (!isFloat(value[i])) number(value[i], where, fmt::format("{}[{}]", path, i));
   }
 
   void checkIndexMap(const Json& value, std::string_view target, const std::string& where, const std::string& path) {
@@ -291,12 +338,16 @@ class Checker {
     }
   }
 
-  static void number(const Json& value, const std::string& where, const std::string& path) {
-    if (!value.is_number()) fail(where, path, "is not a number");
+  static bool isFloat(const Json& value) {
+    if (!value.is_number()) return false;
     const double number = value.get<double>();
     // Written so that a NaN fails too.
-    if (!(number >= std::numeric_limits<float>::lowest() && number <= std::numeric_limits<float>::max()))
-      fail(where, path, fmt::format("is {}, which a 32-bit float cannot hold", number));
+    return number >= std::numeric_limits<float>::lowest() && number <= std::numeric_limits<float>::max();
+  }
+
+  static void number(const Json& value, const std::string& where, const std::string& path) {
+    if (!value.is_number()) fail(where, path, "is not a number");
+    if (!isFloat(value)) fail(where, path, fmt::format("is {}, which a 32-bit float cannot hold", value.get<double>()));
   }
 
   static std::uint64_t unsignedNumber(const Json& value, std::uint64_t largest, const std::string& where,
@@ -309,7 +360,8 @@ class Checker {
     return number;
   }
 
-  const Json& document_;
+  const Json* document_ = nullptr;
+  std::size_t nodeCount_ = 0;
 };
 
 void checkAsset(Checker& checker, const Json& document) {
@@ -325,16 +377,20 @@ void checkAsset(Checker& checker, const Json& document) {
                                 oneLine(minVersion->get<std::string>())));
 }
 
-void checkRequiredExtensions(const Json& document) {
-  const auto extensions = document.find("extensionsRequired");
-  if (extensions == document.end()) return;
-  if (!extensions->is_array()) throw LoadError("extensionsRequired is not an array");
-  for (const Json& extension : *extensions) {
-    if (!extension.is_string()) throw LoadError("extensionsRequired holds something else than a string");
-    const auto name = extension.get<std::string>();
-    if (std::ranges::find(implementedExtensions, name) == implementedExtensions.end())
-      throw LoadError(fmt::format("it requires the extension {}, which Vitrail does not implement", oneLine(name)));
+void checkExtensions(Checker& checker, const Json& document) {
+  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+    const auto extensions = document.find(key);
+    if (extensions == document.end()) continue;
+    if (!extensions->is_array()) throw LoadError(fmt::format("{} is not an array", key));
+    for (const Json& extension : *extensions) {
+      if (!extension.is_string()) throw LoadError(fmt::format("{} holds something else than a string", key));
+      const auto name = extension.get<std::string>();
+      if (key == std::string_view("extensionsRequired") && gltfExtension(name).support == GltfSupport::Unreadable)
+        throw LoadError(fmt::format("it requires the extension {}, which Vitrail does not implement", oneLine(name)));
+    }
   }
+  const auto used = document.find("extensions");
+  if (used != document.end()) checker.fields(*used, documentExtensionFields, "", "extensions");
 }
 
 // What the tables cannot say.
@@ -360,28 +416,65 @@ void checkChoices(const Json& value, std::string_view section, const std::string
   }
 }
 
+std::string nameIn(const Json& object) {
+  const auto name = object.is_object() ? object.find("name") : object.end();
+  return name != object.end() && name->is_string() ? name->get<std::string>() : std::string{};
+}
+
 void checkSection(Checker& checker, const Json& document, const Section& section) {
   const auto array = document.find(section.array);
   if (array == document.end()) return;
   if (!array->is_array()) throw LoadError(fmt::format("{} is not an array", section.array));
   for (std::size_t i = 0; i < array->size(); ++i) {
     const Json& value = (*array)[i];
-    const auto name = value.is_object() ? value.find("name") : value.end();
-    const bool named = name != value.end() && name->is_string();
-    const std::string where = objectName(section.singular, i, named ? name->get<std::string>() : std::string{});
+    const std::string where = objectName(section.singular, i, nameIn(value));
     checker.fields(value, section.fields, where, "");
     checkChoices(value, section.array, where);
   }
 }
 
+// The indices of nodes, which have passed all other checks already.
+void checkNodeRanges(const Checker& checker, const GltfNodes& nodes) {
+  for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+    const GltfRareParts& rare = nodes.rare(i);
+    const auto check = [&](std::optional<std::uint32_t> index, std::string_view target, std::string_view path) {
+      if (index && *index >= checker.sizeOf(target)) checker.range(*index, target, nodes.name(i), std::string(path));
+    };
+    if (nodes.mesh(i) != GltfNodes::none) check(nodes.mesh(i), "meshes", "mesh");
+    check(rare.skin, "skins", "skin");
+    check(rare.camera, "cameras", "camera");
+    check(rare.light, "lights", "extensions.KHR_lights_punctual.light");
+    check(rare.translations, "accessors", "extensions.EXT_mesh_gpu_instancing.attributes.TRANSLATION");
+    check(rare.rotations, "accessors", "extensions.EXT_mesh_gpu_instancing.attributes.ROTATION");
+    check(rare.scales, "accessors", "extensions.EXT_mesh_gpu_instancing.attributes.SCALE");
+    for (std::uint32_t child = 0; child < nodes.childCount(i); ++child)
+      if (nodes.child(i, child) >= nodes.size())
+        checker.range(nodes.child(i, child), "nodes", nodes.name(i), fmt::format("children[{}]", child));
+  }
+}
+
 } // namespace
 
-void checkGltfJson(const nlohmann::json& document) {
+void checkGltfNode(const nlohmann::json& node, std::size_t index) {
+  Checker checker;
+  try {
+    checker.fields(node, nodeFields, {}, {});
+  } catch (const LoadError&) {
+    // Once more with its name, which takes its time where there are millions.
+    checker.fields(node, nodeFields, objectName("node", index, nameIn(node)), {});
+  }
+}
+
+void checkGltfJson(const nlohmann::json& document, const GltfNodes& nodes, const std::optional<LoadError>& nodeError) {
   if (!document.is_object()) throw LoadError("the JSON is not an object, so it is not glTF");
-  Checker checker(document);
+  Checker checker(document, nodes.size());
   checkAsset(checker, document);
-  checkRequiredExtensions(document);
-  for (const Section& section : sections) checkSection(checker, document, section);
+  checkExtensions(checker, document);
+  for (const Section& section : sections) {
+    if (section.array == "nodes" && nodeError) throw *nodeError;
+    checkSection(checker, document, section);
+    if (section.array == "nodes") checkNodeRanges(checker, nodes);
+  }
   const auto scene = document.find("scene");
   if (scene != document.end()) checker.index(*scene, "scenes", "", "scene");
 }

@@ -3,13 +3,25 @@
 // this check neither can happen.
 #pragma once
 
+#include <cstddef>
+#include <optional>
+
 #include <nlohmann/json_fwd.hpp>
+
+#include "../load.h"
+#include "node_list.h"
 
 namespace vitrail::tool {
 
-// Throws LoadError that names the object, as in "node 4: mesh is 7, but meshes has 2 elements". Afterwards every
-// property that the loader uses has its specified type, every number fits a 32-bit float, every index is in range, and
-// every required extension is implemented.
-void checkGltfJson(const nlohmann::json& document);
+// Checks one element of "nodes", all but that its indices are in range: that only the whole document tells. Throws
+// LoadError.
+void checkGltfNode(const nlohmann::json& node, std::size_t index);
+
+// Checks the rest of a document, whose "nodes" are empty since they have been taken out of it: `nodes` are those that
+// passed, `nodeError` is what the first one that did not was refused with. Throws LoadError that names the object, as
+// in "node 4: mesh is 7, but meshes has 2 elements". Afterwards every property that the loader uses has its specified
+// type, every number fits a 32-bit float, every index is in range, and no extension is required without which the data
+// cannot be read.
+void checkGltfJson(const nlohmann::json& document, const GltfNodes& nodes, const std::optional<LoadError>& nodeError);
 
 } // namespace vitrail::tool

@@ -1,6 +1,7 @@
 // Takes a glTF or GLB file apart: GLB chunks, JSON, buffers.
 #include "document.h"
 
+#include <algorithm>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "../message.h"
 #include "check.h"
 #include "draco.h"
+#include "json_stream.h"
 #include "meshopt.h"
 #include "uri.h"
 
@@ -73,37 +75,43 @@ bool looksLikeJson(std::string_view text) {
   return begin != std::string_view::npos && (text[begin] == '{' || text[begin] == '[');
 }
 
-// The parsers behind this one call themselves for each level of nesting.
-void checkNesting(std::string_view json) {
-  constexpr std::size_t deepest = 100;
-  std::size_t depth = 0;
-  bool inString = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (inString) {
-      if (c == '\\') ++i;
-      if (c == '"') inString = false;
-    } else if (c == '"') {
-      inString = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > deepest) throw LoadError(fmt::format("the JSON is nested more than {} levels deep", deepest));
-    } else if ((c == '}' || c == ']') && depth > 0) {
-      --depth;
-    }
-  }
+// Whether a member of the outermost object says anything to us. What others hold may be large.
+bool isRead(std::string_view member) {
+  constexpr std::string_view members[] = {
+      "accessors",  "animations",         "asset",          "bufferViews", "buffers",   "cameras",
+      "extensions", "extensionsRequired", "extensionsUsed", "images",      "materials", "meshes",
+      "nodes",      "samplers",           "scene",          "scenes",      "skins",     "textures"};
+  return std::ranges::find(members, member) != std::end(members);
 }
 
-Json parseJson(std::string_view text) {
-  checkNesting(text);
-  try {
-    return Json::parse(text);
-  } catch (const Json::exception& error) {
-    // Drops the library's own prefix, "[json.exception.parse_error.101] ".
-    const std::string_view reason = error.what();
-    const std::size_t prefix = reason.find("] ");
-    throw LoadError(fmt::format("the JSON is not valid: {}",
-                                oneLine(prefix == std::string_view::npos ? reason : reason.substr(prefix + 2))));
-  }
+// The document without its nodes, which it keeps in a smaller form.
+Json readJson(std::string_view text, GltfDocument& document) {
+  std::optional<LoadError> nodeError;
+  std::size_t count = 0;
+  JsonStream stream;
+  stream.array = "nodes";
+  stream.wanted = isRead;
+  stream.restart = [&] {
+    document.nodes = {};
+    nodeError.reset();
+    count = 0;
+  };
+  stream.element = [&](Json&& node) {
+    if (nodeError) return;
+    try {
+      checkGltfNode(node, count);
+      document.nodes.add(node);
+      ++count;
+    } catch (const LoadError& error) {
+      nodeError = error;
+    }
+  };
+  stream.parsed = [&](const char* begin, const char* end) {
+    releaseBytes(document, std::as_bytes(std::span(begin, end)));
+  };
+  Json json = parseJson(text, stream);
+  checkGltfJson(json, document.nodes, nodeError);
+  return json;
 }
 
 // Whether a buffer only says where the decoded bytes of compressed buffer views would lie.
@@ -117,36 +125,126 @@ bool isFallback(const Json& buffer) {
   return false;
 }
 
-std::vector<std::vector<std::byte>> readBuffers(const Json& json, const Container& container,
-                                                const std::filesystem::path& base) {
-  std::vector<std::vector<std::byte>> buffers;
+void readBuffers(const Json& json, const Container& container, GltfDocument& document) {
   const auto array = json.find("buffers");
-  if (array == json.end()) return buffers;
+  if (array == json.end()) return;
+  document.files.reserve(array->size() + 1);
   for (std::size_t i = 0; i < array->size(); ++i) {
     const Json& buffer = (*array)[i];
     const std::string where = objectName("buffer", i, buffer.value("name", std::string{}));
     const auto byteLength = buffer.at("byteLength").get<std::uint64_t>();
     if (isFallback(buffer) && !(i == 0 && container.binary)) {
-      buffers.emplace_back();
+      document.buffers.emplace_back();
       continue;
     }
+    std::span<const std::byte> bytes;
     if (buffer.contains("uri")) {
       try {
-        buffers.push_back(readUri(buffer.at("uri").get_ref<const std::string&>(), base));
+        document.files.push_back(mapUri(buffer.at("uri").get_ref<const std::string&>(), document.base));
       } catch (const LoadError& error) {
         throw LoadError(fmt::format("{}: {}", where, error.what()));
       }
+      bytes = document.files.back().bytes();
+      document.totalBytes += bytes.size();
     } else if (i == 0 && container.binary) {
-      buffers.emplace_back(container.binary->begin(), container.binary->end());
+      bytes = *container.binary;
     } else {
       throw LoadError(fmt::format("{}: has no uri, and the file has no binary chunk for it", where));
     }
-    if (buffers.back().size() < byteLength)
-      throw LoadError(
-          fmt::format("{}: byteLength is {}, but it has {} bytes", where, byteLength, buffers.back().size()));
-    buffers.back().resize(static_cast<std::size_t>(byteLength));
+    if (bytes.size() < byteLength)
+      throw LoadError(fmt::format("{}: byteLength is {}, but it has {} bytes", where, byteLength, bytes.size()));
+    document.buffers.push_back(bytes.first(static_cast<std::size_t>(byteLength)));
   }
-  return buffers;
+}
+
+std::vector<std::string> memberNames(const Json& object) {
+  std::vector<std::string> names;
+  const auto extensions = object.find("extensions");
+  if (extensions == object.end() || !extensions->is_object()) return names;
+  for (const auto& [name, value] : extensions->items()) names.push_back(name);
+  return names;
+}
+
+void readScenes(const Json& json, GltfDocument& document) {
+  document.defaultScene = json.value("scene", std::size_t{0});
+  const auto array = json.find("scenes");
+  if (array == json.end()) return;
+  for (const Json& scene : *array) {
+    GltfScene& result = document.scenes.emplace_back();
+    result.name = scene.value("name", std::string{});
+    result.extensions = memberNames(scene);
+    const auto nodes = scene.find("nodes");
+    if (nodes == scene.end()) continue;
+    result.nodes.reserve(nodes->size());
+    for (const Json& node : *nodes) result.nodes.push_back(node.get<std::uint32_t>());
+  }
+}
+
+void readAnimations(const Json& json, GltfDocument& document) {
+  const auto array = json.find("animations");
+  if (array == json.end()) return;
+  for (const Json& animation : *array) {
+    GltfAnimation& result = document.animations.emplace_back();
+    result.name = animation.value("name", std::string{});
+    for (const Json& sampler : animation.at("samplers"))
+      result.samplers.push_back({sampler.at("input").get<std::size_t>(), sampler.at("output").get<std::size_t>(),
+                                 sampler.value("interpolation", std::string("LINEAR"))});
+    for (const Json& channel : animation.at("channels")) {
+      const Json& target = channel.at("target");
+      GltfAnimation::Channel& place = result.channels.emplace_back();
+      place.sampler = channel.at("sampler").get<std::size_t>();
+      place.path = target.at("path").get<std::string>();
+      if (target.contains("node")) place.node = target.at("node").get<std::uint32_t>();
+    }
+  }
+}
+
+std::optional<Light> readLight(const Json& json) {
+  Light light;
+  const auto type = json.at("type").get<std::string>();
+  if (type == "directional")
+    light.kind = Light::Kind::Directional;
+  else if (type == "spot")
+    light.kind = Light::Kind::Spot;
+  else if (type != "point")
+    return std::nullopt;
+  light.name = json.value("name", std::string{});
+  const double intensity = std::max(json.value("intensity", 1.0), 0.0);
+  const auto color = json.find("color");
+  for (int c = 0; c < 3; ++c) {
+    const double share = color == json.end() ? 1.0 : std::max((*color)[static_cast<std::size_t>(c)].get<double>(), 0.0);
+    // The product of two numbers that a float holds may be one that it does not.
+    light.intensity[c] =
+        static_cast<float>(std::min(share * intensity, static_cast<double>(std::numeric_limits<float>::max())));
+  }
+  light.range = std::max(json.value("range", 0.0F), 0.0F);
+  const auto spot = json.find("spot");
+  if (spot != json.end()) {
+    constexpr float rightAngle = 1.57079633F;
+    light.outerConeAngle = std::clamp(spot->value("outerConeAngle", light.outerConeAngle), 0.0F, rightAngle);
+    light.innerConeAngle = std::clamp(spot->value("innerConeAngle", 0.0F), 0.0F, light.outerConeAngle);
+  }
+  return light;
+}
+
+void readDocumentExtensions(const Json& json, GltfDocument& document) {
+  for (const Json& name : json.value("extensionsRequired", Json::array()))
+    document.extensionsRequired.push_back(name.get<std::string>());
+  for (const Json& name : json.value("extensionsUsed", Json::array()))
+    document.extensionsUsed.push_back(name.get<std::string>());
+  for (const std::string& name : document.extensionsRequired)
+    if (std::ranges::find(document.extensionsUsed, name) == document.extensionsUsed.end())
+      document.extensionsUsed.push_back(name);
+  document.extensions = memberNames(json);
+  const auto extensions = json.find("extensions");
+  if (extensions == json.end()) return;
+  const auto lights = extensions->find("KHR_lights_punctual");
+  if (lights != extensions->end())
+    for (const Json& light : lights->at("lights")) document.lights.push_back(readLight(light));
+  const auto variants = extensions->find("KHR_materials_variants");
+  if (variants != extensions->end())
+    for (const Json& variant : variants->at("variants"))
+      document.variants.push_back(variant.at("name").get<std::string>());
 }
 
 std::vector<GltfImageSource> listImages(const Json& json) {
@@ -165,7 +263,8 @@ std::vector<GltfImageSource> listImages(const Json& json) {
 
 // Lets tinygltf read everything but the bytes.
 tinygltf::Model parseModel(Json json) {
-  for (const char* unread : {"animations", "buffers", "images", "extras"}) json.erase(unread);
+  for (const char* unread : {"animations", "buffers", "extensions", "images", "nodes", "scene", "scenes"})
+    json.erase(unread);
   // tinygltf refuses an index accessor without a buffer view, which the specification allows. Accessors without one get
   // a view that stands for none while it reads.
   Json& views = json["bufferViews"];
@@ -193,30 +292,35 @@ tinygltf::Model parseModel(Json json) {
 
 } // namespace
 
-GltfDocument openGltf(std::span<const std::byte> file, const std::filesystem::path& base) {
+GltfDocument openGltf(MappedFile file, const std::filesystem::path& base) {
+  GltfDocument document;
+  document.base = base;
+  document.totalBytes = file.bytes().size();
+  document.files.push_back(std::move(file));
+  const std::span<const std::byte> bytes = document.files.front().bytes();
   Container container;
-  const bool isGlb = asText(file).starts_with(glbMagic);
-  if (isGlb)
-    container = splitGlb(file);
+  document.binary = asText(bytes).starts_with(glbMagic);
+  if (document.binary)
+    container = splitGlb(bytes);
   else
-    container.json = asText(file);
+    container.json = asText(bytes);
   // A byte order mark is not JSON, but some editors write it.
   if (container.json.starts_with("\xef\xbb\xbf")) container.json.remove_prefix(3);
-  if (!isGlb && !looksLikeJson(container.json)) {
+  if (!document.binary && !looksLikeJson(container.json)) {
     throw LoadError(
         "begins neither with \"glTF\", as a .glb file does, nor with {, as a .gltf file does: it is damaged or of "
         "another kind");
   }
 
-  Json json = parseJson(container.json);
-  checkGltfJson(json);
-  GltfDocument document;
-  document.base = base;
-  document.buffers = readBuffers(json, container, base);
+  Json json = readJson(container.json, document);
+  readBuffers(json, container, document);
   document.images = listImages(json);
+  readScenes(json, document);
+  readAnimations(json, document);
+  readDocumentExtensions(json, document);
+  const auto generator = json.at("asset").find("generator");
+  if (generator != json.at("asset").end() && generator->is_string()) document.generator = generator->get<std::string>();
   document.model = parseModel(std::move(json));
-  document.totalBytes = file.size();
-  for (const auto& buffer : document.buffers) document.totalBytes += buffer.size();
   decodeMeshopt(document);
   decodeDraco(document);
   return document;
@@ -249,6 +353,10 @@ std::span<const std::byte> bufferViewBytes(const GltfDocument& document, std::si
   } catch (const LoadError& error) {
     throw LoadError(fmt::format("{}: {}", objectName("buffer view", bufferView, view.name), error.what()));
   }
+}
+
+void releaseBytes(const GltfDocument& document, std::span<const std::byte> bytes) {
+  for (const MappedFile& file : document.files) file.release(bytes);
 }
 
 } // namespace vitrail::tool

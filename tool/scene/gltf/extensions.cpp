@@ -16,14 +16,14 @@ using enum GltfSupport;
 // clang-format off
 constexpr GltfExtension kExtensions[] = {
     // The scene.
-    {"EXT_mesh_gpu_instancing", Left, "of each instanced mesh one copy is drawn, at its node"},
+    {"EXT_mesh_gpu_instancing", Drawn, ""},
     {"KHR_animation_pointer", Left, "what it animates beside nodes (materials, lights, cameras) stands still"},
     {"KHR_lights_punctual", Left, "the file's lights do not shine"},
-    {"KHR_materials_variants", Left, "the default materials are drawn"},
-    {"KHR_node_visibility", Left, "hidden nodes are drawn"},
+    {"KHR_materials_variants", Drawn, ""},
+    {"KHR_node_visibility", Drawn, ""},
     {"EXT_lights_image_based", Left, "the file's surroundings do not light it"},
     {"EXT_lights_ies", Left, "lights shine the same in all directions"},
-    {"MSFT_lod", Left, "the most detailed level is drawn"},
+    {"MSFT_lod", Left, "only the most detailed level is drawn"},
     {"KHR_gaussian_splatting", Left, "splats are drawn as points"},
     {"KHR_gaussian_splatting_compression_spz_2", Unreadable, "the splats cannot be read"},
 
@@ -43,7 +43,7 @@ constexpr GltfExtension kExtensions[] = {
     {"EXT_texture_webp", Drawn, ""},
     {"EXT_texture_avif", Named, "AVIF textures are missing where the file has no others"},
     {"MSFT_texture_dds", Named, "DDS textures are missing where the file has no others"},
-    {"EXT_texture_video", Unreadable, "videos are missing"},
+    {"EXT_texture_video", Left, "videos are missing"},
 
     // Materials.
     {"KHR_materials_emissive_strength", Drawn, ""},
@@ -117,10 +117,12 @@ constexpr GltfExtension kExtensions[] = {
 
 } // namespace
 
+std::span<const GltfExtension> gltfExtensions() { return kExtensions; }
+
 GltfExtension gltfExtension(std::string_view name) {
   const auto row = std::ranges::find(kExtensions, name, &GltfExtension::name);
   if (row != std::ranges::end(kExtensions)) return *row;
-  return {name, Left, "what it adds to the picture is missing"};
+  return {name, Left, "what it adds to the picture is missing", false};
 }
 
 std::string extensionWarning(std::string_view name) {

@@ -22,7 +22,11 @@ struct GltfExtension {
   std::string_view name;
   GltfSupport support = GltfSupport::Left;
   std::string_view lost; // what the picture lacks, as the end of a sentence: "fabrics lack their soft rim"
+  bool known = true;     // false: the table does not have it
 };
+
+// The whole table.
+std::span<const GltfExtension> gltfExtensions();
 
 // The row of an extension. Names that no row has are Left, and it cannot be told what they stand for.
 GltfExtension gltfExtension(std::string_view name);

@@ -1,19 +1,26 @@
-// Loads glTF 2.0 and GLB: walks the nodes of the scene and collects draws and cameras.
+// Loads glTF 2.0 and GLB: walks the nodes of the scene and collects draws, cameras and lights.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <new>
 #include <numbers>
 #include <optional>
 #include <string>
-#include <tuple>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "../load.h"
 #include "../mesh_build.h"
 #include "../message.h"
+#include "animation.h"
 #include "document.h"
+#include "extension_use.h"
+#include "geometry_key.h"
+#include "instances.h"
 #include "material.h"
 #include "mesh.h"
 #include "nodes.h"
@@ -63,64 +70,232 @@ SceneCamera convertCamera(const tinygltf::Camera& source, const std::string& whe
   return camera;
 }
 
-// Collects what the nodes of a scene show. Meshes and materials are made when the first node asks for them.
+// The box around all that is drawn, in double precision.
+struct WorldBox {
+  glm::dvec3 min{std::numeric_limits<double>::infinity()};
+  glm::dvec3 max{-std::numeric_limits<double>::infinity()};
+
+  void add(const glm::dmat4& transform, const Bounds& box) {
+    const glm::dvec3 middle(transform * glm::dvec4(0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max)), 1.0));
+    const glm::dvec3 half = 0.5 * (glm::dvec3(box.max) - glm::dvec3(box.min));
+    glm::dvec3 reach(0.0);
+    for (int axis = 0; axis < 3; ++axis) reach += glm::abs(glm::dvec3(transform[axis])) * half[axis];
+    requireReach(middle - reach);
+    requireReach(middle + reach);
+    min = glm::min(min, middle - reach);
+    max = glm::max(max, middle + reach);
+  }
+
+  // The middle of what is far away compared with its size, else 0: most files keep their own numbers.
+  [[nodiscard]] glm::dvec3 farMiddle() const {
+    const glm::dvec3 middle = 0.5 * (min + max);
+    return glm::length(middle) > 8.0 * glm::length(max - min) ? middle : glm::dvec3(0.0);
+  }
+};
+
+// Collects what the nodes of a scene show, in two walks: the first one makes meshes and materials where a node asks for
+// them, and finds out how much there is and where it lies; the second one places it.
 class SceneBuilder {
  public:
-  explicit SceneBuilder(const GltfDocument& document)
-      : document_(document), world_(placeNodes(document)), materials_(document, scene_), meshes_(document) {
-    scene_.warnings = document.warnings;
+  SceneBuilder(const GltfDocument& document, Scene scene, const LoadOptions& options)
+      : document_(document),
+        scene_(std::move(scene)),
+        hierarchy_(document, scene_),
+        use_(document),
+        materials_(document, scene_),
+        meshes_(document) {
+    for (const std::string& line : document.warnings) warn(scene_, line);
+    if (options.variant) variant_ = variantNamed(*options.variant);
+    for (const std::string& name : document.extensions)
+      if (name != "KHR_lights_punctual" && name != "KHR_materials_variants") use_.note(name);
+    if (!document.scenes.empty())
+      for (const std::string& name : document.scenes[document.defaultScene].extensions) use_.note(name);
   }
 
   Scene build() {
-    for (const std::size_t index : sceneNodes(document_)) {
-      const tinygltf::Node& node = document_.model.nodes[index];
-      if (node.camera >= 0) addCamera(index, static_cast<std::size_t>(node.camera));
-      if (node.mesh >= 0) addMesh(index, static_cast<std::size_t>(node.mesh));
-    }
+    hierarchy_.visit([this](const GltfPlacedNode& node) { survey(node); });
+    requireAny();
+    scene_.origin = box_.farMiddle();
+    scene_.draws.reserve(drawCount_);
+    hierarchy_.visit([this](const GltfPlacedNode& node) { place(node); });
+    use_.report(scene_);
     requireDrawable(scene_);
     return std::move(scene_);
   }
 
  private:
-  // Which mesh of the scene stands for a primitive. The last number is the node, where the mesh is posed for it alone.
-  using MeshKey = std::tuple<std::size_t, std::size_t, int>;
-  static constexpr int anyNode = -1;
+  // What a node shows: a mesh of the scene and a material.
+  struct Shown {
+    std::optional<std::uint32_t> mesh; // none where the primitive has nothing to draw
+    std::uint32_t material = 0;
+    bool skinned = false;
+  };
 
-  void addCamera(std::size_t node, std::size_t index) {
-    const tinygltf::Camera& camera = document_.model.cameras[index];
-    scene_.cameras.push_back(
-        convertCamera(camera, objectName("camera", index, camera.name), nodeMatrix(document_, node, world_[node])));
+  [[nodiscard]] int variantNamed(const std::string& name) const {
+    const auto found = std::ranges::find(document_.variants, name);
+    if (found != document_.variants.end()) return static_cast<int>(found - document_.variants.begin());
+    if (document_.variants.empty()) throw LoadError("has no variants of its materials");
+    std::vector<std::string> names;
+    for (const std::string& variant : document_.variants) {
+      names.push_back(fmt::format("\"{}\"", oneLine(variant)));
+      if (names.size() == 20 && document_.variants.size() > 20) {
+        names.emplace_back("...");
+        break;
+      }
+    }
+    throw LoadError(fmt::format("has no variant \"{}\"; it has {}", oneLine(name), fmt::join(names, ", ")));
   }
 
-  void addMesh(std::size_t nodeIndex, std::size_t meshIndex) {
-    const tinygltf::Node& node = document_.model.nodes[nodeIndex];
-    const tinygltf::Mesh& mesh = document_.model.meshes[meshIndex];
-    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-      const tinygltf::Primitive& primitive = mesh.primitives[i];
-      const bool skinned = isSkinned(primitive, node);
-      const auto [material, source] = materialFor(primitive.material);
-      GltfPose pose{node.weights.empty() ? mesh.weights : node.weights, std::nullopt, world_};
-      if (skinned) pose.skin = static_cast<std::size_t>(node.skin);
-      const bool own = skinned || (!primitive.targets.empty() && !node.weights.empty());
-      const auto key = MeshKey(meshIndex, i, own ? static_cast<int>(nodeIndex) : anyNode);
-      const std::optional<std::uint32_t> shown = meshFor(key, *source, pose);
-      if (!shown) continue;
-      const glm::mat4 transform = skinned ? glm::mat4(1.0F) : nodeMatrix(document_, nodeIndex, world_[nodeIndex]);
-      scene_.draws.push_back({*shown, material, transform});
+  void survey(const GltfPlacedNode& placed) {
+    const GltfRareParts& rare = document_.nodes.rare(placed.node);
+    const std::uint32_t mesh = document_.nodes.mesh(placed.node);
+    if (!placed.visible) {
+      use_.note("KHR_node_visibility");
+      hidden_ = hidden_ || mesh != GltfNodes::none;
+      return;
+    }
+    for (const std::string& name : rare.extensions) use_.note(name);
+    if (mesh == GltfNodes::none) return;
+    const std::vector<glm::dmat4> instances = instancesOf(document_, placed);
+    const std::size_t primitives = document_.model.meshes[mesh].primitives.size();
+    for (std::size_t i = 0; i < primitives; ++i) {
+      const Shown shown = shownBy(placed.node, i);
+      if (!shown.mesh) continue;
+      forEachPlace(placed, shown, instances, [&](const glm::dmat4& transform) {
+        if (drawCount_++ == mostDraws())
+          throw LoadError(
+              fmt::format("the file's {} bytes make more than {} instances", document_.totalBytes, mostDraws()));
+        box_.add(transform, boxes_[*shown.mesh]);
+      });
     }
   }
 
-  // None where the primitive shows nothing.
-  std::optional<std::uint32_t> meshFor(const MeshKey& key, const GltfMaterial& material, const GltfPose& pose) {
-    const auto known = meshIndices_.find(key);
-    if (known != meshIndices_.end()) return known->second;
-    Mesh mesh = meshes_.read(std::get<0>(key), std::get<1>(key), material, pose);
+  // Accessors of instances may be used by many nodes, and a small file could fill the memory.
+  [[nodiscard]] std::uint64_t mostDraws() const {
+    return std::min<std::uint64_t>(4'000'000 + document_.totalBytes / 4, 0xffffffff);
+  }
+
+  template <typename Take>
+  void forEachPlace(const GltfPlacedNode& placed, const Shown& shown, const std::vector<glm::dmat4>& instances,
+                    Take take) const {
+    if (shown.skinned) {
+      glm::dmat4 transform(1.0);
+      transform[3] = glm::dvec4(origins_[*shown.mesh], 1.0);
+      take(transform);
+    } else if (!document_.nodes.rare(placed.node).instanced) {
+      take(placed.world);
+    } else {
+      for (const glm::dmat4& instance : instances) take(placed.world * instance);
+    }
+  }
+
+  void requireAny() const {
+    if (drawCount_ > 0) return;
+    if (hidden_) throw LoadError("all of its meshes are in nodes that KHR_node_visibility hides");
+    const std::string unreadable = use_.unreadable();
+    if (!unreadable.empty())
+      throw LoadError(
+          fmt::format("it has no mesh that can be read without the extension {}, which Vitrail does not "
+                      "implement",
+                      oneLine(unreadable)));
+  }
+
+  void place(const GltfPlacedNode& placed) {
+    const GltfRareParts& rare = document_.nodes.rare(placed.node);
+    if (rare.camera) addCamera(placed, *rare.camera);
+    if (!placed.visible) return;
+    if (rare.light) addLight(placed, *rare.light);
+    const std::uint32_t mesh = document_.nodes.mesh(placed.node);
+    if (mesh == GltfNodes::none) return;
+    const std::vector<glm::dmat4> instances = instancesOf(document_, placed);
+    const std::size_t primitives = document_.model.meshes[mesh].primitives.size();
+    for (std::size_t i = 0; i < primitives; ++i) {
+      const Shown shown = shownBy(placed.node, i);
+      if (!shown.mesh) continue;
+      forEachPlace(placed, shown, instances, [&](const glm::dmat4& transform) {
+        scene_.draws.push_back({*shown.mesh, shown.material, matrixOf(placed.node, transform)});
+      });
+    }
+  }
+
+  [[nodiscard]] glm::mat4 matrixOf(std::uint32_t node, const glm::dmat4& world) const {
+    return nodeMatrix(document_, node, world, scene_.origin);
+  }
+
+  void addCamera(const GltfPlacedNode& placed, std::size_t index) {
+    const tinygltf::Camera& camera = document_.model.cameras[index];
+    scene_.cameras.push_back(
+        convertCamera(camera, objectName("camera", index, camera.name), matrixOf(placed.node, placed.world)));
+  }
+
+  void addLight(const GltfPlacedNode& placed, std::size_t index) {
+    const std::optional<Light>& source = document_.lights[index];
+    if (!source) {
+      warn(scene_, fmt::format("light {} is neither directional nor a point nor a spot: it does not shine", index));
+      return;
+    }
+    const glm::mat4 world = matrixOf(placed.node, placed.world);
+    Light light = *source;
+    light.position = glm::vec3(world[3]);
+    const glm::dvec3 forward = -glm::dvec3(world[2]);
+    const double length = glm::length(forward);
+    if (length > 0.0) light.direction = glm::vec3(forward / length);
+    scene_.lights.push_back(std::move(light));
+  }
+
+  // What one primitive of a node's mesh is drawn with.
+  Shown shownBy(std::uint32_t node, std::size_t index) {
+    const GltfRareParts& rare = document_.nodes.rare(node);
+    const std::uint32_t meshIndex = document_.nodes.mesh(node);
+    const tinygltf::Mesh& mesh = document_.model.meshes[meshIndex];
+    const tinygltf::Primitive& primitive = mesh.primitives[index];
+    const bool skinned = rare.skin && canFollowJoints(primitive);
+    const bool own = skinned || (!rare.weights.empty() && !primitive.targets.empty());
+    const std::pair<std::uint32_t, std::size_t> place(meshIndex, index);
+    if (!own) {
+      const auto known = plain_.find(place);
+      if (known != plain_.end()) return known->second;
+    }
+    use_.notePrimitive(primitive);
+    const auto [material, source] = materialFor(materialOf(primitive));
+    const GltfPose pose{rare.weights.empty() ? mesh.weights : rare.weights, nullptr};
+    Shown shown{std::nullopt, material, skinned};
+    shown.mesh = meshFor(meshIndex, index, *source, pose, skinned ? rare.skin : std::nullopt);
+    if (!own) plain_.emplace(place, shown);
+    return shown;
+  }
+
+  // The primitive's material, or that of the chosen variant.
+  int materialOf(const tinygltf::Primitive& primitive) {
+    const auto extension = primitive.extensions.find("KHR_materials_variants");
+    if (extension == primitive.extensions.end() || variant_ < 0) return primitive.material;
+    for (const tinygltf::Value& mapping : extension->second.Get("mappings").Get<tinygltf::Value::Array>())
+      for (const tinygltf::Value& variant : mapping.Get("variants").Get<tinygltf::Value::Array>())
+        if (variant.GetNumberAsInt() == variant_) return mapping.Get("material").GetNumberAsInt();
+    return primitive.material;
+  }
+
+  // None where the primitive has nothing to draw.
+  std::optional<std::uint32_t> meshFor(std::size_t meshIndex, std::size_t primitive, const GltfMaterial& material,
+                                       GltfPose pose, std::optional<std::uint32_t> skin) {
+    std::string key =
+        geometryKey(document_.model.meshes[meshIndex].primitives[primitive], material, pose.weights, skin);
+    const auto known = geometries_.find(key);
+    if (known != geometries_.end()) return known->second;
+    if (skin && skin != posedSkin_) {
+      skinPose_ = poseSkin(document_, hierarchy_, *skin);
+      posedSkin_ = skin;
+    }
+    if (skin) pose.skin = &skinPose_;
+    Mesh mesh = meshes_.read(meshIndex, primitive, material, pose);
     std::optional<std::uint32_t> index;
     if (!mesh.indices.empty()) {
       index = static_cast<std::uint32_t>(scene_.meshes.size());
+      boxes_.push_back(boundsOf(mesh));
+      origins_.push_back(skin ? skinPose_.origin : glm::dvec3(0.0));
       scene_.meshes.push_back(std::move(mesh));
     }
-    return meshIndices_.emplace(key, index).first->second;
+    return geometries_.emplace(std::move(key), index).first->second;
   }
 
   std::pair<std::uint32_t, const GltfMaterial*> materialFor(int index) {
@@ -128,6 +303,7 @@ class SceneBuilder {
     if (known == knownMaterials_.end()) {
       // A primitive without a material has the specification's default one.
       GltfMaterial material = index < 0 ? GltfMaterial{} : materials_.read(static_cast<std::size_t>(index));
+      if (index >= 0) use_.noteMaterial(static_cast<std::size_t>(index));
       scene_.materials.push_back(material.material);
       const auto place = static_cast<std::uint32_t>(scene_.materials.size() - 1);
       known = knownMaterials_.emplace(index, std::pair(place, std::move(material))).first;
@@ -136,20 +312,34 @@ class SceneBuilder {
   }
 
   const GltfDocument& document_;
-  std::vector<glm::dmat4> world_;
   Scene scene_;
+  GltfHierarchy hierarchy_;
+  GltfExtensionUse use_;
   GltfMaterialReader materials_;
   GltfMeshReader meshes_;
-  std::map<MeshKey, std::optional<std::uint32_t>> meshIndices_;
+  int variant_ = -1; // of document_.variants; -1: the default materials
+  bool hidden_ = false;
+  std::uint64_t drawCount_ = 0;
+  WorldBox box_;
+  std::vector<Bounds> boxes_;       // of the scene's meshes
+  std::vector<glm::dvec3> origins_; // of those that follow a skin
+  std::optional<std::uint32_t> posedSkin_;
+  GltfSkinPose skinPose_;
+  std::map<std::pair<std::uint32_t, std::size_t>, Shown> plain_; // of primitives that no node changes
+  std::unordered_map<std::string, std::optional<std::uint32_t>> geometries_;
   std::map<int, std::pair<std::uint32_t, GltfMaterial>> knownMaterials_;
 };
 
-} // namespace
-
-Scene loadGltf(std::span<const std::byte> file, const std::filesystem::path& base, const LoadOptions& /*options*/) {
+Scene loadDocument(MappedFile file, const std::filesystem::path& base, const LoadOptions& options) {
   try {
-    const GltfDocument document = openGltf(file, base);
-    return SceneBuilder(document).build();
+    GltfDocument document = openGltf(std::move(file), base);
+    Scene scene;
+    scene.file.format = document.binary ? "glTF 2.0 (binary)" : "glTF 2.0";
+    scene.file.generator = document.generator;
+    scene.file.animations = listAnimations(document);
+    scene.file.variants = document.variants;
+    poseAt(document, options, scene);
+    return SceneBuilder(document, std::move(scene), options).build();
   } catch (const LoadError&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -157,6 +347,16 @@ Scene loadGltf(std::span<const std::byte> file, const std::filesystem::path& bas
   } catch (const std::exception& error) {
     throw LoadError(fmt::format("it cannot be read: {}", oneLine(error.what())));
   }
+}
+
+} // namespace
+
+Scene loadGltf(std::span<const std::byte> file, const std::filesystem::path& base, const LoadOptions& options) {
+  return loadDocument(MappedFile(file), base, options);
+}
+
+Scene loadGltf(MappedFile file, const std::filesystem::path& base, const LoadOptions& options) {
+  return loadDocument(std::move(file), base, options);
 }
 
 } // namespace vitrail::tool

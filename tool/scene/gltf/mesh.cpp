@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +24,12 @@ namespace {
 using AccessorIndices = std::map<std::string, int>;
 
 float finiteOr(float value, float otherwise) { return std::isfinite(value) ? value : otherwise; }
+
+glm::vec4 repairedColor(glm::vec4 color) {
+  for (int c = 0; c < 4; ++c) color[c] = std::max(finiteOr(color[c], 1.0F), 0.0F);
+  color.a = std::min(color.a, 1.0F);
+  return color;
+}
 
 // The vertices of one primitive as they come in: one reader call fills one member of each.
 class VertexReader {
@@ -88,18 +95,91 @@ class VertexReader {
   std::vector<Vertex> vertices_;
 };
 
+// Reads the attributes of a primitive in its rest pose straight into a mesh's arrays. Normals and tangents come last,
+// when it has its triangles.
+class MeshArrays {
+ public:
+  MeshArrays(const GltfDocument& document, const tinygltf::Primitive& primitive, const std::string& where, Mesh& mesh)
+      : document_(document), attributes_(primitive.attributes), where_(where), mesh_(mesh) {}
+
+  void readPlaces(const GltfMaterial& material) {
+    const auto position = static_cast<std::size_t>(attributes_.at("POSITION"));
+    visitVectors(document_, position, 3, 3, "POSITION", [&](std::size_t first, std::span<const glm::vec4> part) {
+      // Only now it is known that the file has as many as it states.
+      if (first == 0) mesh_.positions.resize(accessorCount(document_, position));
+      for (std::size_t i = 0; i < part.size(); ++i) {
+        if (!std::isfinite(part[i].x) || !std::isfinite(part[i].y) || !std::isfinite(part[i].z))
+          throw LoadError(
+              fmt::format("{}: position {} of {} is not finite", where_, first + i, accessorName(document_, position)));
+        mesh_.positions[first + i] = glm::vec3(part[i]);
+      }
+    });
+    const auto coordinates = [](const glm::vec4& v) { return glm::vec2(finiteOr(v.x, 0.0F), finiteOr(v.y, 0.0F)); };
+    each(fmt::format("TEXCOORD_{}", material.texCoordSets[0]), 2, 2, mesh_.texCoords0, coordinates);
+    each(fmt::format("TEXCOORD_{}", material.texCoordSets[1]), 2, 2, mesh_.texCoords1, coordinates);
+    each("COLOR_0", 3, 4, mesh_.colors, [](const glm::vec4& color) { return packColor(repairedColor(color)); });
+    const std::uint64_t white = packColor(glm::vec4(1.0F));
+    if (std::ranges::all_of(mesh_.colors, [white](std::uint64_t color) { return color == white; })) mesh_.colors = {};
+  }
+
+  // Tangents mean nothing without the normals that they were made for.
+  void readDirections() {
+    bool complete = true;
+    each("NORMAL", 3, 3, mesh_.normals, [&complete](const glm::vec4& value) {
+      const double length = glm::length(glm::dvec3(value));
+      const bool usable = length > 0.0 && std::isfinite(length);
+      complete = complete && usable;
+      return usable ? packDirection(glm::vec3(glm::dvec3(value) / length)) : 0U;
+    });
+    // Lines and points have no plane that a normal could be mended with: one that is none leaves all of them unlit.
+    const bool triangles = mesh_.primitive == Primitive::Triangles;
+    if (!triangles && !complete) mesh_.normals.clear();
+    if (triangles && !complete) {
+      std::vector<glm::vec3> normals;
+      each("NORMAL", 3, 3, normals, [](const glm::vec4& value) { return glm::vec3(value); });
+      setRepairedNormals(mesh_, std::move(normals));
+    }
+    if (mesh_.normals.empty() || !triangles) return;
+    std::vector<glm::vec4> tangents;
+    each("TANGENT", 4, 4, tangents, [](const glm::vec4& value) { return value; });
+    if (!tangents.empty()) setRepairedTangents(mesh_, tangents);
+  }
+
+ private:
+  template <typename Value, typename Convert>
+  void each(const std::string& name, int least, int most, std::vector<Value>& values, Convert convert) {
+    const auto attribute = attributes_.find(name);
+    if (attribute == attributes_.end()) return;
+    const auto accessor = static_cast<std::size_t>(attribute->second);
+    if (accessorCount(document_, accessor) != mesh_.positions.size())
+      throw LoadError(fmt::format("{}: has {} positions, but {} of {}", where_, mesh_.positions.size(),
+                                  accessorCount(document_, accessor), name));
+    values.resize(mesh_.positions.size());
+    visitVectors(
+        document_, accessor, least, most, name,
+        [&](std::size_t first, std::span<const glm::vec4> part) {
+          for (std::size_t i = 0; i < part.size(); ++i) values[first + i] = convert(part[i]);
+        },
+        glm::vec4(1.0F));
+  }
+
+  const GltfDocument& document_;
+  const AccessorIndices& attributes_;
+  const std::string& where_;
+  Mesh& mesh_;
+};
+
 void repairAttributes(std::vector<Vertex>& vertices, const std::string& where) {
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     Vertex& vertex = vertices[i];
     for (int c = 0; c < 3; ++c)
       if (!std::isfinite(vertex.position[c]))
-        throw LoadError(fmt::format("{}: vertex {} is not at a finite place in its rest pose", where, i));
+        throw LoadError(fmt::format("{}: vertex {} is not at a finite place in its pose", where, i));
     for (int c = 0; c < 2; ++c) {
       vertex.texCoord0[c] = finiteOr(vertex.texCoord0[c], 0.0F);
       vertex.texCoord1[c] = finiteOr(vertex.texCoord1[c], 0.0F);
     }
-    for (int c = 0; c < 4; ++c) vertex.color[c] = std::max(finiteOr(vertex.color[c], 1.0F), 0.0F);
-    vertex.color.a = std::min(vertex.color.a, 1.0F);
+    vertex.color = repairedColor(vertex.color);
   }
 }
 
@@ -120,10 +200,12 @@ Primitive primitiveOf(int mode, const std::string& where) {
   }
 }
 
+// Triangles that name a vertex twice may be among it.
 std::vector<std::uint32_t> listOf(std::vector<std::uint32_t> indices, int mode) {
   switch (mode) {
     case TINYGLTF_MODE_TRIANGLES:
-      return triangleList(indices, Topology::Triangles);
+      indices.resize(indices.size() / 3 * 3);
+      return indices;
     case TINYGLTF_MODE_TRIANGLE_STRIP:
       return triangleList(indices, Topology::Strip);
     case TINYGLTF_MODE_TRIANGLE_FAN:
@@ -145,10 +227,10 @@ std::vector<std::uint32_t> readList(const GltfDocument& document, const tinygltf
   std::vector<std::uint32_t> indices;
   if (primitive.indices >= 0) {
     indices = readIndices(document, static_cast<std::size_t>(primitive.indices));
-    for (std::size_t i = 0; i < indices.size(); ++i)
-      if (indices[i] >= vertexCount)
-        throw LoadError(
-            fmt::format("{}: index {} is {}, but there are {} vertices", where, i, indices[i], vertexCount));
+    const auto wrong = std::ranges::find_if(indices, [=](std::uint32_t index) { return index >= vertexCount; });
+    if (wrong != indices.end())
+      throw LoadError(fmt::format("{}: index {} is {}, but there are {} vertices", where, wrong - indices.begin(),
+                                  *wrong, vertexCount));
   } else {
     indices.resize(vertexCount);
     std::iota(indices.begin(), indices.end(), 0U);
@@ -156,23 +238,8 @@ std::vector<std::uint32_t> readList(const GltfDocument& document, const tinygltf
   return listOf(std::move(indices), primitive.mode);
 }
 
-// Lines and points have no plane that a normal could be mended with: one that is none leaves all of them unlit.
-void finishWithoutTriangles(Mesh& mesh, std::span<const glm::vec3> normals) {
-  mesh.normals.clear();
-  for (const glm::vec3& normal : normals) {
-    const float length = glm::length(normal);
-    if (!(length > 0.0F) || !std::isfinite(length)) {
-      mesh.normals.clear();
-      break;
-    }
-    mesh.normals.push_back(packDirection(normal / length));
-  }
-  dropUnusedVertices(mesh);
-}
-
 // Keeps of the vertices what the mesh has. Tangents mean nothing without the normals that they were made for.
-void finish(Mesh& mesh, const std::vector<Vertex>& vertices, const AccessorIndices& attributes,
-            const Material& material) {
+void keep(Mesh& mesh, const std::vector<Vertex>& vertices, const AccessorIndices& attributes) {
   for (const Vertex& vertex : vertices) mesh.add(vertex);
   std::vector<glm::vec3> normals;
   std::vector<glm::vec4> tangents;
@@ -184,13 +251,30 @@ void finish(Mesh& mesh, const std::vector<Vertex>& vertices, const AccessorIndic
     for (const Vertex& vertex : vertices) tangents.push_back(vertex.tangent);
   mesh.normals.clear();
   mesh.tangents.clear();
-  if (mesh.primitive != Primitive::Triangles) return finishWithoutTriangles(mesh, normals);
+  if (mesh.primitive != Primitive::Triangles) {
+    const auto usable = [](const glm::vec3& normal) {
+      return glm::length(normal) > 0.0F && std::isfinite(glm::length(normal));
+    };
+    if (!std::ranges::all_of(normals, usable)) return;
+    for (const glm::vec3& normal : normals) mesh.normals.push_back(packDirection(glm::normalize(normal)));
+    return;
+  }
   dropDegenerateTriangles(mesh);
   if (hasNormals) setRepairedNormals(mesh, std::move(normals));
   if (hasTangents) setRepairedTangents(mesh, tangents);
+}
+
+// Whether a skin or a morph target moves the vertices.
+bool isPosed(const tinygltf::Primitive& primitive, const GltfPose& pose) {
+  const std::size_t targets = std::min(primitive.targets.size(), pose.weights.size());
+  return pose.skin != nullptr || std::ranges::any_of(pose.weights.first(targets), [](double w) { return w != 0.0; });
+}
+
+void finish(Mesh& mesh, const Material& material) {
   dropUnusedVertices(mesh);
-  if (hasTangents || material.normalTexture.image < 0) return;
-  if (!hasNormals) makeFlatNormals(mesh);
+  if (mesh.primitive != Primitive::Triangles) return;
+  if (!mesh.tangents.empty() || material.normalTexture.image < 0) return;
+  if (mesh.normals.empty()) makeFlatNormals(mesh);
   makeTangents(mesh, material.normalTexture);
 }
 
@@ -215,22 +299,38 @@ Mesh GltfMeshReader::read(std::size_t mesh, std::size_t primitive, const GltfMat
   result.primitive = primitiveOf(source.mode, where);
   if (!source.attributes.contains("POSITION")) return result;
 
-  VertexReader reader(document_, where);
-  std::vector<Vertex> vertices = reader.read(source.attributes, material);
-  take(vertices.size());
-  for (std::size_t i = 0; i < std::min(source.targets.size(), pose.weights.size()); ++i)
-    if (pose.weights[i] != 0.0)
-      reader.morph(source.targets[i], material, static_cast<float>(pose.weights[i]), vertices);
-  result.indices = readList(document_, source, vertices.size(), where);
+  if (isPosed(source, pose)) {
+    std::vector<Vertex> vertices = posedVertices(source, material, pose, where);
+    take(vertices.size());
+    result.indices = readList(document_, source, vertices.size(), where);
+    if (pose.skin != nullptr) applySkin(document_, *pose.skin, source, where, vertices, result.indices);
+    repairAttributes(vertices, where);
+    keep(result, vertices, source.attributes);
+  } else {
+    MeshArrays arrays(document_, source, where, result);
+    arrays.readPlaces(material);
+    take(result.vertexCount());
+    result.indices = readList(document_, source, result.vertexCount(), where);
+    if (result.primitive == Primitive::Triangles) dropDegenerateTriangles(result);
+    arrays.readDirections();
+  }
   take(result.indices.size());
-  if (pose.skin) applySkin(document_, pose.nodes, *pose.skin, source, where, vertices, result.indices);
-  repairAttributes(vertices, where);
-  finish(result, vertices, source.attributes, material.material);
+  finish(result, material.material);
   return result;
 }
 
-bool isSkinned(const tinygltf::Primitive& primitive, const tinygltf::Node& node) {
-  return node.skin >= 0 && primitive.attributes.contains("JOINTS_0") && primitive.attributes.contains("WEIGHTS_0");
+std::vector<Vertex> GltfMeshReader::posedVertices(const tinygltf::Primitive& source, const GltfMaterial& material,
+                                                  const GltfPose& pose, const std::string& where) const {
+  VertexReader reader(document_, where);
+  std::vector<Vertex> vertices = reader.read(source.attributes, material);
+  for (std::size_t i = 0; i < std::min(source.targets.size(), pose.weights.size()); ++i)
+    if (pose.weights[i] != 0.0)
+      reader.morph(source.targets[i], material, static_cast<float>(pose.weights[i]), vertices);
+  return vertices;
+}
+
+bool canFollowJoints(const tinygltf::Primitive& primitive) {
+  return primitive.attributes.contains("JOINTS_0") && primitive.attributes.contains("WEIGHTS_0");
 }
 
 } // namespace vitrail::tool

@@ -1,4 +1,4 @@
-// Turns one glTF primitive into a mesh, in the rest pose of the node that shows it.
+// Turns one glTF primitive into a mesh, in the pose of the node that shows it.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 #include "../scene.h"
 #include "document.h"
 #include "material.h"
+#include "skin.h"
 
 namespace vitrail::tool {
 
 // What a node adds to the meshes that it shows.
 struct GltfPose {
-  std::span<const double> weights;   // of the mesh's morph targets
-  std::optional<std::size_t> skin;   // the mesh is then placed in the world already
-  std::span<const glm::dmat4> nodes; // the world transforms of all nodes
+  std::span<const double> weights;    // of the mesh's morph targets
+  const GltfSkinPose* skin = nullptr; // the mesh is then placed in the world already, but for the skin's origin
 };
 
 class GltfMeshReader {
@@ -31,12 +31,14 @@ class GltfMeshReader {
 
  private:
   void take(std::uint64_t elements);
+  std::vector<Vertex> posedVertices(const tinygltf::Primitive& source, const GltfMaterial& material,
+                                    const GltfPose& pose, const std::string& where) const;
 
   const GltfDocument& document_;
   std::uint64_t budget_; // how many more vertices and indices the file may make
 };
 
-// True where the primitive follows the joints of the node's skin.
-bool isSkinned(const tinygltf::Primitive& primitive, const tinygltf::Node& node);
+// True where the primitive follows the joints of a skin, if its node has one.
+bool canFollowJoints(const tinygltf::Primitive& primitive);
 
 } // namespace vitrail::tool

@@ -13,24 +13,6 @@
 namespace vitrail::tool {
 namespace {
 
-std::vector<glm::dmat4> jointMatrices(const GltfDocument& document, std::span<const glm::dmat4> nodes,
-                                      std::size_t index) {
-  const tinygltf::Skin& skin = document.model.skins[index];
-  std::vector<glm::mat4> inverseBinds;
-  if (skin.inverseBindMatrices >= 0) {
-    inverseBinds = readMatrices(document, static_cast<std::size_t>(skin.inverseBindMatrices), "inverseBindMatrices");
-    if (inverseBinds.size() < skin.joints.size())
-      throw LoadError(fmt::format("{}: has {} joints, but {} inverse bind matrices",
-                                  objectName("skin", index, skin.name), skin.joints.size(), inverseBinds.size()));
-  }
-  std::vector<glm::dmat4> matrices;
-  for (std::size_t i = 0; i < skin.joints.size(); ++i) {
-    const glm::dmat4& joint = nodes[static_cast<std::size_t>(skin.joints[i])];
-    matrices.push_back(inverseBinds.empty() ? joint : joint * glm::dmat4(inverseBinds[i]));
-  }
-  return matrices;
-}
-
 // One set of influences, JOINTS_n and WEIGHTS_n.
 struct InfluenceSet {
   std::vector<glm::uvec4> joints;
@@ -83,15 +65,33 @@ glm::dmat3 cofactors(const glm::dmat3& m) {
 
 } // namespace
 
-void applySkin(const GltfDocument& document, std::span<const glm::dmat4> nodes, std::size_t skin,
-               const tinygltf::Primitive& primitive, const std::string& where, std::vector<Vertex>& vertices,
-               std::vector<std::uint32_t>& indices) {
-  const std::vector<glm::dmat4> joints = jointMatrices(document, nodes, skin);
+GltfSkinPose poseSkin(const GltfDocument& document, const GltfHierarchy& hierarchy, std::size_t index) {
+  const tinygltf::Skin& skin = document.model.skins[index];
+  GltfSkinPose pose;
+  pose.joints = hierarchy.worldOf(skin.joints);
+  if (skin.inverseBindMatrices >= 0) {
+    const std::vector<glm::mat4> inverseBinds =
+        readMatrices(document, static_cast<std::size_t>(skin.inverseBindMatrices), "inverseBindMatrices");
+    if (inverseBinds.size() < skin.joints.size())
+      throw LoadError(fmt::format("{}: has {} joints, but {} inverse bind matrices",
+                                  objectName("skin", index, skin.name), skin.joints.size(), inverseBinds.size()));
+    for (std::size_t i = 0; i < pose.joints.size(); ++i) pose.joints[i] = pose.joints[i] * glm::dmat4(inverseBinds[i]);
+  }
+  // A float keeps a place at this distance to half a millimetre.
+  constexpr double near = 4096.0;
+  if (pose.joints.empty() || !(glm::length(glm::dvec3(pose.joints[0][3])) > near)) return pose;
+  pose.origin = glm::dvec3(pose.joints[0][3]);
+  for (glm::dmat4& joint : pose.joints) joint[3] -= glm::dvec4(pose.origin, 0.0);
+  return pose;
+}
+
+void applySkin(const GltfDocument& document, const GltfSkinPose& pose, const tinygltf::Primitive& primitive,
+               const std::string& where, std::vector<Vertex>& vertices, std::vector<std::uint32_t>& indices) {
   const std::vector<InfluenceSet> sets = readInfluences(document, primitive, where, vertices.size());
   std::vector<bool> mirrored(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     Vertex& vertex = vertices[i];
-    const glm::dmat4 matrix = blendedMatrix(sets, joints, i, where);
+    const glm::dmat4 matrix = blendedMatrix(sets, pose.joints, i, where);
     const glm::dmat3 linear(matrix);
     const double sign = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
     mirrored[i] = sign < 0.0;

@@ -96,13 +96,23 @@ bool hasScheme(std::string_view uri) {
   });
 }
 
+// The name of the file that a URI stands for.
+std::string fileName(std::string_view uri) {
+  if (uri.empty()) throw LoadError("its uri is empty");
+  if (hasScheme(uri)) throw LoadError(fmt::format("{} is not a local file", oneLine(uri)));
+  return percentDecoded(uri);
+}
+
 } // namespace
 
 std::vector<std::byte> readUri(std::string_view uri, const std::filesystem::path& base) {
   if (uri.starts_with("data:")) return dataUriPayload(uri);
-  if (uri.empty()) throw LoadError("its uri is empty");
-  if (hasScheme(uri)) throw LoadError(fmt::format("{} is not a local file", oneLine(uri)));
-  return readFileBeside(percentDecoded(uri), base);
+  return readFileBeside(fileName(uri), base);
+}
+
+MappedFile mapUri(std::string_view uri, const std::filesystem::path& base) {
+  if (uri.starts_with("data:")) return MappedFile(dataUriPayload(uri));
+  return mapFileBeside(fileName(uri), base);
 }
 
 } // namespace vitrail::tool
