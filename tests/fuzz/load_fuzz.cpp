@@ -2,6 +2,7 @@
 // STL, images), the rest is the file. A file
 // either loads and keeps the promises of scene.h, or is refused with a LoadError of one line: anything else is a
 // finding.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -49,6 +50,22 @@ void checkScene(const Scene& scene) {
   require(triangles > 0, "at least one triangle");
 }
 
+// In its rest pose, and in the middle of each animation.
+void loadAnimated(std::span<const std::byte> file) {
+  const Scene scene = loadGltf(file, {});
+  checkScene(scene);
+  for (std::size_t i = 0; i < std::min<std::size_t>(scene.file.animations.size(), 4); ++i) {
+    LoadOptions options;
+    options.animation = std::to_string(i);
+    options.time = scene.file.animations[i].seconds / 2.0;
+    try {
+      checkScene(loadGltf(file, {}, options));
+    } catch (const LoadError&) {
+      // An animation may be wrong where the rest is not.
+    }
+  }
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -57,7 +74,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     switch (data[0] % 5) {
       case 0:
-        checkScene(loadGltf(file, {}));
+        loadAnimated(file);
         break;
       case 1:
         checkScene(loadObj(file, {}));
