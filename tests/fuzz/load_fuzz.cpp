@@ -1,6 +1,7 @@
 // Feeds model loading with whatever libFuzzer makes up. The first byte selects the reader (glTF, OBJ, PLY, STL, images,
 // and what glTF holds compressed: Draco's and meshoptimizer's data), the rest is the file. A file either loads and
 // keeps the promises of scene.h, or is refused with a LoadError of one line: anything else is a finding.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -108,6 +109,22 @@ std::vector<std::byte> meshoptModel(std::span<const std::byte> data) {
       stream);
 }
 
+// In its rest pose, and in the middle of each animation.
+void loadAnimated(std::span<const std::byte> file) {
+  const Scene scene = loadGltf(file, {});
+  checkScene(scene);
+  for (std::size_t i = 0; i < std::min<std::size_t>(scene.file.animations.size(), 4); ++i) {
+    LoadOptions options;
+    options.animation = std::to_string(i);
+    options.time = scene.file.animations[i].seconds / 2.0;
+    try {
+      checkScene(loadGltf(file, {}, options));
+    } catch (const LoadError&) {
+      // An animation may be wrong where the rest is not.
+    }
+  }
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -116,7 +133,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     switch (data[0] % 7) {
       case 0:
-        checkScene(loadGltf(file, {}));
+        loadAnimated(file);
         break;
       case 1:
         checkScene(loadObj(file, {}));

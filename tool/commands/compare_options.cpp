@@ -61,8 +61,9 @@ bool isPng(const std::string& file) { return std::filesystem::path(file).extensi
 // Refuses options that only drawing has.
 void checkFileOptions(const CLI::App& command) {
   for (const char* name :
-       {"--scene", "--count", "--seed", "--size", "--camera", "--orbit", "--opacity", "--background", "--methods",
-        "--samples", "--layers", "--passes", "--repeat", "--warmup", "--output", "--device", "--validate"}) {
+       {"--scene",      "--count",   "--seed",     "--size",   "--camera",    "--orbit",  "--opacity",
+        "--background", "--methods", "--samples",  "--layers", "--passes",    "--repeat", "--warmup",
+        "--output",     "--device",  "--validate", "--time",   "--animation", "--variant"}) {
     if (command.count(name) > 0) {
       throw UsageError(fmt::format("{} is for comparing methods: two pictures are compared as they are", name));
     }

@@ -8,6 +8,10 @@
 #include <string>
 #include <utility>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <fmt/format.h>
 
 #include "message.h"
@@ -30,6 +34,14 @@ std::string extensionOf(const std::filesystem::path& path) {
 // The folder of external files. Never empty, since an empty one would refuse them.
 std::filesystem::path folderOf(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+// What loading needed beside the scene is free now. Small pieces of it stay with the C library, and drawing, which asks
+// for large ones, cannot have them.
+void giveBackMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 } // namespace
@@ -59,6 +71,7 @@ Scene loadModel(const std::filesystem::path& path, const LoadOptions& options) {
       throw LoadError(
           fmt::format("has the unknown extension .{}; {} can be read", oneLine(extension), knownExtensions));
     scene.name = path.stem().string();
+    giveBackMemory();
     return scene;
   } catch (const std::bad_alloc&) {
     throw LoadError("there is not enough memory to load it");
