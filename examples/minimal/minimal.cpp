@@ -265,7 +265,7 @@ void draw(const char* path, const VkOffset2D* place) {
 
   VitrailStats stats{};
   check(target.readStats(0, stats));
-  if (stats.exact == 0) throw std::runtime_error("the node pool is too small for the frame");
+  if (stats.complete == 0) throw std::runtime_error("the node pool is too small for the frame");
   savePng(static_cast<const float*>(picture.map(device)), path);
   if (place != nullptr) printPanes(list.map(device));
 }

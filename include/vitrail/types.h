@@ -60,8 +60,8 @@ typedef void (*VitrailLog)(VitrailLogSeverity severity, const char* message, voi
 
 /* ---- What is stored --------------------------------------------------------------------------------------------- */
 
-/* How a fragment is stored. The stored value of a fragment is what is blended: "exact" means equal to blending all the
- * stored fragments of a pixel in depth order. In every format:
+/* How a fragment is stored. The stored value of a fragment is what is blended; vitrailNodeErrorBound() tells how far
+ * that may be from blending, in real numbers, what was handed over. In every format:
  *   - A NaN in colour or alpha is stored as 0, in depth as the value farthest from the viewer. Negative colours are
  *     stored as 0, infinite ones as the largest value of the format.
  *   - Equal depths are ordered by the rest of the node's bits, never by arrival.
@@ -95,7 +95,8 @@ typedef enum VitrailNodeFormat {
   /* 16 bytes a node.
    *   colour    a 16-bit float a channel, clamped to [0, 65504]; the error is at most 2^-10 of the value, below 2^-14
    *             at most 2^-24. Surfaces brighter than 1 keep their brightness.
-   *   alpha     16 bits, linear, clamped to [0, 1]; the error is at most 0.5/65535.
+   *   alpha     16 bits, its square root, clamped to [0, 1]: the error is at most sqrt(alpha) / 65535. Faint surfaces
+   *             keep their share: a thousandth is at most 0.05 % off.
    *   depth, coverage, pool: as VITRAIL_NODE_STANDARD. */
   VITRAIL_NODE_HDR = 2,
   VITRAIL_NODE_FORMAT_MAX_ENUM = 0x7fffffff
@@ -204,6 +205,15 @@ typedef enum VitrailOverflow {
  * node (userWords) it is 4 bytes a node more. */
 VITRAIL_API uint64_t vitrailNodePoolSize(VitrailNodeFormat format, uint32_t nodeCapacity);
 
+/* How far a pixel may be from the real-number answer, all fragments blended in depth order, in steps of an 8-bit
+ * picture (1/255 on the sRGB curve, the rounding to such a picture included), where at most so many `layers` with
+ * colours up to 1 are in it. At most 1: a frame that is complete is exact (VitrailStats). 255 for a format that there
+ * is not. HDR       0.56 + 0.007 * sqrt(layers): exact up to 3,900 layers STANDARD  1 + 255 * srgb(min(1, layers *
+ * 0.5/255)): a surface as faint as half a step of alpha is lost, which shows where it is bright before darkness. Of
+ * common pictures few pixels are off by more than 2. COMPACT   likewise, with its coarser steps of colour and alpha
+ * Derived in docs/resolve.md. */
+VITRAIL_API float vitrailNodeErrorBound(VitrailNodeFormat format, uint32_t samples, uint32_t layers);
+
 /* What a target takes, in bytes. */
 typedef struct VitrailMemory {
   void* next; /* null */
@@ -220,14 +230,16 @@ typedef struct VitrailMemory {
 typedef struct VitrailStats {
   void* next; /* null */
   uint64_t frame;
-  uint32_t exact;              /* 1: every fragment of the frame was blended, in order; 0: see below */
-  uint32_t misused;            /* 1: calls were left out, or recorded wrongly (see the log): never exact */
+  uint32_t exact;              /* 1: complete, and each pixel is within 1/255 of the real-number answer (errorBound) */
+  uint32_t complete;           /* 1: every fragment of the frame was blended, in order; 0: see below */
+  float errorBound;            /* vitrailNodeErrorBound() of the target's format and layersMax */
+  uint32_t misused;            /* 1: calls were left out, or recorded wrongly (see the log): never complete */
   uint64_t fragmentsRequested; /* fragments that reached vitrailCollect() and would change the picture */
   uint64_t fragmentsStored;    /* of those, the ones that had a node */
   uint64_t fragmentsMissing;   /* requested - stored: the pool was full, or their shader does not suit the target */
   uint32_t nodeCapacity;       /* of the pool that the frame used */
   /* Of an overflowed frame the next three are counted only where a compute resolve blends it; else they are 0. */
-  uint32_t layersMax;     /* stored fragments of the deepest pixel: the depth complexity if the frame is exact */
+  uint32_t layersMax;     /* stored fragments of the deepest pixel: the depth complexity if the frame is complete */
   uint32_t coveredPixels; /* pixels with at least one stored fragment; stored / covered is the mean depth */
   /* Pixels that were blended approximately: more than maxLayers fragments, or VITRAIL_BLEND_MULTIPLY in a fragment
    * resolve without dual-source blending (a resolve per sample counts samples). */

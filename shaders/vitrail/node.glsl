@@ -145,7 +145,7 @@ bool vitrailPackFull(vec4 color, uint blend, float depth, uint coverage, Vitrail
   }
 #endif
 #if VITRAIL_MAY_BE(2)
-  uint alpha = vitrailQuantize(vitrailSaturate(color), vec4(65535.0)).a;
+  uint alpha = vitrailQuantize(sqrt(vitrailSaturate(color.aaaa)), vec4(65535.0)).a;
   uint redGreen = vitrailPackHalves(color.rg);
   uint blue = vitrailPackHalves(vec2(color.b, 0.0));
   node = uvec4(redGreen, blue | alpha << 16, depthWord, coverageWord);
@@ -209,8 +209,10 @@ uint vitrailDepthOrder(float depth, VitrailLayout nodes) {
 }
 
 // Colour and alpha, the colour as it is stored: linear in the hdr format, else on the sRGB curve.
+// Alpha is kept as its root: faint surfaces have fine steps.
 vec4 vitrailHdrColor(uvec4 key) {
-  return vec4(unpackHalf2x16(key.y), unpackHalf2x16(key.z & 0xffffu).x, float(key.z >> 16) / 65535.0);
+  float root = float(key.z >> 16) / 65535.0;
+  return vec4(unpackHalf2x16(key.y), unpackHalf2x16(key.z & 0xffffu).x, root * root);
 }
 
 vec4 vitrailCompactCurve(uvec4 key, VitrailLayout nodes) {

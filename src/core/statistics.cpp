@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "error_bound.h"
+
 namespace vitrail {
 
 namespace {
@@ -16,7 +18,7 @@ bool ranInOrder(const StatsSlot& slot, const VitrailStats& stats) {
   return begun && collected && seen;
 }
 
-void decode(const StatsSlot& slot, VitrailStats& stats) {
+void decode(const StatsSlot& slot, const NodeKind& nodes, VitrailStats& stats) {
   const layout::VitrailControl& control = slot.control;
   const FrameFacts& facts = slot.facts;
   stats.nodeCapacity = facts.nodeCapacity;
@@ -30,12 +32,14 @@ void decode(const StatsSlot& slot, VitrailStats& stats) {
   for (const std::uint32_t part : control.coveredPixels) stats.coveredPixels += part;
   stats.misused = facts.misused != 0 || !ranInOrder(slot, stats) ? 1 : 0;
   const bool whole = stats.fragmentsMissing == 0 && stats.cutPixels == 0 && stats.approximatePixels == 0;
-  stats.exact = whole && stats.misused == 0 ? 1 : 0;
+  stats.complete = whole && stats.misused == 0 ? 1 : 0;
+  stats.errorBound = nodeErrorBound(nodes.format, nodes.samples, stats.layersMax);
+  stats.exact = stats.complete != 0 && stats.errorBound <= 1.0F ? 1 : 0;
 }
 
 } // namespace
 
-bool readSlot(StatsSlot& slot, std::uint64_t frame, VitrailStats& stats) {
+bool readSlot(StatsSlot& slot, std::uint64_t frame, const NodeKind& nodes, VitrailStats& stats) {
   // The counters are read between two looks at the tag: the GPU may start to write the slot again at any time.
   const std::uint64_t tag = frame + 1;
   const std::atomic_ref<std::uint64_t> written(slot.tag);
@@ -47,7 +51,7 @@ bool readSlot(StatsSlot& slot, std::uint64_t frame, VitrailStats& stats) {
   stats = {};
   stats.next = next;
   stats.frame = frame;
-  decode(copy, stats);
+  decode(copy, nodes, stats);
   return true;
 }
 

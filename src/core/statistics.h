@@ -9,6 +9,12 @@
 
 namespace vitrail {
 
+// What decides how nodes round.
+struct NodeKind {
+  std::uint32_t format;
+  std::uint32_t samples;
+};
+
 // What the host knows of a frame when it records it.
 struct FrameFacts {
   std::uint32_t nodeCapacity; // of the pool that the frame uses
@@ -35,8 +41,8 @@ constexpr std::uint64_t statisticsBytes(std::uint32_t framesInFlight) {
   return statisticsSlots(framesInFlight) * sizeof(StatsSlot);
 }
 
-// Reads a slot that the GPU may be writing to. False: it does not hold that frame (any more). `next` of the statistics
-// stays.
-bool readSlot(StatsSlot& slot, std::uint64_t frame, VitrailStats& stats);
+// Reads a slot that the GPU may be writing to, of a target with such nodes. False: it does not hold that frame (any
+// more). `next` of the statistics stays.
+bool readSlot(StatsSlot& slot, std::uint64_t frame, const NodeKind& nodes, VitrailStats& stats);
 
 } // namespace vitrail

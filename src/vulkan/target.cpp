@@ -38,7 +38,8 @@ std::unique_ptr<VitrailVkTarget_T> makeTarget(VitrailVkContext context, const Vi
 }
 
 bool readFrame(const VitrailVkTarget_T& target, std::uint64_t frame, VitrailStats& stats) {
-  return readSlot(target.slots()[target.slotOf(frame)], frame, stats);
+  const NodeKind nodes{target.info.nodeFormat, target.info.samples};
+  return readSlot(target.slots()[target.slotOf(frame)], frame, nodes, stats);
 }
 
 // The statistics of the newest finished frame, of `frame` and those before it that still have a slot.

@@ -44,7 +44,7 @@ TEST_P(BoundsTest, CapacitiesAroundTheNeedCountWhatIsMissing) {
           EXPECT_EQ(result.stats.fragmentsStored, stored);
           EXPECT_EQ(result.stats.fragmentsMissing, need - stored);
           EXPECT_EQ(result.stats.nodeCapacity, capacity);
-          EXPECT_EQ(result.stats.exact, stored == need ? 1U : 0U);
+          EXPECT_EQ(result.stats.complete, stored == need ? 1U : 0U);
           EXPECT_TRUE(host->guardsUntouched());
           for (const auto& pixel : result.pixels) {
             for (const float channel : pixel) EXPECT_TRUE(channel >= 0.0F && channel <= 1.0001F) << channel;
@@ -72,7 +72,7 @@ TEST_P(BoundsTest, RequestsBeyond32BitsAreCountedAndTakeNoNode) {
     EXPECT_EQ(result.stats.fragmentsRequested, std::uint64_t{desc.requestedBefore} + points.size());
     EXPECT_EQ(result.stats.fragmentsStored, desc.capacity);
     EXPECT_EQ(result.stats.fragmentsMissing, result.stats.fragmentsRequested - desc.capacity);
-    EXPECT_EQ(result.stats.exact, 0U);
+    EXPECT_EQ(result.stats.complete, 0U);
     EXPECT_TRUE(host->guardsUntouched());
     // However many more follow, the counter does not come round to nodes that are in use.
     const std::vector<std::uint32_t> control = host->words(&StorageLayout::control);
@@ -141,7 +141,7 @@ TEST_P(BoundsTest, AFrameThatOverflowsIsBlendedApproximatelyAndAlwaysTheSame) {
       desc.capacity = static_cast<std::uint32_t>(points.size() / 2);
       const auto host = makeHost(desc);
       const PointResult forward = host->draw(points);
-      EXPECT_EQ(forward.stats.exact, 0U);
+      EXPECT_EQ(forward.stats.complete, 0U);
       EXPECT_GT(forward.stats.fragmentsMissing, 0U);
       // A stencil mark rejects samples that nothing covers, which the average over the pixel would change a little.
       const bool marked = samples > 1 && way.stencilMark;
@@ -156,7 +156,7 @@ TEST_P(BoundsTest, AFrameThatOverflowsIsBlendedApproximatelyAndAlwaysTheSame) {
       // A frame that fits is exact again.
       const std::vector<Point> few(points.begin(), points.begin() + 6);
       const PointResult fits = host->draw(few);
-      EXPECT_EQ(fits.stats.exact, 1U);
+      EXPECT_EQ(fits.stats.complete, 1U);
       EXPECT_LT(largestError(fits.pixels, expectedFrame(desc, few).pixels), kTolerance);
     }
   }
@@ -251,7 +251,7 @@ TEST_P(BoundsTest, ASkippedFrameLeavesTheImageAsItIs) {
       const std::vector<Point> points = randomLists(desc, {1, 5, 20, 40, 100}, 1);
       desc.capacity = 20;
       const PointResult result = draw(desc, points);
-      EXPECT_EQ(result.stats.exact, 0U);
+      EXPECT_EQ(result.stats.complete, 0U);
       EXPECT_EQ(result.stats.fragmentsMissing, points.size() - 20);
       // A per-pixel resolve of several samples writes one image from others: the one that it writes stays.
       const bool other = samples > 1 && way.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_PIXEL;
@@ -288,7 +288,7 @@ TEST_P(BoundsTest, TheNearestLayersAreExactAndTheOthersAveraged) {
         for (const Point& p : points) ++layers[std::size_t{p.y} * desc.width + p.x];
         const auto over = std::count_if(layers.begin(), layers.end(), [&](std::uint32_t n) { return n > maxLayers; });
         EXPECT_EQ(forward.stats.approximatePixels, static_cast<std::uint32_t>(over));
-        EXPECT_EQ(forward.stats.exact, 0U);
+        EXPECT_EQ(forward.stats.complete, 0U);
       }
     }
   }
@@ -304,7 +304,7 @@ TEST_P(BoundsTest, ACapThatIsNotReachedIsExact) {
     desc.capacity = static_cast<std::uint32_t>(points.size());
     const PointResult result = draw(desc, points);
     EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kTolerance) << way.name;
-    EXPECT_EQ(result.stats.exact, 1U);
+    EXPECT_EQ(result.stats.complete, 1U);
     EXPECT_EQ(result.stats.approximatePixels, 0U);
   }
 }

@@ -28,10 +28,10 @@ TEST_P(MemoryTest, ThePoolGrowsTowardsItsBudgetUntilFramesAreExact) {
     const std::vector<Point> more = manyLists(desc, 40, 2);
     for (const std::vector<Point>* scene : {&points, &more}) {
       const Expected expected = expectedFrame(desc, *scene);
-      EXPECT_EQ(host->draw(*scene).stats.exact, 0U);
+      EXPECT_EQ(host->draw(*scene).stats.complete, 0U);
       PointResult result;
       for (int frame = 0; frame < 3; ++frame) result = host->draw(*scene);
-      EXPECT_EQ(result.stats.exact, 1U);
+      EXPECT_EQ(result.stats.complete, 1U);
       EXPECT_EQ(result.stats.fragmentsStored, scene->size());
       EXPECT_LT(largestError(result.pixels, expected.pixels), kTolerance);
       for (int frame = 0; frame < 3; ++frame) host->draw({}); // old pools are let go
@@ -49,14 +49,14 @@ TEST_P(MemoryTest, StatisticsKnowThePoolOfTheirFrame) {
   const std::vector<Point> points = manyLists(desc, 20, 1);
   const VitrailStats drawn = host->draw(points).stats; // frame 0 of slot 0
   EXPECT_GT(drawn.fragmentsMissing, 0U);
-  EXPECT_EQ(host->draw(points).stats.exact, 1U);
+  EXPECT_EQ(host->draw(points).stats.complete, 1U);
   host->drop(points); // frame 2 of slot 0, as far as the host has recorded
   const std::optional<VitrailStats> stats = host->stats(0);
   ASSERT_TRUE(stats);
   EXPECT_EQ(stats->nodeCapacity, 1000U);
   EXPECT_EQ(stats->fragmentsStored, 1000U);
   EXPECT_EQ(stats->fragmentsMissing, drawn.fragmentsMissing);
-  EXPECT_EQ(stats->exact, 0U);
+  EXPECT_EQ(stats->complete, 0U);
 }
 
 TEST_P(MemoryTest, AFrameBeyondTheBudgetStaysApproximateAndStill) {
@@ -66,7 +66,7 @@ TEST_P(MemoryTest, AFrameBeyondTheBudgetStaysApproximateAndStill) {
   const std::vector<Point> points = manyLists(desc, 60, 3);
   for (int frame = 0; frame < 3; ++frame) host->draw(points);
   const PointResult settled = host->draw(points);
-  EXPECT_EQ(settled.stats.exact, 0U);
+  EXPECT_EQ(settled.stats.complete, 0U);
   EXPECT_EQ(settled.stats.fragmentsRequested, points.size());
   EXPECT_TRUE(host->draw(ordered(points, Order::Shuffled)).pixels == settled.pixels);
   EXPECT_LE(host->memory().totalBytes, desc.memoryBudget);
@@ -85,7 +85,7 @@ TEST_P(MemoryTest, ThePoolShrinksWhenLittleIsNeededForLong) {
   for (int frame = 0; frame < 15; ++frame) host->draw({few.data(), 100});
   EXPECT_LT(host->memory().nodeCapacity, large / 10);
   const PointResult result = host->draw({few.data(), 100});
-  EXPECT_EQ(result.stats.exact, 1U);
+  EXPECT_EQ(result.stats.complete, 1U);
   EXPECT_LT(largestError(result.pixels, expectedFrame(desc, {few.data(), 100}).pixels), kTolerance);
 }
 
@@ -110,7 +110,7 @@ TEST_P(MemoryTest, ATargetIsResizedWhileFramesAreInFlight) {
         const std::vector<Point> after = manyLists(resized, 7, 6);
         const auto [first, second] = host->drawAcrossResize(before, extent, after);
         EXPECT_LT(largestError(first.pixels, expectedFrame(desc, before).pixels), kTolerance);
-        EXPECT_EQ(second.stats.exact, 1U);
+        EXPECT_EQ(second.stats.complete, 1U);
         EXPECT_LT(largestError(second.pixels, expectedFrame(resized, after).pixels), kTolerance);
         before = after;
         desc.width = extent.width;
@@ -133,9 +133,9 @@ TEST_P(MemoryTest, AFixedPoolGrowsWithAResize) {
   for (const std::uint32_t capacity : {0U, needed}) {
     const auto host = makeHost(desc);
     const auto [first, second] = host->drawAcrossResize(before, {128, 128}, after, capacity);
-    EXPECT_EQ(first.stats.exact, 1U);
+    EXPECT_EQ(first.stats.complete, 1U);
     EXPECT_EQ(host->memory().nodeCapacity, capacity == 0 ? desc.capacity : needed);
-    EXPECT_EQ(second.stats.exact, capacity == 0 ? 0U : 1U);
+    EXPECT_EQ(second.stats.complete, capacity == 0 ? 0U : 1U);
     if (capacity == 0) continue;
     EXPECT_LT(largestError(second.pixels, expectedFrame(larger, after).pixels), kTolerance);
   }
@@ -153,8 +153,8 @@ TEST_P(MemoryTest, UnderABudgetThePoolFollowsTheExtent) {
   const auto host = makeHost(desc);
   for (int frame = 0; frame < 3; ++frame) host->draw(before);
   const auto [first, second] = host->drawAcrossResize(before, {larger.width, larger.height}, after);
-  EXPECT_EQ(first.stats.exact, 1U);
-  EXPECT_EQ(second.stats.exact, 1U);
+  EXPECT_EQ(first.stats.complete, 1U);
+  EXPECT_EQ(second.stats.complete, 1U);
   EXPECT_LE(host->memory().totalBytes - host->memory().retiredBytes, desc.memoryBudget);
 }
 
@@ -178,7 +178,7 @@ TEST_P(MemoryTest, PoolsAreReachedByAddressToo) {
         const auto host = makeHost(desc);
         const PointResult result = host->draw(points);
         EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kTolerance);
-        EXPECT_EQ(result.stats.exact, 1U);
+        EXPECT_EQ(result.stats.complete, 1U);
         desc.capacity -= 10; // beyond the pool's end is nobody's
         EXPECT_EQ(draw(desc, points).stats.fragmentsMissing, 10U);
       }
@@ -204,12 +204,12 @@ TEST_P(MemoryTest, ShadersThatDoNotReachThePoolAreCounted) {
         desc.capacity = static_cast<std::uint32_t>(points.size());
         const PointResult result = draw(desc, points);
         EXPECT_EQ(result.stats.fragmentsRequested, points.size());
-        if (result.stats.exact == 1) {
+        if (result.stats.complete == 1) {
           EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kTolerance);
         } else {
           EXPECT_EQ(result.stats.fragmentsMissing, points.size());
         }
-        EXPECT_EQ(result.stats.exact, byAddress ? 1U : 0U); // a small pool is all of it in its binding
+        EXPECT_EQ(result.stats.complete, byAddress ? 1U : 0U); // a small pool is all of it in its binding
       }
     }
   }
@@ -237,7 +237,7 @@ TEST_P(MemoryTest, PoolsBeyondABindingAreReachedByAddressOnly) {
         const PointResult result = draw(desc, points);
         EXPECT_EQ(result.stats.fragmentsRequested, points.size());
         EXPECT_EQ(result.stats.fragmentsMissing, byAddress ? 0U : points.size());
-        EXPECT_EQ(result.stats.exact, byAddress ? 1U : 0U);
+        EXPECT_EQ(result.stats.complete, byAddress ? 1U : 0U);
         const auto seen = byAddress ? points : std::vector<Point>{};
         EXPECT_LT(largestError(result.pixels, expectedFrame(desc, seen).pixels), kTolerance);
       }

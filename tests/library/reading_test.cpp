@@ -98,7 +98,7 @@ TEST_P(ReadingTest, ListsAreWhatIsBlendedInOrder) {
         const ListsRead read =
             host->drawAndRead(ordered(points, Order::Shuffled), area, reading.by, reading.afterResolve);
         expectLists(read, desc, points, area);
-        EXPECT_EQ(read.frame.stats.exact, 1U);
+        EXPECT_EQ(read.frame.stats.complete, 1U);
         EXPECT_TRUE(read.frame.pixels == host->draw(points).pixels) << "reading changes the picture";
         EXPECT_EQ(read.layers, reading.by == ReadBy::Copy ? points.size() : 0U);
       }
@@ -174,7 +174,7 @@ TEST_P(ReadingTest, ListsOfFramesThatOverflowAreLeftOut) {
   desc.capacity = static_cast<std::uint32_t>(points.size() / 2);
   const VitrailRect area = {0, 0, desc.width, desc.height};
   const ListsRead read = makeHost(desc)->drawAndRead(points, area, ReadBy::Copy, true);
-  EXPECT_EQ(read.frame.stats.exact, 0U);
+  EXPECT_EQ(read.frame.stats.complete, 0U);
   for (const auto& list : read.pixels) EXPECT_TRUE(!list || list->empty());
 }
 

@@ -81,7 +81,7 @@ TEST_P(SamplesTest, ListsOfEveryLengthMatchTheReference) {
     const Expected expected = expectedFrame(desc, points);
     const PointResult forward = host->draw(points);
     EXPECT_LT(largestError(forward.pixels, expected.pixels), kTolerance);
-    EXPECT_EQ(forward.stats.exact, 1U);
+    EXPECT_EQ(forward.stats.complete, 1U);
     EXPECT_EQ(forward.stats.fragmentsStored, expected.fragments);
     EXPECT_EQ(forward.stats.coveredPixels, expected.coveredPixels);
     EXPECT_EQ(forward.stats.layersMax, expected.layersMax);
@@ -128,7 +128,7 @@ TEST_P(SamplesTest, EverySampleHasItsOwnDepthTest) {
       const PointResult result = draw(desc, points);
       EXPECT_LT(largestError(result.pixels, expected.pixels), kTolerance) << "post-depth coverage " << postDepth;
       EXPECT_EQ(result.stats.fragmentsStored, expected.fragments) << "post-depth coverage " << postDepth;
-      EXPECT_EQ(result.stats.exact, 1U);
+      EXPECT_EQ(result.stats.complete, 1U);
       pictures.push_back(result.pixels);
     }
     // Equal depths of other coverage may stand in another order, and compact nodes have many of them.
@@ -206,7 +206,7 @@ TEST_P(SamplesTest, CoverageThatWasNotTestedIsNotTakenForTested) {
     const PointResult right = draw(desc, points);
     desc.shaderPostDepth = false;
     const PointResult wrong = draw(desc, points);
-    EXPECT_EQ(wrong.stats.exact, 0U);
+    EXPECT_EQ(wrong.stats.complete, 0U);
     EXPECT_EQ(wrong.stats.fragmentsStored, 0U);
     EXPECT_EQ(wrong.stats.fragmentsMissing, right.stats.fragmentsStored);
     desc.postDepthCoverage = false;

@@ -31,7 +31,7 @@ class BudgetTest : public GpuTest {
       bounded.memoryBudget = budget;
       const RenderResult result = renderer.render(bounded);
       EXPECT_TRUE(result.picture.rgba == whole.picture.rgba) << budget << " bytes";
-      EXPECT_TRUE(result.report.exact) << budget << " bytes";
+      EXPECT_TRUE(result.report.complete) << budget << " bytes";
       EXPECT_EQ(result.report.fragmentsRequested, whole.report.fragmentsRequested) << budget << " bytes";
       EXPECT_EQ(result.report.layersMax, whole.report.layersMax) << budget << " bytes";
       EXPECT_LE(result.report.totalBytes, budget + 4096); // statistics come on top
@@ -64,7 +64,7 @@ TEST_F(BudgetTest, ThePoolGrowsWithinTheBudget) {
   for (int i = 0; i < 2; ++i) { // the pool that was made for the first picture holds the second one
     const RenderResult bounded = renderer.render(options);
     EXPECT_TRUE(bounded.picture.rgba == whole.picture.rgba);
-    EXPECT_TRUE(bounded.report.exact);
+    EXPECT_TRUE(bounded.report.complete);
     EXPECT_EQ(bounded.report.tiles, 1U);
     EXPECT_GE(bounded.report.nodesBytes, 12 * whole.report.fragmentsRequested);
     EXPECT_GT(bounded.report.nodesBytes, 12ULL * 4 * 320 * 180); // more than it began with
@@ -98,7 +98,7 @@ TEST_F(BudgetTest, ALargePictureOfEightLayersIsDrawnInTiles) {
   RenderOptions options = paneOptions(4096);
   options.memoryBudget = 256 * kMebibyte;
   const RenderResult large = renderOnce(gpu(), scene, options);
-  EXPECT_TRUE(large.report.exact);
+  EXPECT_TRUE(large.report.complete);
   EXPECT_GT(large.report.tiles, 4U);
   EXPECT_EQ(large.report.fragmentsStored, 8ULL * 4096 * 4096);
   EXPECT_EQ(large.report.layersMax, 8U);
@@ -117,7 +117,7 @@ TEST_F(BudgetTest, APictureMayHaveMoreNodesThanABindingHolds) {
   const Scene scene = panes(4);
   const RenderResult small = renderOnce(gpu(), scene, paneOptions(4), {}, DrawOrder::Forward, method);
   const RenderResult large = renderOnce(gpu(), scene, paneOptions(2048), {}, DrawOrder::Forward, method);
-  EXPECT_TRUE(large.report.exact);
+  EXPECT_TRUE(large.report.complete);
   EXPECT_EQ(large.report.fragmentsStored, 4ULL * 2048 * 2048);
   if (gpu().features().poolByAddress) {
     EXPECT_EQ(large.report.tiles, 1U);

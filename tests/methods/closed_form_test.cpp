@@ -95,7 +95,7 @@ class StackTest : public GpuTest, public ::testing::WithParamInterface<std::uint
     for (const DrawOrder order : kOrders) {
       const RenderResult result = renderOnce(gpu(), scene, options, {}, order);
       expectEveryPixel(result.picture, blendBackToFront(layers, background), 1);
-      EXPECT_TRUE(result.report.exact);
+      EXPECT_TRUE(result.report.complete);
       EXPECT_EQ(result.report.layersMax, layers.size());
       EXPECT_EQ(result.report.fragmentsRequested, layers.size() * options.width * options.height);
     }
@@ -153,7 +153,7 @@ TEST_F(ClosedFormTest, AStackTooDeepForTheDriverIsRefused) {
   options.height = 1;
   try {
     const RenderResult result = renderOnce(gpu(), scene, options);
-    EXPECT_TRUE(result.report.exact);
+    EXPECT_TRUE(result.report.complete);
     EXPECT_EQ(result.report.layersMax, 60000U);
     expectEveryPixel(result.picture, {80, 160, 240, 255}, 1); // the last layer's weight is 1/255 * (254/255)^59999
   } catch (const GpuError& error) {

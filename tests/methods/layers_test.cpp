@@ -35,7 +35,7 @@ class LayersTest : public GpuTest {
 
   static void expectOnePicture(const Scene& scene, const RenderOptions& picture, std::uint32_t layers) {
     const RenderResult first = draw(scene, picture, "loop", layers);
-    EXPECT_FALSE(first.report.exact);
+    EXPECT_FALSE(first.report.complete);
     EXPECT_GT(first.report.approximatePixels, 0U);
     for (const std::string& name : methods()) {
       for (const DrawOrder order : {DrawOrder::Forward, DrawOrder::Reversed, DrawOrder::Shuffled}) {

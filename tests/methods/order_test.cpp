@@ -31,7 +31,7 @@ TEST_P(OrderTest, SubmissionOrderDoesNotMatter) {
   const Scene scene = sceneOf(GetParam());
   const RenderOptions options = usualOptions(scene, kOrderWidth, kOrderHeight);
   const RenderResult forward = renderOnce(gpu(), scene, options, {}, DrawOrder::Forward);
-  EXPECT_TRUE(forward.report.exact);
+  EXPECT_TRUE(forward.report.complete);
   EXPECT_GT(forward.report.layersMax, 2U); // else there is nothing to sort
   const RenderResult reversed = renderOnce(gpu(), scene, options, {}, DrawOrder::Reversed);
   EXPECT_TRUE(reversed.picture.rgba == forward.picture.rgba);
@@ -62,7 +62,7 @@ TEST_P(DrawnTest, SubmissionOrderDoesNotMatter) {
   for (const MethodOptions& method : methodVariety(gpu())) {
     SCOPED_TRACE(describe(method));
     const RenderResult forward = renderOnce(gpu(), scene, options, {}, DrawOrder::Forward, method);
-    EXPECT_TRUE(forward.report.exact);
+    EXPECT_TRUE(forward.report.complete);
     const RenderResult shuffled = renderOnce(gpu(), scene, options, {}, DrawOrder::Shuffled, method);
     EXPECT_TRUE(shuffled.picture.rgba == forward.picture.rgba);
     EXPECT_EQ(shuffled.report.fragmentsStored, forward.report.fragmentsStored);
@@ -82,7 +82,7 @@ TEST_F(GpuTest, ManyFramesOfTheHairballAreOne) {
   const RenderOptions options = usualOptions(scene, kOrderWidth, kOrderHeight);
   StillRenderer renderer(gpu(), scene);
   const RenderResult first = renderer.render(options);
-  EXPECT_TRUE(first.report.exact);
+  EXPECT_TRUE(first.report.complete);
   for (int frame = 1; frame < frames; ++frame) {
     const RenderResult next = renderer.render(options);
     ASSERT_TRUE(next.picture.rgba == first.picture.rgba) << "frame " << frame;

@@ -54,7 +54,7 @@ void expectAgreement(const Comparison& comparison, int bound, double edgeShare, 
 // The counts that a frame reports lie between those of the reference's least and most covered rays.
 void expectCounts(const FrameReport& report, const Reference& reference) {
   const LayerBounds bounds = layerBounds(reference);
-  EXPECT_TRUE(report.exact);
+  EXPECT_TRUE(report.complete);
   EXPECT_EQ(report.fragmentsMissing, 0U);
   EXPECT_EQ(report.fragmentsStored, report.fragmentsRequested);
   EXPECT_GE(report.fragmentsRequested, bounds.fragmentsLeast);
@@ -128,7 +128,7 @@ TEST_F(ScenesTest, Smoke) {
   const Comparison comparison = compare(result.picture, reference.rounded, reference, kBound);
   EXPECT_LE(comparison.away, 16) << comparison;
   EXPECT_LE(comparison.beyond, reference.edge.size() / 100) << comparison;
-  EXPECT_TRUE(result.report.exact);
+  EXPECT_TRUE(result.report.complete);
 }
 
 TEST_F(ScenesTest, XRay) {

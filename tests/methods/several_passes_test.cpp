@@ -85,7 +85,7 @@ class SeveralPasses : public GpuTest, public ::testing::WithParamInterface<std::
     const RenderResult result = draw(scene, picture, named(GetParam()));
     const RenderResult lists = draw(scene, picture, exactLists(GetParam()));
     EXPECT_LE(largestDifference(result.picture, lists.picture), GetParam() == "a-buffer" ? 0 : tolerance);
-    EXPECT_TRUE(result.report.exact);
+    EXPECT_TRUE(result.report.complete);
     EXPECT_EQ(result.report.layersMax, lists.report.layersMax);
     EXPECT_EQ(result.report.fragmentsStored, lists.report.fragmentsStored);
     EXPECT_EQ(result.report.fragmentsMissing, 0U);
@@ -184,7 +184,7 @@ TEST_F(GpuTest, StencilRoutedIsRightButForEdges) {
   EXPECT_EQ(routed.report.layersMax, lists.report.layersMax);
   EXPECT_GT(routed.report.layersMax, 8U) << "of one pass";
   const bool placed = gpu().features().middleSamples > 1;
-  EXPECT_EQ(routed.report.exact, placed);
+  EXPECT_EQ(routed.report.complete, placed);
   std::size_t differ = 0;
   for (std::size_t i = 0; i < routed.picture.rgba.size(); i += 4) {
     int largest = 0;
@@ -210,13 +210,13 @@ TEST_F(GpuTest, DepthPeelingStopsEarly) {
   };
   const RenderResult stopped = draw({panes[3], panes[1], panes[0], panes[2]}, two);
   EXPECT_LE(largestDifference(stopped.picture, draw({panes[0], panes[1]}, exactLists()).picture), 1);
-  EXPECT_FALSE(stopped.report.exact);
+  EXPECT_FALSE(stopped.report.complete);
   EXPECT_EQ(stopped.report.layersMax, 4U);
   EXPECT_EQ(stopped.report.fragmentsMissing, stopped.report.fragmentsRequested / 2);
   EXPECT_GT(stopped.report.fragmentsMissing, 0U);
   EXPECT_EQ(stopped.report.approximatePixels, stopped.report.fragmentsMissing / 2);
   two.maxLayers = 4;
-  EXPECT_TRUE(draw(panes, two).report.exact);
+  EXPECT_TRUE(draw(panes, two).report.complete);
 }
 
 } // namespace

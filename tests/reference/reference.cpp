@@ -30,8 +30,11 @@ double snapAlpha(double alpha, const NodeCoding& coding) {
                         : coding.format == layout::VITRAIL_FORMAT_HDR    ? 65535.0F
                         : coding.samples == 1                            ? 63.0F
                                                                          : 31.0F;
-  const float scaled = static_cast<float>(std::clamp(alpha, 0.0, 1.0)) * largest;
-  return static_cast<double>(std::floor(scaled + 0.5F)) / double{largest};
+  const bool root = coding.format == layout::VITRAIL_FORMAT_HDR;
+  const auto clamped = static_cast<float>(std::clamp(alpha, 0.0, 1.0));
+  const float scaled = (root ? std::sqrt(clamped) : clamped) * largest;
+  const double step = static_cast<double>(std::floor(scaled + 0.5F)) / double{largest};
+  return root ? step * step : step;
 }
 
 // Straight alpha on the sRGB curve, in [0, 1]: what the 8-bit picture rounds.

@@ -43,7 +43,7 @@ void expectMeasurement(const Json& measured) {
     }
     return;
   }
-  EXPECT_EQ(measured.at("nodes"), measured.at("method") == "linked-list" ? Json("standard") : Json(nullptr));
+  EXPECT_EQ(measured.at("nodes"), measured.at("method") == "linked-list" ? Json("hdr") : Json(nullptr));
   EXPECT_GT(measured.at("layers").at("max"), 1);
   EXPECT_EQ(measured.at("tiles"), 1);
   const double fragments = measured.at("fragments").at("requested");
@@ -246,8 +246,7 @@ TEST(Bench, SweepsGoToTheTableAndToAllFiles) {
   for (const Words& row : rows) EXPECT_EQ(row.size(), rows[0].size());
 
   ASSERT_GE(json.at("recommendation").size(), 6U); // exact, and approximate, of each sweep
-  EXPECT_NE(json.at("recommendation")[0].at("text").get<std::string>().find("linked-list, standard"),
-            std::string::npos);
+  EXPECT_NE(json.at("recommendation")[0].at("text").get<std::string>().find("linked-list, hdr"), std::string::npos);
   EXPECT_NE(result.out.find("out/index.html"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(folder.file("out/index.html")));
 }
@@ -386,7 +385,7 @@ TEST(Bench, LayersAndPasses) {
       << result.out;
   const Json scene = readJson(folder.file("out/report.json")).at("scenes")[0];
   const std::map<std::string, std::string> settings{{"unsorted", "unsorted"},
-                                                    {"linked-list", "linked-list, standard, 2 layers"},
+                                                    {"linked-list", "linked-list, hdr, 2 layers"},
                                                     {"depth-peeling", "depth-peeling, 2 layers"},
                                                     {"stochastic", "stochastic, 3 passes"}};
   std::size_t count = 0;
@@ -415,7 +414,8 @@ TEST(Insertion, DrawsThePictureOfTheLinkedList) {
     for (const char* method : {"linked-list", "insertion"}) {
       const std::string name = method;
       Words words = {"render", "--size", "160x90", "--method", name, "--validate", "-o", name + ".png"};
-      if (name == "linked-list") words.insert(words.end(), {"--list-build", "fragment"}); // rounds as insertion does
+      if (name == "linked-list")
+        words.insert(words.end(), {"--list-build", "fragment", "--nodes", "standard"}); // as insertion
       words.insert(words.end(), {"--json", name + ".json"});
       words.insert(words.end(), scene.begin(), scene.end());
       const ProcessResult result = vitrail(folder, words);
@@ -425,7 +425,9 @@ TEST(Insertion, DrawsThePictureOfTheLinkedList) {
     const Json insertion = readJson(folder.file("insertion.json"));
     EXPECT_EQ(insertion.at("method"), "insertion");
     ASSERT_LE(lists.at("layers").at("max"), 128);
-    EXPECT_EQ(insertion.at("exact"), true);
+    EXPECT_EQ(insertion.at("error_bound_255"), lists.at("error_bound_255")); // complete, with 8 bits of alpha
+    EXPECT_GT(insertion.at("error_bound_255"), 1.0);
+    EXPECT_EQ(insertion.at("exact"), false);
     EXPECT_EQ(insertion.at("fragments"), lists.at("fragments"));
     EXPECT_EQ(insertion.at("layers"), lists.at("layers"));
     const ReadPng a = readPng(folder.file("linked-list.png"));

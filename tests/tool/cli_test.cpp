@@ -226,10 +226,12 @@ TEST(Cli, APictureAndItsReport) {
   EXPECT_EQ(json.at("width"), 96);
   EXPECT_EQ(json.at("height"), 64);
   EXPECT_EQ(json.at("samples"), 1);
-  EXPECT_EQ(json.at("nodes"), "standard");
+  EXPECT_EQ(json.at("nodes"), "hdr");
   EXPECT_TRUE(json.at("resolve") == "compute" || json.at("resolve") == "fragment") << json.at("resolve");
   EXPECT_EQ(json.at("msaa_resolve"), nullptr);
   EXPECT_EQ(json.at("exact"), true);
+  EXPECT_GT(json.at("error_bound_255"), 0.5);
+  EXPECT_LE(json.at("error_bound_255"), 1.0);
   EXPECT_EQ(json.at("approximate_pixels"), 0);
   EXPECT_EQ(json.at("tiles"), 1);
   const auto& fragments = json.at("fragments");
@@ -317,7 +319,7 @@ TEST(Cli, BothMsaaResolvesGiveOnePicture) {
 }
 
 TEST(Cli, NodeFormatsDifferInTheirRounding) {
-  const Drawn standard = draw({});
+  const Drawn standard = draw({"--nodes", "standard"});
   const Drawn hdr = draw({"--nodes", "hdr"});
   const Drawn compact = draw({"--nodes", "compact"});
   const auto nodeBytes = [](const Drawn& drawn) {

@@ -23,6 +23,13 @@ namespace {
 
 using namespace vitrail::tool;
 
+// linked-list with nodes of 12 bytes.
+MethodOptions listOptions() {
+  MethodOptions options;
+  options.nodes = VITRAIL_NODE_STANDARD;
+  return options;
+}
+
 TEST(Statistics, MedianAndQuartilesByHand) {
   const Spread odd = spreadOf({5.0, 1.0, 3.0, 2.0, 4.0});
   EXPECT_DOUBLE_EQ(odd.median, 3.0);
@@ -80,6 +87,7 @@ std::vector<std::string> describeAll(const BenchMatrix& matrix) {
 
 TEST(BenchMatrix, EveryChoiceWithEveryOther) {
   BenchMatrix matrix;
+  matrix.nodes = {VITRAIL_NODE_STANDARD};
   matrix.methods = {"linked-list"};
   matrix.nodes = {VITRAIL_NODE_COMPACT, VITRAIL_NODE_HDR};
   matrix.resolves = {VITRAIL_RESOLVE_COMPUTE, VITRAIL_RESOLVE_FRAGMENT};
@@ -90,6 +98,7 @@ TEST(BenchMatrix, EveryChoiceWithEveryOther) {
 
 TEST(BenchMatrix, ListBuildsAreOfTheMethodsThatHaveThem) {
   BenchMatrix matrix;
+  matrix.nodes = {VITRAIL_NODE_STANDARD};
   matrix.methods = {"linked-list", "insertion"};
   matrix.listBuilds = {VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE};
   EXPECT_EQ(describeAll(matrix), (std::vector<std::string>{"unsorted", "linked-list, standard, list build fragment",
@@ -98,6 +107,7 @@ TEST(BenchMatrix, ListBuildsAreOfTheMethodsThatHaveThem) {
 
 TEST(BenchMatrix, WhatAMethodDoesNotHaveIsSkippedWithAReason) {
   BenchMatrix matrix;
+  matrix.nodes = {VITRAIL_NODE_STANDARD};
   matrix.methods = {"insertion", "unsorted", "linked-list"};
   matrix.nodes = {VITRAIL_NODE_COMPACT, VITRAIL_NODE_STANDARD};
   matrix.samples = {1, 8, 1};
@@ -124,6 +134,7 @@ std::string refusalOf(const std::vector<std::string>& methods, const MethodLimit
 
 TEST(BenchMatrix, LimitsAreOfTheMethodsThatHaveThem) {
   BenchMatrix matrix;
+  matrix.nodes = {VITRAIL_NODE_STANDARD};
   matrix.methods = {"linked-list", "weighted", "loop", "stochastic"};
   matrix.resolves = {VITRAIL_RESOLVE_FRAGMENT};
   matrix.limits = {16, 1};
@@ -161,7 +172,7 @@ std::vector<Measurement> twoMeasurements() {
   plain.height = 10;
   FrameReport lists = plain;
   lists.counted = true;
-  lists.exact = true;
+  lists.complete = true;
   lists.nodes = "standard";
   lists.resolve = "compute";
   lists.listBuild = "fragment";
@@ -169,7 +180,7 @@ std::vector<Measurement> twoMeasurements() {
   lists.layersMax = 9;
   lists.layersMean = 7.0;
   return {summarize(unsorted, plain, {{{"opaque", 1.0}, {"blend", 2.0}}, {{"opaque", 3.0}, {"blend", 2.0}}}),
-          summarize(MethodOptions{}, lists, {listFrame(1.0), listFrame(3.0), listFrame(2.0)})};
+          summarize(listOptions(), lists, {listFrame(1.0), listFrame(3.0), listFrame(2.0)})};
 }
 
 TEST(Measurement, CostIsAllButTheOpaquePass) {
@@ -256,7 +267,7 @@ BenchReport smallReport() {
   scene.triangles = 1'600'000;
   scene.measurements = twoMeasurements();
   compare(scene.measurements, report.bytesPerSecond);
-  MethodOptions refused;
+  MethodOptions refused = listOptions();
   refused.samples = 8;
   scene.skipped = {{refused, "it has no 8 samples"}};
   report.scenes = {scene};
@@ -274,7 +285,7 @@ TEST(BenchTable, HoldsWhatWasMeasuredIn120Columns) {
   slow.report.totalBytes = std::uint64_t{99'999} << 20U;
   slow.report.resolve = "fragment";
   Measurement other = slow; // the longest name, and many passes
-  other.options = MethodOptions{};
+  other.options = listOptions();
   other.options.name = *std::ranges::max_element(methodNames(), {}, &std::string_view::size);
   other.report.nodes.clear();
   other.report.resolve.clear();
@@ -297,7 +308,7 @@ BenchReport sweepReport() {
     report.scenes.back().sweep = placeOf(SweepKind::Resolution, step, 0);
   }
   report.scenes[1].measurements.pop_back();
-  report.scenes[1].skipped = {{MethodOptions{}, "no room"}};
+  report.scenes[1].skipped = {{listOptions(), "no room"}};
   return report;
 }
 
@@ -377,7 +388,7 @@ TEST(BenchTable, SaysWhatItIs) {
   EXPECT_EQ(table.find("not exact"), std::string::npos);
   report.isCpu = true;
   FrameReport& frame = report.scenes[0].measurements[1].report;
-  frame.exact = false;
+  frame.complete = false;
   frame.fragmentsMissing = 12;
   const std::string other = toTable(report);
   EXPECT_NE(other.find("only the ratios"), std::string::npos);

@@ -23,7 +23,7 @@ Comparison wideComparison() {
   comparison.width = comparison.height = 16'384;
   comparison.samples = 8;
   comparison.layersMax = 20'000;
-  comparison.exactFrame.exact = true;
+  comparison.exactFrame.complete = true;
   comparison.exactFrame.fragmentsRequested = 99'999'999'999;
   for (const std::string_view name : methodNames()) {
     ComparedMethod method;
@@ -69,7 +69,7 @@ TEST(ComparisonTable, SaysWhatTheNumbersAreWorth) {
   EXPECT_EQ(plain.find("CPU"), std::string::npos) << plain;
   EXPECT_EQ(plain.find("--layers"), std::string::npos) << plain;
   comparison.isCpu = true;
-  comparison.exactFrame.exact = false;
+  comparison.exactFrame.complete = false;
   comparison.limits = {16, 4};
   comparison.refused = {{"loop", "no room"}};
   const std::string table = toTable(comparison);

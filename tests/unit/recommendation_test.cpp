@@ -14,7 +14,8 @@ constexpr std::uint64_t kMib = std::uint64_t{1} << 20U;
 Measurement measuredAs(const std::string& method, double ms, std::uint64_t mib, bool exact) {
   Measurement measured;
   measured.options.name = method;
-  measured.report.exact = exact;
+  measured.options.nodes = VITRAIL_NODE_STANDARD;
+  measured.report.complete = exact;
   measured.report.totalBytes = mib * kMib;
   measured.costMs = {ms, 0.95 * ms, 1.05 * ms, 0.9 * ms, 1.1 * ms};
   measured.costRatio = ms / 2.0;

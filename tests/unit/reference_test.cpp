@@ -458,7 +458,7 @@ TEST(ReferenceNodeFormats, EachRoundsAndClampsInItsOwnWay) {
   options.nodeFormat = layout::VITRAIL_FORMAT_HDR;
   reference = renderReference(scene, options);
   EXPECT_NEAR(reference.exact.linear[0].r, 2.0, 1e-7);
-  EXPECT_NEAR(reference.rounded.linear[0].r, 4.0 * 32768 / 65535, 1e-12);
+  EXPECT_NEAR(reference.rounded.linear[0].r, 4.0 * (46340.0 / 65535) * (46340.0 / 65535), 1e-12);
 }
 
 TEST(ReferenceSamples, PositionsAreTheStandardOnes) {

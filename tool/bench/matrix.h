@@ -31,7 +31,7 @@ std::string describe(const MethodLimits& limits);
 // The choices of each kind, every one of which is measured with every one of the others.
 struct BenchMatrix {
   std::vector<std::string> methods; // none: all of methodNames()
-  std::vector<VitrailNodeFormat> nodes = {VITRAIL_NODE_STANDARD};
+  std::vector<VitrailNodeFormat> nodes = {VITRAIL_NODE_HDR};
   std::vector<std::uint32_t> samples = {1};
   std::vector<VitrailResolve> resolves = {VITRAIL_RESOLVE_DEFAULT};
   std::vector<VitrailListBuild> listBuilds = {VITRAIL_LIST_BUILD_DEFAULT};

@@ -29,8 +29,9 @@ How to blend it:
   --samples N           1 (default), 2, 4 or 8 samples a pixel, as the device offers
   --msaa-resolve R      per-pixel (default): the samples are blended and averaged at once.
                         per-sample: each is blended into a multisampled picture. The same picture
-  --nodes F             how a fragment is stored: standard (default, 12 bytes), compact (8 bytes,
-                        coarser colours and depths), hdr (16 bytes, brighter than white)
+  --nodes F             how a fragment is stored: hdr (default, 16 bytes: each pixel within 1/255 of
+                        the real-number answer), standard (12 bytes, 8 bits of alpha: faint surfaces
+                        may be lost), compact (8 bytes, coarser colours and depths)
   --resolve R           where the lists are sorted: compute or fragment shaders (default: the faster
                         one of the device). The same picture
   --list-build L        where fragments are put on their lists: in the fragment shaders that shade

@@ -12,7 +12,10 @@ struct FrameStats {
   std::string nodes{};     // "compact", "standard", "hdr"
   std::string resolve{};   // "compute", "fragment"
   std::string listBuild{}; // the same of who puts fragments on their lists
-  bool exact = false;
+  bool complete = false;   // every surface was blended, in order
+  // How far a complete picture may be from the real-number answer for how the method stores surfaces, in 1/255 of the
+  // sRGB picture.
+  double errorBound = 1.0;
   bool counted = false; // whether the method counts fragments: else the counts and layers are 0
   std::uint64_t fragmentsRequested = 0;
   std::uint64_t fragmentsStored = 0;
@@ -27,6 +30,9 @@ struct FrameStats {
   std::uint64_t totalBytes = 0;             // all that the method keeps on the device for its target
   std::vector<std::uint32_t> pixelLayers{}; // of layer-count alone: the fragments of each pixel, rows top to bottom
 };
+
+// Within 1/255 of the real-number answer.
+inline bool isExact(const FrameStats& stats) { return stats.complete && stats.errorBound <= 1.0; }
 
 // FrameStats::layersMean of so many pixels that have fragments.
 inline double meanLayers(std::uint64_t fragments, std::uint64_t coveredPixels) {

@@ -16,7 +16,7 @@ struct MethodOptions {
   std::string name = "linked-list";
   std::uint32_t samples = 1; // 1, 2, 4, 8
   // Of methods that have a choice of them (MethodTraits):
-  VitrailNodeFormat nodes = VITRAIL_NODE_STANDARD;
+  VitrailNodeFormat nodes = VITRAIL_NODE_HDR; // the one that keeps pictures within 1/255
   VitrailResolve resolve = VITRAIL_RESOLVE_DEFAULT;
   VitrailListBuild listBuild = VITRAIL_LIST_BUILD_DEFAULT;
   VitrailMsaaResolve msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;

@@ -61,7 +61,7 @@ constexpr CsvColumn kCsvColumns[] = {
     {names::kNodes, [](const CsvRow& row) { return row.frame.nodes; }},
     {names::kResolve, [](const CsvRow& row) { return row.frame.resolve; }},
     {names::kSamples, [](const CsvRow& row) { return cell(row.frame.samples); }},
-    {names::kExact, [](const CsvRow& row) { return cell(row.frame.exact); }},
+    {names::kExact, [](const CsvRow& row) { return cell(isExact(row.frame)); }},
     {names::kFragments, [](const CsvRow& row) { return orEmpty(row.frame.counted, row.frame.fragmentsRequested); }},
     {names::kMissing, [](const CsvRow& row) { return orEmpty(row.frame.counted, row.frame.fragmentsMissing); }},
     {names::kLayersMax, [](const CsvRow& row) { return orEmpty(row.frame.counted, row.frame.layersMax); }},

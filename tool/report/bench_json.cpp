@@ -29,7 +29,8 @@ Json settingOf(const MethodOptions& options, const FrameStats& chosen) {
 Json toJson(const Measurement& measured) {
   const FrameReport& frame = measured.report;
   Json json = settingOf(measured.options, frame);
-  json[names::kExact] = frame.exact;
+  json[names::kExact] = isExact(frame);
+  json[names::kErrorBound] = errorBoundOf(frame);
   json[names::kFragments] = fragmentsOf(frame);
   json[names::kLayers] = layersOf(frame);
   json[names::kNodesBytes] = frame.counted ? Json(frame.nodesBytes) : Json(nullptr);

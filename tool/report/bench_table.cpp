@@ -75,7 +75,7 @@ std::string noteOn(const Measurement& measured) {
   const FrameReport& frame = measured.report;
   if (frame.tiles > 1)
     return fmt::format(" {} drew {} tiles, in less memory\n", describe(measured.options), frame.tiles);
-  if (!frame.counted || frame.exact) return {};
+  if (!frame.counted || frame.complete) return {};
   if (frame.fragmentsMissing == 0) return fmt::format(" not exact: {}\n", describe(measured.options));
   return fmt::format(" not exact: {} left out {} of {} fragments; the deepest pixel has {}\n",
                      describe(measured.options), frame.fragmentsMissing, frame.fragmentsRequested, frame.layersMax);

@@ -14,7 +14,8 @@ Json toJson(const ComparedMethod& method) {
   Json json = {{names::kMethod, measured.options.name},
                {names::kMaxLayers, limitOrNull(measured.options.maxLayers)},
                {names::kPasses, limitOrNull(measured.options.passes)},
-               {names::kExact, measured.report.exact},
+               {names::kExact, isExact(measured.report)},
+               {names::kErrorBound, errorBoundOf(measured.report)},
                {"metrics", metricsOf(method.difference.metrics)}};
   addCosts(json, measured);
   json[names::kMemoryBytes] = measured.report.totalBytes;
@@ -42,7 +43,8 @@ std::string toJson(const Comparison& comparison) {
   addRounds(json, comparison.repeats, comparison.warmups);
   json["exact_picture"] = {{names::kMethod, exact.method},
                            {names::kNodes, exact.nodes},
-                           {names::kExact, exact.exact},
+                           {names::kExact, isExact(exact)},
+                           {names::kErrorBound, errorBoundOf(exact)},
                            {names::kFragments, exact.fragmentsRequested},
                            {names::kLayers, layersOf(exact)}};
   json[names::kLayersMax] = comparison.layersMax;

@@ -42,7 +42,7 @@ std::string toTable(const Comparison& comparison) {
                        comparison.exactFrame.fragmentsRequested, comparison.layersMax);
   table += describe(comparison.limits);
   if (comparison.isCpu) table += kCpuNote;
-  if (!comparison.exactFrame.exact) table += "The picture that all are compared with is itself not exact.\n";
+  if (!isExact(comparison.exactFrame)) table += "The picture that all are compared with is itself not exact.\n";
   table += '\n';
   table +=
       fmt::format(kComparisonRow, "method", "PSNR", "SSIM", "FLIP", "worst", "off", "cost", "x", "frame", "memory");

@@ -1,5 +1,7 @@
 #include "frame.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "../bench/short_count.h"
@@ -22,7 +24,8 @@ std::string toJson(const FrameReport& report) {
       {names::kResolve, orNull(report.resolve)},
       {names::kListBuild, orNull(report.listBuild)},
       {"msaa_resolve", orNull(report.msaaResolve)},
-      {names::kExact, report.exact},
+      {names::kExact, isExact(report)},
+      {names::kErrorBound, errorBoundOf(report)},
       {names::kFragments, fragmentsOf(report)},
       {names::kLayers, layersOf(report)},
       {"approximate_pixels", report.approximatePixels},
@@ -38,12 +41,19 @@ std::string toJson(const FrameReport& report) {
   });
 }
 
+// What is known of how right the picture is.
+std::string exactness(const FrameReport& report) {
+  if (isExact(report)) return "exact";
+  if (!report.complete) return "not exact";
+  return fmt::format("complete, within {:.0f}/255", std::ceil(report.errorBound));
+}
+
 std::string toSummary(const FrameReport& report) {
   std::string text = fmt::format("{}x{}, ", report.width, report.height);
   if (report.samples > 1) text += fmt::format("{} samples, ", report.samples);
   if (report.counted) {
     text += fmt::format("{} transparent fragments, {} deep, {}, ", shortCount(report.fragmentsStored), report.layersMax,
-                        report.exact ? "exact" : "not exact");
+                        exactness(report));
   } else {
     text += fmt::format("{}, not exact, ", report.method);
   }

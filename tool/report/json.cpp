@@ -24,6 +24,8 @@ Json orNull(std::string_view text) { return text.empty() ? Json(nullptr) : Json(
 
 Json limitOrNull(std::uint32_t limit) { return limit > 0 ? Json(limit) : Json(nullptr); }
 
+Json errorBoundOf(const FrameStats& frame) { return frame.complete ? Json(frame.errorBound) : Json(nullptr); }
+
 Json fragmentsOf(const FrameStats& frame) {
   if (!frame.counted) return nullptr;
   return {{"requested", frame.fragmentsRequested},

@@ -27,6 +27,9 @@ Json orNull(std::string_view text);
 // What --layers or --passes said of a method; 0: nothing.
 Json limitOrNull(std::uint32_t limit);
 
+// In 1/255; null where the picture is not complete.
+Json errorBoundOf(const FrameStats& frame);
+
 // requested, stored, missing; null where the method does not count them.
 Json fragmentsOf(const FrameStats& frame);
 

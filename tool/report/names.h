@@ -14,7 +14,9 @@ inline constexpr const char* kMaxLayers = "max_layers"; // --layers, where it wa
 inline constexpr const char* kPasses = "passes";        // --passes, where it was given
 
 // What a frame held.
-inline constexpr const char* kExact = "exact";
+inline constexpr const char* kExact = "exact"; // within 1/255 of the real-number answer
+// How far a pixel may be from that answer, in 1/255; null where surfaces are missing or blended otherwise.
+inline constexpr const char* kErrorBound = "error_bound_255";
 inline constexpr const char* kFragments = "fragments"; // transparent ones that were asked for
 inline constexpr const char* kMissing = "missing";     // of them
 inline constexpr const char* kLayers = "layers";

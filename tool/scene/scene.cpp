@@ -3,22 +3,53 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <utility>
 
 namespace vitrail::tool {
 namespace {
 
-// The positions that a mesh's triangles use: a file may hold others, and they are not part of the picture.
-std::vector<glm::vec3> usedPositions(const Mesh& mesh) {
+// Which vertices a mesh shows: a file may hold others, and they are not part of the picture. Empty: all of them.
+std::vector<bool> usedVertices(const Mesh& mesh) {
   std::vector<bool> used(mesh.vertexCount(), false);
   for (const std::uint32_t index : mesh.indices) used[index] = true;
-  std::vector<glm::vec3> positions;
-  positions.reserve(mesh.vertexCount());
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    if (used[i]) positions.push_back(mesh.positions[i]);
-  }
-  return positions;
+  return std::ranges::find(used, false) == used.end() ? std::vector<bool>() : used;
 }
+
+// What of a mesh is placed once a draw: its vertices, or the corners of the box around them.
+class Shape {
+ public:
+  Shape(const Mesh& mesh, bool box) {
+    if (mesh.indices.empty()) return;
+    if (box) {
+      corners_ = cornersOf(boundsOf(mesh));
+      points_ = corners_;
+    } else {
+      used_ = usedVertices(mesh);
+      points_ = mesh.positions;
+    }
+  }
+  Shape(const Shape&) = delete;
+  Shape& operator=(const Shape&) = delete;
+
+  void place(const glm::mat4& transform, const std::function<void(std::span<const glm::vec3>)>& visit) const {
+    std::array<glm::vec3, 1024> placed;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (!used_.empty() && !used_[i]) continue;
+      placed[count++] = glm::vec3(transform * glm::vec4(points_[i], 1.0F));
+      if (count < placed.size()) continue;
+      visit(placed);
+      count = 0;
+    }
+    if (count > 0) visit(std::span(placed).first(count));
+  }
+
+ private:
+  std::vector<bool> used_;
+  std::array<glm::vec3, 8> corners_{};
+  std::span<const glm::vec3> points_;
+};
 
 } // namespace
 
@@ -50,14 +81,14 @@ void warn(Scene& scene, std::string line) {
 }
 
 void visitPositions(const Scene& scene, const std::function<void(std::span<const glm::vec3>)>& visit) {
-  std::vector<std::vector<glm::vec3>> positions(scene.meshes.size());
-  std::vector<glm::vec3> placed;
+  constexpr std::uint64_t mostPlaced = 50'000'000; // takes a second or so
+  std::uint64_t placed = 0;
+  for (const Draw& draw : scene.draws) placed += scene.meshes[draw.mesh].vertexCount();
+  std::vector<std::unique_ptr<Shape>> shapes(scene.meshes.size());
   for (const Draw& draw : scene.draws) {
-    std::vector<glm::vec3>& used = positions[draw.mesh];
-    if (used.empty()) used = usedPositions(scene.meshes[draw.mesh]);
-    placed.resize(used.size());
-    for (std::size_t i = 0; i < used.size(); ++i) placed[i] = glm::vec3(draw.transform * glm::vec4(used[i], 1.0F));
-    visit(placed);
+    std::unique_ptr<Shape>& shape = shapes[draw.mesh];
+    if (!shape) shape = std::make_unique<Shape>(scene.meshes[draw.mesh], placed > mostPlaced);
+    shape->place(draw.transform, visit);
   }
 }
 

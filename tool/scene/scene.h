@@ -240,8 +240,8 @@ void warn(Scene& scene, std::string line);
 // The smallest box around all drawn triangles, in the world. The scene has at least one draw.
 Bounds worldBounds(const Scene& scene);
 
-// Calls `visit` once a draw with the world positions of all vertices that its triangles use. The span lasts as long as
-// the call.
+// Calls `visit` with the world positions of all vertices that are shown, in pieces. The span lasts as long as the call.
+// Where that would be very many, the corners of the boxes around the meshes stand for them.
 void visitPositions(const Scene& scene, const std::function<void(std::span<const glm::vec3>)>& visit);
 
 // The number of triangles that the draws of a scene put on the GPU.

@@ -294,7 +294,7 @@ void sceneCheckPicture(const Host* host, VkExtent2D extent, const double* pixels
 }
 
 void sceneCheckStats(const Host* host, VkExtent2D extent, const VitrailStats* stats) {
-  VitrailStats right = {.exact = 1};
+  VitrailStats right = {.complete = 1};
   for (uint32_t y = 0; y < extent.height; ++y) {
     for (uint32_t x = 0; x < extent.width; ++x) {
       const uint32_t count = (uint32_t)layersAt(extent, x, y).count;
@@ -303,14 +303,14 @@ void sceneCheckStats(const Host* host, VkExtent2D extent, const VitrailStats* st
       if (count > right.layersMax) right.layersMax = count;
     }
   }
-  if (stats->exact != right.exact || stats->fragmentsRequested != right.fragmentsRequested ||
+  if (stats->complete != right.complete || stats->fragmentsRequested != right.fragmentsRequested ||
       stats->fragmentsStored != right.fragmentsRequested || stats->fragmentsMissing != 0 ||
       stats->layersMax != right.layersMax || stats->coveredPixels != right.coveredPixels) {
     hostFail(
         host,
-        "the frame's statistics are wrong: exact %u, requested %llu, stored %llu, missing %llu, deepest %u, covered "
+        "the frame's statistics are wrong: complete %u, requested %llu, stored %llu, missing %llu, deepest %u, covered "
         "%u; right are %llu fragments, %u deep, on %u pixels",
-        stats->exact, (unsigned long long)stats->fragmentsRequested, (unsigned long long)stats->fragmentsStored,
+        stats->complete, (unsigned long long)stats->fragmentsRequested, (unsigned long long)stats->fragmentsStored,
         (unsigned long long)stats->fragmentsMissing, stats->layersMax, stats->coveredPixels,
         (unsigned long long)right.fragmentsRequested, right.layersMax, right.coveredPixels);
   }

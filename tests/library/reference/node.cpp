@@ -139,7 +139,8 @@ NodeWords packFull(const NodeCoding& coding, const Fragment& fragment) {
             depth, next};
   }
   const auto half = [&](unsigned i) { return toHalf(clampTo(c[i], kHalfLargest)); };
-  return {half(0) | half(1) << 16U, half(2) | quantize(c[3], 65535) << 16U, depth, next};
+  return {half(0) | half(1) << 16U, half(2) | quantize(std::sqrt(std::clamp(c[3], 0.0, 1.0)), 65535) << 16U, depth,
+          next};
 }
 
 Fragment unpackFull(const NodeCoding& coding, const NodeWords& words) {
@@ -151,8 +152,9 @@ Fragment unpackFull(const NodeCoding& coding, const NodeWords& words) {
     for (unsigned i = 0; i < 3; ++i) fragment.color[i] = decodeCurve(bitsOf(words[0], 8 * i, 8), 255);
     fragment.color[3] = (words[0] >> 24U) / 255.0;
   } else {
+    const double root = (words[1] >> 16U) / 65535.0;
     fragment.color = {fromHalf(words[0] & 0xffffU), fromHalf(words[0] >> 16U), fromHalf(words[1] & 0xffffU),
-                      (words[1] >> 16U) / 65535.0};
+                      root * root};
   }
   fragment.depth = std::bit_cast<float>(depth & kDepthMask);
   fragment.blend = depth >> 30U;

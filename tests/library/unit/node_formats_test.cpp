@@ -136,7 +136,8 @@ TEST(NodeFormats, ColourAndAlphaAreStoredAsTheNearestStep) {
     const Steps steps = stepsOf(coding);
     for (unsigned channel = 0; channel < 4; ++channel) {
       const std::uint32_t largest = steps.largest[channel];
-      const auto decode = [&](double s) { return channel < 3 ? srgbToLinear(s) : s; };
+      const bool root = coding.format == VITRAIL_FORMAT_HDR; // of alpha
+      const auto decode = [&](double s) { return channel < 3 ? srgbToLinear(s) : root ? s * s : s; };
       const auto expectStored = [&](double position, std::uint32_t step) {
         Fragment fragment = {{1.0, 1.0, 1.0, 1.0}, 0.5F, VITRAIL_PREMULTIPLIED, 1};
         fragment.color[channel] = decode(position);
@@ -222,8 +223,11 @@ TEST(NodeFormats, BlendAndCoverageSurvive) {
 
 TEST(NodeFormats, FragmentsThatChangeNothingAreDropped) {
   for (const NodeCoding& coding : everyCoding()) {
-    const double step = 1.0 / stepsOf(coding).largest[3];
-    for (const double alpha : {0.0, 0.49 * step, -1.0, kNan, -kInfinity}) {
+    const auto alphaAt = [&](double steps) {
+      const double position = steps / stepsOf(coding).largest[3];
+      return coding.format == VITRAIL_FORMAT_HDR ? position * position : position;
+    };
+    for (const double alpha : {0.0, alphaAt(0.49), -1.0, kNan, -kInfinity}) {
       for (const std::uint32_t blend : {VITRAIL_OVER, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY}) {
         EXPECT_FALSE(packNode(coding, {{1.0, 1.0, 1.0, alpha}, 0.5F, blend, 1})) << describe(coding) << alpha;
       }
@@ -231,7 +235,7 @@ TEST(NodeFormats, FragmentsThatChangeNothingAreDropped) {
       EXPECT_FALSE(packNode(coding, {{0.0, -1.0, kNan, alpha}, 0.5F, VITRAIL_PREMULTIPLIED, 1})) << describe(coding);
     }
     for (std::uint32_t blend = 0; blend < 4; ++blend) {
-      EXPECT_TRUE(packNode(coding, {{0.0, 0.0, 0.0, 0.51 * step}, 0.5F, blend, 1})) << describe(coding);
+      EXPECT_TRUE(packNode(coding, {{0.0, 0.0, 0.0, alphaAt(0.51)}, 0.5F, blend, 1})) << describe(coding);
     }
   }
 }

@@ -42,9 +42,10 @@ TEST(ReferenceResolve, NothingChangesNothing) {
   expectColor(resolvePixel({}, behind), behind[0]);
 }
 
-// hdr at alpha 1/3 = 21845/65535, which 16 bits hold exactly.
+// hdr at alpha 1/9, the square of 21845/65535, which 16 bits hold exactly.
 TEST(ReferenceResolve, EveryBlendModeByHand) {
-  const double a = 1.0 / 3.0;
+  const double a = 1.0 / 9.0;
+  const double t = 8.0 / 9.0;
   const Color d = {0.5, 0.25, 1.0, 0.75};
   const auto resolve = [&](std::uint32_t blend) {
     PixelList pixel;
@@ -52,10 +53,10 @@ TEST(ReferenceResolve, EveryBlendModeByHand) {
     pixel.nodes = {node(pixel.coding, {{4.0, 0.5, 0.0, a}, 0.5F, blend, 1})};
     return resolvePixel(pixel, std::span(&d, 1));
   };
-  expectColor(resolve(VITRAIL_OVER), {4 * a + d[0] * 2 * a, 0.5 * a + d[1] * 2 * a, d[2] * 2 * a, a + d[3] * 2 * a});
-  expectColor(resolve(VITRAIL_PREMULTIPLIED), {4 + d[0] * 2 * a, 0.5 + d[1] * 2 * a, d[2] * 2 * a, a + d[3] * 2 * a});
+  expectColor(resolve(VITRAIL_OVER), {4 * a + d[0] * t, 0.5 * a + d[1] * t, d[2] * t, a + d[3] * t});
+  expectColor(resolve(VITRAIL_PREMULTIPLIED), {4 + d[0] * t, 0.5 + d[1] * t, d[2] * t, a + d[3] * t});
   expectColor(resolve(VITRAIL_ADDITIVE), {4 * a + d[0], 0.5 * a + d[1], d[2], d[3]});
-  expectColor(resolve(VITRAIL_MULTIPLY), {(2 * a + 4 * a) * d[0], (2 * a + 0.5 * a) * d[1], 2 * a * d[2], d[3]});
+  expectColor(resolve(VITRAIL_MULTIPLY), {(t + 4 * a) * d[0], (t + 0.5 * a) * d[1], t * d[2], d[3]});
 }
 
 TEST(ReferenceResolve, EachSampleBlendsWhatCoversIt) {
@@ -79,16 +80,17 @@ TEST(ReferenceResolve, EachSampleBlendsWhatCoversIt) {
 TEST(ReferenceResolve, LayersBeyondTheBoundAreAveraged) {
   PixelList pixel;
   pixel.coding.format = VITRAIL_FORMAT_HDR;
-  const double a = 1.0 / 3.0;
-  pixel.nodes = {node(pixel.coding, {{0.0, 0.0, 1.0, 1.0 / 5.0}, 0.9F}), node(pixel.coding, {{0.0, 1.0, 0.0, a}, 0.8F}),
-                 node(pixel.coding, {{1.0, 0.0, 0.0, a}, 0.1F})};
+  const double a = 1.0 / 9.0; // and 1/25: squares of what 16 bits hold exactly
+  const double t = 8.0 / 9.0;
+  pixel.nodes = {node(pixel.coding, {{0.0, 0.0, 1.0, 1.0 / 25.0}, 0.9F}),
+                 node(pixel.coding, {{0.0, 1.0, 0.0, a}, 0.8F}), node(pixel.coding, {{1.0, 0.0, 0.0, a}, 0.1F})};
   const Blended exact = resolveSample(pixel, 0);
-  expectColor(exact.color, {a, 2.0 / 3 * a, 4.0 / 9 / 5, 1 - 4.0 / 9 * 4 / 5});
+  expectColor(exact.color, {a, t * a, t * t / 25, 1 - t * t * 24 / 25});
   pixel.maxLayers = 1;
   const Blended bounded = resolveSample(pixel, 0);
-  const double opacity = 1 - 2.0 / 3 * 4 / 5;
-  const double share = opacity / (1.0 / 3 + 1.0 / 5);
-  expectColor(bounded.color, {a, 2.0 / 3 * share / 3, 2.0 / 3 * share / 5, 1 - 4.0 / 9 * 4 / 5});
+  const double opacity = 1 - t * 24 / 25;
+  const double share = opacity / (1.0 / 9 + 1.0 / 25);
+  expectColor(bounded.color, {a, t * share / 9, t * share / 25, 1 - t * t * 24 / 25});
   expectColor(bounded.transmittance, exact.transmittance);
   pixel.maxLayers = 3;
   expectColor(resolveSample(pixel, 0).color, exact.color);

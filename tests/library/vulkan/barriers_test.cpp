@@ -61,8 +61,8 @@ TEST_F(BarriersTest, AHostMakesThemAll) {
         const std::vector<PointResult> results = host.drawTogether({points, fewer});
         EXPECT_TRUE(results[0].pixels == usual.draw(points).pixels);
         EXPECT_TRUE(results[1].pixels == usual.draw(fewer).pixels);
-        EXPECT_EQ(results[0].stats.exact, capacity == points.size() ? 1U : 0U);
-        EXPECT_EQ(results[1].stats.exact, 1U);
+        EXPECT_EQ(results[0].stats.complete, capacity == points.size() ? 1U : 0U);
+        EXPECT_EQ(results[1].stats.complete, 1U);
       }
     }
   }

@@ -37,7 +37,7 @@ TEST_F(ListBuildTest, TheDefaultIsToldAndStays) {
   expectOneLine("VITRAIL_LIST_BUILD_FRAGMENT");
   const PointResult second = host.draw(points);
   EXPECT_TRUE(second.pixels == first.pixels);
-  EXPECT_EQ(second.stats.exact, 1U);
+  EXPECT_EQ(second.stats.complete, 1U);
 }
 
 } // namespace

@@ -97,9 +97,9 @@ TEST_F(NullTest, TargetsThatAreNone) {
   vitrailVkBarriers(nullptr, VITRAIL_VK_BARRIER_BEGIN, &barriers);
   EXPECT_EQ(barriers.count, 0U);
   VitrailStats stats{};
-  stats.exact = 1;
+  stats.complete = 1;
   EXPECT_EQ(vitrailVkReadStats(nullptr, 0, &stats), kRefused);
-  EXPECT_EQ(stats.exact, 0U);
+  EXPECT_EQ(stats.complete, 0U);
   EXPECT_EQ(vitrailVkCopySize(nullptr, 1, 1), 0U);
 }
 
@@ -143,7 +143,7 @@ TEST_F(NullTest, Recording) {
     expectLogged();
   });
   const std::vector<Point> points = randomLists(desc, {3}, 1);
-  EXPECT_EQ(host.draw(points).stats.exact, 1U);
+  EXPECT_EQ(host.draw(points).stats.complete, 1U);
 }
 
 } // namespace

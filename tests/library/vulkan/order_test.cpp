@@ -42,7 +42,7 @@ class OrderedHost {
     const VulkanHost::Outcome outcome = host_->drawSteps(points_, kRightOrder);
     EXPECT_EQ(backend().takeLog().size(), lines);
     ASSERT_TRUE(outcome.stats);
-    EXPECT_EQ(outcome.stats->exact, lines == 0 ? 1U : 0U);
+    EXPECT_EQ(outcome.stats->complete, lines == 0 ? 1U : 0U);
     EXPECT_TRUE(isRight(outcome)) << "the frame after is wrong";
   }
 
@@ -55,7 +55,7 @@ class OrderedHost {
     return lines;
   }
 
-  [[nodiscard]] bool countsAsExact() const { return outcome_.stats && outcome_.stats->exact == 1; }
+  [[nodiscard]] bool countsAsExact() const { return outcome_.stats && outcome_.stats->complete == 1; }
 
  private:
   [[nodiscard]] bool isRight(const VulkanHost::Outcome& outcome) const {
@@ -172,7 +172,7 @@ TEST_F(OrderTest, AreasAndViewsThatAreNotThereAreTakenFromWhatIs) {
     EXPECT_EQ(lines[0].severity, VITRAIL_LOG_WARNING);
     EXPECT_NE(lines[0].text.find(word), std::string::npos) << lines[0].text;
   };
-  EXPECT_EQ(host.draw(points).stats.exact, 0U); // 8x8 pixels
+  EXPECT_EQ(host.draw(points).stats.complete, 0U); // 8x8 pixels
   expectWarning("areaPixels");
 
   Target& target = host.target();
@@ -190,7 +190,7 @@ TEST_F(OrderTest, AreasAndViewsThatAreNotThereAreTakenFromWhatIs) {
   expectWarning("view 5");
   VitrailStats stats{};
   ASSERT_EQ(target.readStats(target.frame(), stats), VK_SUCCESS);
-  EXPECT_EQ(stats.exact, 0U);
+  EXPECT_EQ(stats.complete, 0U);
 }
 
 // Memory that is replaced in the middle of a frame is not the frame's: it is dropped, and says so.
@@ -212,7 +212,7 @@ TEST_F(OrderTest, AResizeInAFrameDropsIt) {
     expectOneLine("without a frame");
   });
   const PointResult after = host.draw(points);
-  EXPECT_EQ(after.stats.exact, 1U);
+  EXPECT_EQ(after.stats.complete, 1U);
   EXPECT_TRUE(after.pixels == before.pixels);
 }
 
@@ -274,10 +274,10 @@ TEST_F(OrderTest, CopiesThatCannotBeHadAreRefused) {
     other.target().resolve(commands);
     other.target().end(commands);
   });
-  EXPECT_EQ(host.stats(host.target().frame())->exact, 0U);
+  EXPECT_EQ(host.stats(host.target().frame())->complete, 0U);
   const auto* bytes = static_cast<const std::uint8_t*>(buffer.mapped());
   EXPECT_TRUE(std::all_of(bytes, bytes + buffer.size(), [](std::uint8_t byte) { return byte == 0x5a; }));
-  EXPECT_EQ(host.draw(points).stats.exact, 1U);
+  EXPECT_EQ(host.draw(points).stats.complete, 1U);
 }
 
 // Frames that the library numbers are 0, 1, 2, ... and their statistics are theirs.

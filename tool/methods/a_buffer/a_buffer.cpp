@@ -217,7 +217,8 @@ FrameStats ABuffer::stats() const {
   stats.fragmentsRequested = stats.fragmentsStored = counts.fragments;
   stats.layersMax = counts.layersMax;
   stats.cutPixels = counts.cutPixels;
-  stats.exact = stats.cutPixels == 0;
+  stats.complete = stats.cutPixels == 0;
+  stats.errorBound = vitrailNodeErrorBound(VITRAIL_NODE_STANDARD, 1, stats.layersMax); // it stores them so
   stats.layersMean = meanLayers(stats.fragmentsStored, counts.coveredPixels);
   stats.nodesBytes = fragments_.bytes();
   stats.headsBytes = offsets_.size() + filled_.size();

@@ -135,7 +135,8 @@ FrameStats Insertion::stats() const {
   stats.fragmentsRequested = control.taken;
   stats.fragmentsStored = inLists - counts.fragments;
   stats.fragmentsMissing = stats.fragmentsRequested - stats.fragmentsStored;
-  stats.exact = stats.fragmentsMissing == 0;
+  stats.complete = stats.fragmentsMissing == 0;
+  stats.errorBound = vitrailNodeErrorBound(VITRAIL_NODE_STANDARD, 1, stats.layersMax); // it stores them so
   stats.layersMean = meanLayers(inLists, counts.coveredPixels);
   stats.nodesBytes = nodes_.bytes();
   stats.headsBytes = std::uint64_t{extent_.width} * extent_.height * sizeof(std::uint32_t);

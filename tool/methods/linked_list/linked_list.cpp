@@ -288,7 +288,7 @@ void LinkedList::releaseTarget() {
 void LinkedList::draw(Frame& frame) {
   stats_ = {};
   stats_.tiles = 0;
-  stats_.exact = true;
+  stats_.complete = true;
   coveredPixels_ = 0;
   wasInTiles_ = inTiles_;
   if (inTiles_) return drawTiles(frame);
@@ -396,7 +396,7 @@ bool LinkedList::grow(std::uint64_t fragments) {
 
 void LinkedList::add(const VitrailStats& stats) {
   ++stats_.tiles;
-  stats_.exact = stats_.exact && stats.exact != 0;
+  stats_.complete = stats_.complete && stats.complete != 0;
   stats_.fragmentsRequested += stats.fragmentsRequested;
   stats_.fragmentsStored += stats.fragmentsStored;
   stats_.fragmentsMissing += stats.fragmentsMissing;
@@ -412,6 +412,7 @@ FrameStats LinkedList::stats() const {
   result.resolve = nameOf(options_.resolve);
   result.listBuild = nameOf(pipelines_.listBuild);
   result.counted = true;
+  result.errorBound = vitrailNodeErrorBound(options_.nodes, options_.samples, stats_.layersMax);
   result.layersMean = meanLayers(stats_.fragmentsStored, coveredPixels_);
   if (!target_) return result; // nothing was drawn
   const VitrailMemory memory = target_.memory();

@@ -165,7 +165,7 @@ FrameStats DepthComplexity::stats() const {
   stats.fragmentsRequested = wide(measured_.surfacesLow, measured_.surfacesHigh);
   stats.fragmentsStored = wide(measured_.keptLow, measured_.keptHigh);
   stats.fragmentsMissing = stats.fragmentsRequested - stats.fragmentsStored;
-  stats.exact = stats.fragmentsMissing == 0;
+  stats.complete = stats.fragmentsMissing == 0;
   stats.approximatePixels = measured_.deeperPixels;
   stats.layersMax = measured_.deepest;
   stats.layersMean = meanLayers(stats.fragmentsStored, measured_.coveredPixels);

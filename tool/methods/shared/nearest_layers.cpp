@@ -98,7 +98,7 @@ FrameStats NearestLayers::stats() const {
   stats.fragmentsRequested = stats.fragmentsStored = counts.fragments; // those of the tails as sums
   stats.approximatePixels = counts.cutPixels;
   stats.layersMax = counts.layersMax;
-  stats.exact = stats.approximatePixels == 0;
+  stats.complete = stats.approximatePixels == 0;
   stats.layersMean = meanLayers(stats.fragmentsStored, counts.coveredPixels);
   stats.nodesBytes = entries_.size();
   stats.totalBytes = entries_.size() + tails_.size() + control_.bytes();

@@ -323,7 +323,7 @@ void StencilRouted::blend(Frame& frame) {
 FrameStats StencilRouted::stats() const {
   FrameStats stats = complexity_.stats();
   stats.resolve = "compute";
-  stats.exact = stats.exact && inMiddle_;
+  stats.complete = stats.complete && inMiddle_;
   const std::uint64_t pixels = std::uint64_t{extent_.width} * extent_.height;
   const std::uint32_t layers = layers_[0].get().info().arrayLayers;
   if (layers_[0].get().get() != VK_NULL_HANDLE) stats.nodesBytes = pixels * kLayerBytes * layers;
