@@ -1,5 +1,5 @@
 // Feeds model loading with whatever libFuzzer makes up. The first byte selects the reader (glTF, OBJ, PLY,
-// STL, images), the rest is the file. A file
+// STL, images, material libraries of OBJ files), the rest is the file. A file
 // either loads and keeps the promises of scene.h, or is refused with a LoadError of one line: anything else is a
 // finding.
 #include <cstddef>
@@ -11,6 +11,8 @@
 
 #include "scene/image_decode.h"
 #include "scene/load.h"
+#include "scene/plain/mtl.h"
+#include "scene/plain/text_encoding.h"
 
 namespace {
 
@@ -49,13 +51,22 @@ void checkScene(const Scene& scene) {
   require(triangles > 0, "at least one triangle");
 }
 
+void checkLibrary(std::span<const std::byte> file) {
+  const MtlLibrary library = readMtl(PlainText(file).view());
+  for (const auto& [name, material] : library.materials) {
+    const float opacity = opacityOf(material, library);
+    require(opacity >= 0.0F && opacity <= 1.0F, "opacity from 0 to 1");
+    require(library.find(name) == &material, "materials are found by their names");
+  }
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto file = std::as_bytes(std::span(data + 1, size - 1));
   try {
-    switch (data[0] % 5) {
+    switch (data[0] % 6) {
       case 0:
         checkScene(loadGltf(file, {}));
         break;
@@ -68,8 +79,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 3:
         checkScene(loadStl(file));
         break;
-      default:
+      case 4:
         checkImage(decodeImage(file));
+        break;
+      default:
+        checkLibrary(file);
         break;
     }
   } catch (const LoadError& error) {
