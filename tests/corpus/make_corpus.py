@@ -496,11 +496,11 @@ def write_good_obj():
     maps = folder("maps")
     (maps / "model.obj").write_text(
         "mtllib model.mtl\n"
-        + OBJ_QUAD
+        + OBJ_QUAD.replace(" 0\n", " 0 .5 .5 .5\n")
         + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
         + "".join(
             f"usemtl {name}\nf 1/1 2/2 3/3 4/4\n"
-            for name in ("grey", "alpha", "channel", "both", "only", "placed", "scaled", "pbr", "normals", "bumps", "missing")
+            for name in ("grey", "alpha", "channel", "both", "only", "placed", "scaled", "pbr", "normals", "bumps", "same", "missing")
         )
     )
     (maps / "model.mtl").write_text(
@@ -514,6 +514,7 @@ def write_good_obj():
         "newmtl pbr\nPr 0.3\nPm 0.2\nKe 0 0 0\nmap_Pr grey.png\nmap_Ke leaf.png\nPc 0.5\nPcr 0.25\n"
         "newmtl normals\nmap_Bump -bm 0.5 up.png\n"
         "newmtl bumps\nbump -bm 25 steps.png\n"
+        "newmtl same\nmap_Kd grey.png\nmap_d grey.png\n"
         "newmtl missing\nmap_Kd gone.png\nmap_Ks leaf.png\n"
     )
     (maps / "leaf.png").write_bytes(RED_GREEN)

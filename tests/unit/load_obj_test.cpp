@@ -124,6 +124,24 @@ TEST(LoadObj, CommentsMayFollowData) {
   EXPECT_EQ(scene.warnings, Lines{});
 }
 
+TEST(LoadObj, StatementsMayBeInUpperCase) {
+  const Scene scene = load("V 0 0 0\nV 1 0 0\nV 0 1 0\nVN 0 0 1\nUSEMTL Red\nF 1//1 2//1 3//1\n");
+  EXPECT_EQ(scene.meshes.at(0).indices.size(), 3U);
+  EXPECT_EQ(scene.materials.at(0).name, "Red");
+  EXPECT_EQ(failureOf("V 0 0 0\nF 1 1 2\n"), "line 2: a face names vertex 2, but there are 1");
+}
+
+// Corners of one position that all differ must not take time with the square of their number.
+TEST(LoadObj, ThousandsOfVerticesAtOnePosition) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 1; i <= 200000; ++i) {
+    const std::string number = std::to_string(i);
+    text += "vt 0 " + number + "\nf 1/" + number + " 2/1 3/1\n";
+  }
+  const Scene scene = load(text);
+  EXPECT_EQ(scene.meshes.at(0).indices.size(), 600000U);
+}
+
 TEST(LoadObj, ErrorsNameTheirLineInLargeFilesToo) {
   // Large enough for several threads, whose parts do not begin at line 1.
   std::string text;
@@ -403,6 +421,13 @@ TEST_F(ObjMaps, OpacityComesFromAlphaOrElseFromLuminance) {
   EXPECT_EQ(colors("both"), (std::vector<int>{255, 0, 0, 128, 0, 255, 0, 128}));
   EXPECT_EQ(colors("only"), (std::vector<int>{255, 0, 0, 255, 0, 255, 0, 128})) << "not squared";
   EXPECT_EQ(material("only").baseColor.a, 0.5F);
+}
+
+TEST_F(ObjMaps, APictureOfColoursIsNeitherOpacityNorTintedByVertices) {
+  EXPECT_EQ(colors("same"), (std::vector<int>{128, 128, 128, 255}));
+  EXPECT_EQ(material("same").alphaMode, AlphaMode::Opaque);
+  EXPECT_TRUE(meshOf(scene_, "same").colors.empty());
+  expectNear(glm::vec3(meshOf(scene_, "grey").vertex(0).color), glm::vec3(linearHalf), 1e-3F);
 }
 
 TEST_F(ObjMaps, PicturesArePlacedAndScaled) {

@@ -58,6 +58,8 @@ std::optional<fs::path> findFile(std::string_view name, std::span<const fs::path
   for (const fs::path& folder : folders)
     if (!absolute && fs::is_regular_file(folder / fs::path(name), error)) return folder / fs::path(name);
   const std::vector<std::string> parts = splitPath(name);
+  constexpr std::size_t mostParts = 64;
+  if (parts.size() > mostParts) return std::nullopt;
   for (std::size_t first = absolute ? 1 : 0; first < std::max<std::size_t>(parts.size(), 1); ++first)
     for (const fs::path& folder : folders)
       if (const auto found = findBelow(folder, std::span(parts).subspan(std::min(first, parts.size())))) return found;

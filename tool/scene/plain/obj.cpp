@@ -26,6 +26,17 @@
 namespace vitrail::tool {
 namespace {
 
+// Programs that write a picture and colours of vertices mean the same by both. The vertices' alpha is kept.
+void whitenColors(Mesh& mesh) {
+  bool translucent = false;
+  for (std::uint64_t& packed : mesh.colors) {
+    const float alpha = unpackColor(packed).a;
+    translucent = translucent || alpha < 1.0F;
+    packed = packColor({1.0F, 1.0F, 1.0F, alpha});
+  }
+  if (!translucent) mesh.colors.clear();
+}
+
 class ObjReader {
  public:
   ObjReader(std::string_view text, const std::filesystem::path& base)
@@ -59,12 +70,14 @@ class ObjReader {
 
   void addFaces(const ObjSurface& surface, const Material& material, ObjMeshMaker& maker) {
     if (surface.faces.empty()) return;
+    const bool pictured = material.baseColorTexture.image >= 0 && !surface.found.material->diffuseMap.name.empty();
     const std::size_t before = scene_.meshes.size();
     const std::int64_t smoothing = surface.faces.begin()->first;
     ObjMesh raw = maker.faces(surface.faces.begin()->second);
     const bool alone = surface.faces.size() == 1;
     if (alone && raw.normals.empty() && smoothing <= ObjSmoothing::off) {
       const bool flat = smoothing == ObjSmoothing::off && material.normalTexture.image < 0;
+      if (pictured) whitenColors(raw.mesh);
       addPlainMesh(scene_, std::move(raw.mesh), flat ? NormalsFrom::None : NormalsFrom::Places, material);
     } else {
       if (raw.normals.empty()) smoothObj(raw, smoothing);
@@ -73,6 +86,7 @@ class ObjReader {
         if (more.normals.empty()) smoothObj(more, group->first);
         appendObj(raw, more);
       }
+      if (pictured) whitenColors(raw.mesh);
       addPlainMesh(scene_, std::move(raw.mesh), NormalsFrom::File, material, std::move(raw.normals));
     }
     if (material.normalTexture.image >= 0 && scene_.meshes.size() > before)

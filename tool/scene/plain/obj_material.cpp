@@ -127,7 +127,11 @@ TextureSlot ObjMaterials::baseColorSlot() {
   const MtlMap& diffuse = source_->diffuseMap;
   const MtlMap& opacity = source_->opacityMap;
   Picture* const colors = load(diffuse, "map_Kd");
-  Picture* const alpha = load(opacity, "map_d");
+  Picture* alpha = load(opacity, "map_d");
+  // A picture without alpha that is named for both was not meant to be as opaque as it is bright.
+  if (alpha != nullptr && alpha == colors && usedChannel(imageOf(*alpha), opacity.channel) == 'l' &&
+      opacity.channel == '\0')
+    alpha = nullptr;
   if (colors == nullptr && alpha == nullptr) return {};
   const bool plain = diffuse.base == 0.0F && diffuse.gain == 1.0F;
   const char channel = alpha == nullptr ? '\0' : usedChannel(imageOf(*alpha), opacity.channel);

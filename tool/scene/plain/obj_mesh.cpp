@@ -87,7 +87,9 @@ void ObjMeshMaker::addOutline(const ObjCorner* corner, std::uint32_t count) {
 
 std::uint32_t ObjMeshMaker::vertexOf(const ObjCorner& corner) {
   std::uint32_t& newest = newest_[static_cast<std::size_t>(corner.position)];
-  for (std::uint32_t i = newest; i != none; i = older_[i])
+  // Where a file makes them many, some become vertices twice.
+  std::uint32_t looks = 64;
+  for (std::uint32_t i = newest; i != none && looks > 0; i = older_[i], --looks)
     if (corners_[i].texCoord == corner.texCoord && corners_[i].normal == corner.normal) return i;
   if (corners_.size() >= none) throw LoadError("more vertices than 32-bit indices can name");
   const auto index = static_cast<std::uint32_t>(corners_.size());

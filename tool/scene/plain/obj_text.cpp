@@ -16,6 +16,7 @@
 #include "../load.h"
 #include "../message.h"
 #include "../srgb.h"
+#include "letters.h"
 #include "number.h"
 
 namespace vitrail::tool {
@@ -103,6 +104,14 @@ std::string_view takeWord(std::string_view& line) {
   return word;
 }
 
+// The word that says what a line is, in lower case.
+std::string_view takeStatement(std::string_view& line, std::string& lower) {
+  const std::string_view word = takeWord(line);
+  if (word.empty() || word[0] < 'A' || word[0] > 'Z') return word;
+  lower = lowerCase(word);
+  return lower;
+}
+
 std::string_view trimmed(std::string_view text) {
   skipBlanks(text);
   while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
@@ -151,11 +160,12 @@ class PartReader {
 
   void read() {
     Lines lines(text_);
+    std::string lower;
     while (lines.next()) {
       line_ = lines.line();
       lineNumber_ = lines.number();
       std::string_view rest = line_;
-      const std::string_view word = takeWord(rest);
+      const std::string_view word = takeStatement(rest, lower);
       if (word.empty()) {
         readComment(trimmed(line_));
       } else if (word == "v") {
@@ -546,9 +556,10 @@ class TextReader {
     Counts soFar = before_[part];
     std::size_t corner = 0;
     Lines lines(texts_[part]);
+    std::string lower;
     while (lines.next()) {
       std::string_view rest = lines.line();
-      const std::string_view statement = takeWord(rest);
+      const std::string_view statement = takeStatement(rest, lower);
       if (statement == "v") ++soFar[0];
       if (statement == "vt") ++soFar[1];
       if (statement == "vn") ++soFar[2];
