@@ -929,6 +929,85 @@ def write_good_plain():
     (GOOD / "vertex_colors.obj").write_text("v 0 0 0 1 0.5 0\nv 1 0 0 1 0.5 0\nv 0 1 0 1 0.5 0\nf 1 2 3\n")
 
 
+OBJ_QUAD = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
+
+
+def grey_png(width, height, values):
+    return png(width, height, bytes(values), color_type=0)
+
+
+def write_good_obj():
+    """OBJ files and their libraries as other programs and systems write them: a folder for each question of files."""
+
+    def folder(name):
+        path = GOOD / "obj" / name
+        path.mkdir(parents=True, exist_ok=True)
+        return path
+
+    # Where libraries and pictures are found.
+    case = folder("letter_case")
+    (case / "model.obj").write_text("mtllib MODEL.MTL\n" + OBJ_QUAD + "vt 0 0\nusemtl a\nf 1/1 2/1 3/1 4/1\n")
+    (case / "Model.mtl").write_text("newmtl a\nKd 1 1 1\nmap_Kd Maps\\LEAF.PNG\n")
+    (case / "maps").mkdir(exist_ok=True)
+    (case / "maps" / "leaf.png").write_bytes(RED_GREEN)
+    below = folder("library_below")
+    (below / "model.obj").write_text("mtllib .\\sub\\model.mtl\n" + OBJ_QUAD + "vt 0 0\nusemtl a\nf 1/1 2/1 3/1 4/1\n")
+    (below / "sub" / "tex").mkdir(parents=True, exist_ok=True)
+    (below / "sub" / "model.mtl").write_text("newmtl a\nmap_Kd tex/leaf.png\nnewmtl b\nmap_Kd beside.png\n")
+    (below / "sub" / "tex" / "leaf.png").write_bytes(RED_GREEN)
+    absolute = folder("windows_paths")
+    (absolute / "model.obj").write_text(
+        "mtllib C:\\work\\model one.mtl\n" + OBJ_QUAD + "vt 0 0\nusemtl a\nf 1/1 2/1 3/1 4/1\n"
+    )
+    (absolute / "model one.mtl").write_text('newmtl a\nmap_Kd "D:\\maps\\my leaf.png"\n')
+    (absolute / "my leaf.png").write_bytes(RED_GREEN)
+
+    # Which library a material comes from.
+    several = folder("several_libraries")
+    (several / "model.obj").write_text(
+        OBJ_QUAD + "usemtl b\nf 1 2 3\nmtllib one two.mtl three.mtl # both\nmtllib gone.mtl gone too.mtl\nusemtl a # glass\nf 1 3 4\n"
+        "usemtl c\nf 1 2 4\n"
+    )
+    (several / "one two.mtl").write_text("newmtl a\nd .25\n")
+    (several / "three.mtl").write_text("newmtl a\nd .75\nnewmtl b # brown\nd .5 # half\nnewmtl d\n")
+    joined = folder("same_names")
+    (joined / "model.obj").write_text(
+        OBJ_QUAD + "mtllib first.mtl\nusemtl a\nf 1 2 3\nmtllib second.mtl\nusemtl a\nf 1 3 4\nusemtl none\nf 1 2 4\nusemtl nil\nf 2 3 4\n"
+    )
+    (joined / "first.mtl").write_text("newmtl a\nd .25\n")
+    (joined / "second.mtl").write_text("newmtl a\nd .75\n")
+
+    # How pictures are used.
+    maps = folder("maps")
+    (maps / "model.obj").write_text(
+        "mtllib model.mtl\n"
+        + OBJ_QUAD.replace(" 0\n", " 0 .5 .5 .5\n")
+        + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+        + "".join(
+            f"usemtl {name}\nf 1/1 2/2 3/3 4/4\n"
+            for name in ("grey", "alpha", "channel", "both", "only", "placed", "scaled", "pbr", "normals", "bumps", "same", "missing")
+        )
+    )
+    (maps / "model.mtl").write_text(
+        "newmtl grey\nKd 1 0 0\nmap_d grey.png\n"
+        "newmtl alpha\nKd 1 0 0\nmap_d leaf.png\n"
+        "newmtl channel\nKd 1 0 0\nd 0\nmap_d -imfchan r leaf.png\n"
+        "newmtl both\nmap_Kd leaf.png\nmap_d grey.png\n"
+        "newmtl only\nd 0.5\nmap_Kd leaf.png\nmap_d leaf.png\n"
+        "newmtl placed\nmap_Kd -clamp on -blendu on -o 0.25 0.5 0 -s 2 4 1 leaf.png\n"
+        "newmtl scaled\nmap_Kd -mm 0.2 0.6 leaf.png\n"
+        "newmtl pbr\nPr 0.3\nPm 0.2\nKe 0 0 0\nmap_Pr grey.png\nmap_Ke leaf.png\nPc 0.5\nPcr 0.25\n"
+        "newmtl normals\nmap_Bump -bm 0.5 up.png\n"
+        "newmtl bumps\nbump -bm 25 steps.png\n"
+        "newmtl same\nmap_Kd grey.png\nmap_d grey.png\n"
+        "newmtl missing\nmap_Kd gone.png\nmap_Ks leaf.png\n"
+    )
+    (maps / "leaf.png").write_bytes(RED_GREEN)
+    (maps / "grey.png").write_bytes(grey_png(1, 1, [128]))
+    (maps / "up.png").write_bytes(png(1, 1, bytes([128, 128, 255]), color_type=2))
+    (maps / "steps.png").write_bytes(grey_png(4, 1, [0, 51, 102, 51]))
+
+
 def bad_documents():
     """Each name with a glTF document that is wrong in one way."""
 
@@ -1224,7 +1303,7 @@ def write_bad():
 
     (BAD / "face_range.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n")
     (BAD / "face_before_start.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -9\n")
-    (BAD / "points_only.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n")
+    (BAD / "face_word.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 \\\n0\nf 1 2/x 3\n")
     (BAD / "position_nan.obj").write_text("v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n")
     (BAD / "position_1e999.obj").write_text("v 0 0 0\nv 1e999 0 0\nv 0 1 0\nf 1 2 3\n")
     (BAD / "truncated.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2")
@@ -1233,9 +1312,9 @@ def write_bad():
 
 
 def write_seeds(folder):
-    readers = {".gltf": 0, ".glb": 0, ".obj": 1, ".ply": 2, ".stl": 3, ".png": 4}
+    readers = {".gltf": 0, ".glb": 0, ".obj": 1, ".ply": 2, ".stl": 3, ".png": 4, ".mtl": 5}
     folder.mkdir(parents=True, exist_ok=True)
-    for path in sorted([*GOOD.iterdir(), *BAD.iterdir()]):
+    for path in sorted([*GOOD.rglob("*"), *BAD.iterdir()]):
         if path.suffix in readers:
             (folder / f"{path.parent.name}-{path.name}").write_bytes(bytes([readers[path.suffix]]) + path.read_bytes())
     # Images, and compressed geometry, outside of glTF.
@@ -1246,7 +1325,7 @@ def write_seeds(folder):
                 (folder / f"image-{path.stem}").write_bytes(bytes([4]) + data)
     for name in STREAMS:
         if name.startswith("DRACO"):
-            (folder / f"stream-{name}").write_bytes(bytes([5]) + stream(name))
+            (folder / f"stream-{name}").write_bytes(bytes([6]) + stream(name))
     meshopt = {
         "MESHOPT_POSITIONS": (0, 12, 4),
         "MESHOPT_NORMALS_OCTAHEDRAL": (3, 4, 4),
@@ -1256,7 +1335,7 @@ def write_seeds(folder):
         "MESHOPT_INDICES": (2, 4, 4),
     }
     for name, choices in meshopt.items():
-        (folder / f"stream-{name}").write_bytes(bytes([6, *choices]) + stream(name))
+        (folder / f"stream-{name}").write_bytes(bytes([7, *choices]) + stream(name))
 
 
 def main():
@@ -1278,6 +1357,7 @@ def main():
     write_good_materials()
     write_good_transmission()
     write_good_plain()
+    write_good_obj()
     write_good_compressed()
     write_good_images()
     write_good_without_images()

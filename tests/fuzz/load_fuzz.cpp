@@ -1,6 +1,7 @@
 // Feeds model loading with whatever libFuzzer makes up. The first byte selects the reader (glTF, OBJ, PLY, STL, images,
-// and what glTF holds compressed: Draco's and meshoptimizer's data), the rest is the file. A file either loads and
-// keeps the promises of scene.h, or is refused with a LoadError of one line: anything else is a finding.
+// material libraries of OBJ files, and what glTF holds compressed: Draco's and meshoptimizer's data), the rest is the
+// file. A file either loads and keeps the promises of scene.h, or is refused with a LoadError of one line: anything
+// else is a finding.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -13,6 +14,8 @@
 
 #include "scene/image_decode.h"
 #include "scene/load.h"
+#include "scene/plain/mtl.h"
+#include "scene/plain/text_encoding.h"
 
 namespace {
 
@@ -125,13 +128,22 @@ void loadAnimated(std::span<const std::byte> file) {
   }
 }
 
+void checkLibrary(std::span<const std::byte> file) {
+  const MtlLibrary library = readMtl(PlainText(file).view());
+  for (const auto& [name, material] : library.materials) {
+    const float opacity = opacityOf(material, library);
+    require(opacity >= 0.0F && opacity <= 1.0F, "opacity from 0 to 1");
+    require(library.find(name) == &material, "materials are found by their names");
+  }
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto file = std::as_bytes(std::span(data + 1, size - 1));
   try {
-    switch (data[0] % 7) {
+    switch (data[0] % 8) {
       case 0:
         loadAnimated(file);
         break;
@@ -148,6 +160,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         checkImage(decodeImage(file));
         break;
       case 5:
+        checkLibrary(file);
+        break;
+      case 6:
         checkScene(loadGltf(dracoModel(file), {}));
         break;
       default:

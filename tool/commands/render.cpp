@@ -18,14 +18,14 @@ namespace vitrail::tool {
 
 namespace {
 
-RenderResult renderScene(const RenderArguments& arguments, const Scene& scene) {
+RenderResult renderScene(const RenderArguments& arguments, Scene scene) {
   RenderOptions options = pictureOf(arguments, scene);
   if (arguments.memoryBudget) options.memoryBudget = std::uint64_t{*arguments.memoryBudget} << 20U;
 
   Gpu gpu({arguments.device, arguments.validate});
   RenderResult result;
   {
-    StillRenderer renderer(gpu, scene, arguments.opacity, DrawOrder::Forward, arguments.method);
+    StillRenderer renderer(gpu, std::move(scene), arguments.opacity, arguments.method);
     result = renderer.render(options);
   }
   closeValidated(gpu);
@@ -39,9 +39,10 @@ void runRender(const RenderArguments& arguments) {
   if (!arguments.json.empty()) report.emplace(arguments.json);
   if (report && report->isSameAs(picture)) throw UsageError("-o and --json name the same file");
 
-  const Scene scene = openScene(arguments);
-  RenderResult result = renderScene(arguments, scene);
-  result.report.warnings.insert(result.report.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
+  Scene scene = openScene(arguments);
+  const std::vector<std::string> warnings = scene.warnings;
+  RenderResult result = renderScene(arguments, std::move(scene));
+  result.report.warnings.insert(result.report.warnings.begin(), warnings.begin(), warnings.end());
   reportWarnings(result.report.warnings, arguments);
 
   const std::vector<std::byte> png = encodePng(result.picture);

@@ -19,7 +19,7 @@ namespace vitrail::tool {
 struct MethodHost {
   Gpu& gpu;                 // outlives the method
   const Surfaces& surfaces; // so do these
-  const Scene& scene;       // what they show; there while the method is made
+  const Scene& scene;       // what they show; there while the method is made, its geometry only if it sortsOnHost
 };
 
 // The images of a picture, for descriptors. The stage holds them, R16G16B16A16_SFLOAT with premultiplied linear colour;

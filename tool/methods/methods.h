@@ -36,6 +36,7 @@ struct MethodTraits {
   std::unique_ptr<Method> (*make)(const MethodHost& host, const MethodOptions& options) = nullptr;
   std::uint32_t options = 0; // of MethodOption
   bool lists = false;        // its fragments are nodes of lists
+  bool sortsOnHost = false;  // it reads the geometry that MethodHost::scene has
   // Whether pictures are the same whatever order surfaces are drawn in, where they are not exact too; with
   // depth-peeling and reverse-depth-peeling but for surfaces at equal depths.
   bool orderIndependent = false;

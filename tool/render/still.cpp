@@ -128,6 +128,12 @@ StillRenderer::StillRenderer(Gpu& gpu, const Scene& scene, std::optional<float> 
                              const MethodOptions& method)
     : impl_(std::make_unique<Impl>(gpu, scene, StageInfo{opacity, order, method.samples}, method)) {}
 
+StillRenderer::StillRenderer(Gpu& gpu, Scene&& scene, std::optional<float> opacity, const MethodOptions& method) {
+  StageInfo info{opacity, DrawOrder::Forward, method.samples};
+  if (!traitsOf(method.name).sortsOnHost) info.released = &scene;
+  impl_ = std::make_unique<Impl>(gpu, scene, info, method);
+}
+
 StillRenderer::~StillRenderer() = default;
 
 RenderResult StillRenderer::render(const RenderOptions& options) {

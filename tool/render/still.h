@@ -41,6 +41,9 @@ class StillRenderer {
   // device does not offer them.
   StillRenderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity = {}, DrawOrder order = DrawOrder::Forward,
                 const MethodOptions& method = {});
+  // The same of a scene that nobody else needs: its geometry is let go of as it goes to the GPU, so that a large model
+  // is in memory once, except with methods that sort it on the host.
+  StillRenderer(Gpu& gpu, Scene&& scene, std::optional<float> opacity, const MethodOptions& method);
   ~StillRenderer();
   StillRenderer(const StillRenderer&) = delete;
   StillRenderer& operator=(const StillRenderer&) = delete;

@@ -66,16 +66,18 @@ GpuBuffer uploadUniforms(Gpu& gpu, Uploader& uploader, const std::vector<Data>& 
 
 } // namespace
 
-GpuScene::GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order)
+GpuScene::GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released)
     : gpu_(gpu), order_(order), origin_(farMiddle(scene)) {
   Uploader uploader(gpu);
   const std::vector<MeshRange> ranges = placeMeshes(scene, opacity.has_value());
-  uploadMeshes(uploader, scene, ranges);
   uploadMaterials(uploader, scene, opacity);
   textures_ = std::make_unique<MaterialTextures>(gpu, uploader, scene, usedMaterials(scene));
+  if (released != nullptr)
+    for (Image& image : released->images) image.rgba = std::vector<std::uint8_t>();
   listDraws(scene, ranges, opacity.has_value());
   uploadInstances(uploader, scene);
   placeBoxes(scene);
+  uploadMeshes(uploader, scene, ranges, released); // last: all else has been asked of them
 }
 
 // A mesh that is drawn both opaque and transparent has its indices twice where their orders differ.
@@ -112,7 +114,8 @@ std::vector<std::uint32_t> GpuScene::transparentIndices(const Scene& scene, std:
   return submittedIndices(scene, transparent_[i].mesh);
 }
 
-void GpuScene::uploadMeshes(Uploader& uploader, const Scene& scene, const std::vector<MeshRange>& ranges) {
+void GpuScene::uploadMeshes(Uploader& uploader, const Scene& scene, const std::vector<MeshRange>& ranges,
+                            Scene* released) {
   std::vector<bool> used;
   for (const MeshRange& range : ranges) used.push_back(range.opaque || range.transparent);
   streams_.emplace(gpu_, scene, used);
@@ -123,7 +126,7 @@ void GpuScene::uploadMeshes(Uploader& uploader, const Scene& scene, const std::v
     const MeshRange& range = ranges[i];
     if (!used[i]) continue;
     const Mesh& mesh = scene.meshes[i];
-    streams_->upload(uploader, mesh, i);
+    streams_->upload(uploader, mesh, i, released != nullptr ? &released->meshes[i] : nullptr);
     if (range.opaque || order_ == DrawOrder::Forward) {
       const std::uint64_t first = range.opaque ? range.firstOpaqueIndex : range.firstTransparentIndex;
       uploader.toBuffer(std::as_bytes(std::span(mesh.indices)), indices_, first * sizeof(std::uint32_t), kIndexFetch);
@@ -133,6 +136,7 @@ void GpuScene::uploadMeshes(Uploader& uploader, const Scene& scene, const std::v
       uploader.toBuffer(std::as_bytes(std::span(reordered)), indices_,
                         range.firstTransparentIndex * sizeof(std::uint32_t), kIndexFetch);
     }
+    if (released != nullptr) released->meshes[i].indices = std::vector<std::uint32_t>();
   }
 }
 

@@ -42,8 +42,8 @@ struct PlacedBox {
 class GpuScene {
  public:
   // With `opacity` every material is transparent. `order` is that of the transparent draws, and of the instances of
-  // each. Throws GpuError.
-  GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order);
+  // each. `released`: the same scene, whose geometry is let go of as it has been copied; or null. Throws GpuError.
+  GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released = nullptr);
 
   const std::vector<GpuDraw>& opaqueDraws() const { return opaque_; } // opaque and alpha-masked
   const std::vector<GpuDraw>& transparentDraws() const { return transparent_; }
@@ -75,7 +75,7 @@ class GpuScene {
   };
 
   std::vector<MeshRange> placeMeshes(const Scene& scene, bool allTransparent);
-  void uploadMeshes(Uploader& uploader, const Scene& scene, const std::vector<MeshRange>& ranges);
+  void uploadMeshes(Uploader& uploader, const Scene& scene, const std::vector<MeshRange>& ranges, Scene* released);
   std::vector<std::uint32_t> submittedIndices(const Scene& scene, std::size_t mesh) const;
   void uploadMaterials(Uploader& uploader, const Scene& scene, std::optional<float> opacity);
   void uploadInstances(Uploader& uploader, const Scene& scene);

@@ -52,7 +52,9 @@ SurfacePipelines opaquePipelines(const Surfaces& surfaces, const PictureImagesIn
 } // namespace
 
 Stage::Stage(Gpu& gpu, const Scene& scene, const StageInfo& info)
-    : gpu_(gpu), imagesInfo_{{}, {}, sampleFlag(gpu, info.samples)}, surfaces_(gpu, scene, info.opacity, info.order) {}
+    : gpu_(gpu),
+      imagesInfo_{{}, {}, sampleFlag(gpu, info.samples)},
+      surfaces_(gpu, scene, info.opacity, info.order, info.released) {}
 
 void Stage::setNeeds(const ImageNeeds& needs) {
   static_cast<ImageNeeds&>(imagesInfo_) = needs;

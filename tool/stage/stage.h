@@ -17,6 +17,7 @@ struct StageInfo {
   std::optional<float> opacity;         // of every material: X-ray view. Default: the materials' own
   DrawOrder order = DrawOrder::Forward; // of the transparent draws
   std::uint32_t samples = 1;            // of a pixel
+  Scene* released = nullptr;            // the same scene, whose geometry is let go of as it has been copied; or null
 };
 
 class Stage {

@@ -52,9 +52,9 @@ SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const Gpu
   }
 }
 
-Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order)
+Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released)
     : gpu_(gpu),
-      scene_(gpu, scene, opacity, order),
+      scene_(gpu, scene, opacity, order, released),
       pointSize_(drawnPointSize(gpu, scene.pointSize)),
       transparentRuns_(runsOf(scene_.transparentDraws())),
       viewBuffer_(gpu, sizeof(shaders::FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::Upload,

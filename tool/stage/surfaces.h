@@ -60,8 +60,8 @@ float drawnPointSize(const Gpu& gpu, float wanted);
 
 class Surfaces {
  public:
-  // With `opacity` every material is transparent. `order` is that of the transparent draws. Throws GpuError.
-  Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order);
+  // As GpuScene. Throws GpuError.
+  Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released = nullptr);
 
   Gpu& gpu() const { return gpu_; }
   const GpuScene& scene() const { return scene_; }

@@ -22,6 +22,20 @@ std::array<std::span<const std::byte>, kStreamCount> arraysOf(const Mesh& mesh) 
           std::as_bytes(std::span(mesh.texCoords1)), std::as_bytes(std::span(mesh.colors))};
 }
 
+template <typename Value>
+void release(std::vector<Value>& values) {
+  values = std::vector<Value>(); // clear() would keep the memory
+}
+
+void releaseArray(Mesh& mesh, std::size_t stream) {
+  if (stream == 0) release(mesh.positions);
+  if (stream == 1) release(mesh.normals);
+  if (stream == 2) release(mesh.tangents);
+  if (stream == 3) release(mesh.texCoords0);
+  if (stream == 4) release(mesh.texCoords1);
+  if (stream == 5) release(mesh.colors);
+}
+
 // A mesh of one vertex that has everything, with the values of a vertex that has nothing.
 Mesh defaults() {
   const Vertex vertex;
@@ -86,10 +100,11 @@ VertexStreams::VertexStreams(Gpu& gpu, const Scene& scene, const std::vector<boo
   }
 }
 
-void VertexStreams::upload(Uploader& uploader, const Mesh& mesh, std::size_t index) {
+void VertexStreams::upload(Uploader& uploader, const Mesh& mesh, std::size_t index, Mesh* released) {
   const auto arrays = arraysOf(mesh);
   for (std::size_t stream = 0; stream < kStreamCount; ++stream) {
     uploader.toBuffer(arrays[stream], buffers_[stream], places_[index].offsets[stream], kVertexFetch);
+    if (released != nullptr) releaseArray(*released, stream);
   }
 }
 

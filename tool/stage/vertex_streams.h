@@ -32,8 +32,8 @@ class VertexStreams {
   // Makes room for the meshes of a scene that are `used`. Throws GpuError.
   VertexStreams(Gpu& gpu, const Scene& scene, const std::vector<bool>& used);
 
-  // Copies a mesh's vertices.
-  void upload(Uploader& uploader, const Mesh& mesh, std::size_t index);
+  // Copies a mesh's vertices. `released`: the same mesh, whose arrays are let go of as they have been copied; or null.
+  void upload(Uploader& uploader, const Mesh& mesh, std::size_t index, Mesh* released);
 
   const Place& place(std::size_t mesh) const { return places_[mesh]; }
   // Binds a mesh's vertices, all bindings but the instances'.

@@ -24,6 +24,18 @@ bool isTranslucent(const Image& image) {
   return false;
 }
 
+// Places the mesh at the origin, and blends its material where anything of it is translucent.
+void addDraw(Scene& scene, Mesh mesh, Material material) {
+  const std::int32_t image = material.baseColorTexture.image;
+  if (material.baseColor.a < 1.0F || isTranslucent(mesh) ||
+      (image >= 0 && isTranslucent(scene.images[static_cast<std::size_t>(image)])))
+    material.alphaMode = AlphaMode::Blend;
+  scene.draws.push_back({static_cast<std::uint32_t>(scene.meshes.size()),
+                         static_cast<std::uint32_t>(scene.materials.size()), glm::mat4(1.0F)});
+  scene.meshes.push_back(std::move(mesh));
+  scene.materials.push_back(std::move(material));
+}
+
 } // namespace
 
 Material plainMaterial(bool colored) {
@@ -42,6 +54,8 @@ void addPlainMesh(Scene& scene, Mesh mesh, NormalsFrom normals, Material materia
   if (normals == NormalsFrom::File) setRepairedNormals(mesh, std::move(given));
   dropUnusedVertices(mesh);
   switch (normals) {
+    case NormalsFrom::None:
+      break;
     case NormalsFrom::File:
       turnTrianglesToNormals(mesh);
       break;
@@ -52,14 +66,11 @@ void addPlainMesh(Scene& scene, Mesh mesh, NormalsFrom normals, Material materia
       makeCreasedNormals(mesh, crease);
       break;
   }
-  const std::int32_t image = material.baseColorTexture.image;
-  if (material.baseColor.a < 1.0F || isTranslucent(mesh) ||
-      (image >= 0 && isTranslucent(scene.images[static_cast<std::size_t>(image)])))
-    material.alphaMode = AlphaMode::Blend;
-  scene.draws.push_back({static_cast<std::uint32_t>(scene.meshes.size()),
-                         static_cast<std::uint32_t>(scene.materials.size()), glm::mat4(1.0F)});
-  scene.meshes.push_back(std::move(mesh));
-  scene.materials.push_back(std::move(material));
+  addDraw(scene, std::move(mesh), std::move(material));
+}
+
+void addUnlitMesh(Scene& scene, Mesh mesh, Material material) {
+  if (!mesh.indices.empty()) addDraw(scene, std::move(mesh), std::move(material));
 }
 
 TextureSlot TextureFiles::read(Scene& scene, std::string name) {

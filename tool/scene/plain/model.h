@@ -21,6 +21,7 @@ namespace vitrail::tool {
 Material plainMaterial(bool colored);
 
 enum class NormalsFrom {
+  None,          // flat
   File,          // they are there
   SharedCorners, // smooth where triangles share a vertex
   Places         // smooth where triangles meet at less than 45 degrees
@@ -30,6 +31,9 @@ enum class NormalsFrom {
 // where vertices or its base colour texture are translucent. A mesh without area adds nothing.
 // `given`: the normals of NormalsFrom::File, one a vertex.
 void addPlainMesh(Scene& scene, Mesh mesh, NormalsFrom normals, Material material, std::vector<glm::vec3> given = {});
+
+// Adds a mesh of lines or points, which are not lit, likewise. One without any adds nothing.
+void addUnlitMesh(Scene& scene, Mesh mesh, Material material);
 
 // Reads textures beside a model, each once. One that is missing or damaged gives no texture, and so the plain colour:
 // such files are often passed on without their textures.
