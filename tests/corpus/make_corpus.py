@@ -877,6 +877,117 @@ def write_good_without_images():
     m.save("no_image_buffer_view.gltf")
 
 
+def ply_header(encoding, elements, comments=()):
+    """`elements`: name, count and the lines of its properties without the word "property"."""
+    lines = ["ply", f"format {encoding} 1.0", *(f"comment {text}" for text in comments)]
+    for name, count, properties in elements:
+        lines += [f"element {name} {count}", *(f"property {text}" for text in properties)]
+    return "\n".join([*lines, "end_header", ""])
+
+
+XYZ = ["float x", "float y", "float z"]
+RGBA = ["uchar red", "uchar green", "uchar blue", "uchar alpha"]
+CORNERS = "list uchar int vertex_indices"
+SQUARE = "-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n"
+
+
+def write_good_ply():
+    def text(name, elements, body, comments=()):
+        (GOOD / name).write_text(ply_header("ascii", elements, comments) + body)
+
+    # Two triangles that share an edge and not their colour.
+    text(
+        "face_colors.ply",
+        [("vertex", 4, XYZ), ("face", 2, [CORNERS, *RGBA])],
+        SQUARE + "3 0 1 2 255 0 0 128\n3 0 2 3 0 0 255 255\n",
+    )
+    # MeshLab's way of three textures, one of them not there, and a face without one.
+    text(
+        "face_textures.ply",
+        [("vertex", 4, XYZ), ("face", 4, [CORNERS, "list uchar float texcoord", "int texnumber"])],
+        SQUARE
+        + "4 0 1 2 3 8 0 0 1 0 1 1 0 1 0\n3 0 1 2 6 0 0 1 0 1 0.25 1\n3 0 1 2 6 0 0 1 0 1 1 2\n3 0 1 3 0 -1\n",
+        ["made by make_corpus.py", "TextureFile leaf.png", "TextureFile a+b c.png", "TextureFile not there.png"],
+    )
+    text(
+        "corner_colors.ply",
+        [("vertex", 3, XYZ), ("face", 2, [CORNERS, "list uchar float color"])],
+        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 9 1 0 0 0 1 0 0 0 1\n3 0 2 1 9 1 0 0 0 0 1 0 0.5 0\n",
+    )
+    # A cloud in rows and columns, as the Point Cloud Library writes it: places without a measurement are not numbers.
+    points = [(0, 0, 0), (math.nan, math.nan, math.nan), (1, 0, 0), (1, 2, 0)]
+    (GOOD / "points.ply").write_bytes(
+        ply_header("binary_little_endian", [("vertex", 4, XYZ + ["ushort red", "ushort green", "ushort blue"])]).encode()
+        + b"".join(struct.pack("<3f3H", *p, 65535, 0, 32768) for p in points)
+    )
+    splat = ["float nx", "float ny", "float nz", *(f"float f_dc_{i}" for i in range(3)), "float f_rest_0", "float opacity"]
+    splat += [*(f"float scale_{i}" for i in range(3)), *(f"float rot_{i}" for i in range(4))]
+    first = [1.7724538509, 0, -1.7724538509]  # half a unit up and down
+    (GOOD / "splats.ply").write_bytes(
+        ply_header("binary_little_endian", [("vertex", 2, XYZ + splat)]).encode()
+        + struct.pack("<18f", 0, 0, 0, 0, 0, 0, *first, 9, 0, -3, -3, -3, 1, 0, 0, 0)
+        + struct.pack("<18f", 1, 0, 0, 0, 0, 0, *first, 9, 100, -3, -3, -3, 1, 0, 0, 0)
+    )
+    text(
+        "edges.ply",
+        [("vertex", 3, XYZ), ("edge", 2, ["int vertex1", "int vertex2", "uchar red", "uchar green", "uchar blue"])],
+        "0 0 0\n1 0 0\n1 1 0\n0 1 255 0 0\n1 2 0 0 255\n",
+    )
+    # A triangle with a side of a metre, 4649 km from its origin.
+    text(
+        "far_away.ply",
+        [("vertex", 3, ["double x", "double y", "double z"]), ("face", 1, [CORNERS])],
+        "500000.25 4649776.125 10.5\n500001.25 4649776.125 10.5\n500000.25 4649777.125 10.5\n3 0 1 2\n",
+    )
+    # Line ends of Windows, a list counted in 32 bits, properties of no meaning between others, a vertex of no face.
+    header = ply_header(
+        "binary_little_endian",
+        [
+            ("vertex", 5, ["float confidence", *XYZ, "double quality"]),
+            ("range_grid", 1, ["list uint8 int32 vertex_indices"]),
+            ("face", 1, ["uchar flags", "list uint uint vertex_index", "float area"]),
+        ],
+    )
+    (GOOD / "windows.ply").write_bytes(
+        header.replace("\n", "\r\n").encode()
+        + b"".join(struct.pack("<4fd", 0.5, *QUAD[3 * i : 3 * i + 3], 7) for i in range(4))
+        + struct.pack("<4fd", 0.5, 9, 9, 9, 7)
+        + struct.pack("<Bi", 1, 0)
+        + struct.pack("<BI4If", 1, 4, 0, 1, 3, 2, 4)
+    )
+
+
+def write_good_stl(facet, binary):
+    flat = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+    (GOOD / "uppercase.stl").write_text(f"solid a\n{facet(*flat)}endsolid a\n".upper())
+    # Names made of the format's own words, several solids, words in two, normals and corners that are no numbers.
+    (GOOD / "solids.stl").write_bytes(
+        b"\xef\xbb\xbfsolid facet vertex outer loop\r\n"
+        + facet(*flat).replace("endloop", "end loop").replace("endfacet", "end facet").replace("\n", "\r\n").encode()
+        + b"end solid facet vertex\r\nsolid\r\nfacet normal nan -nan(ind) 1\r\nouter loop\r\n"
+        + b"vertex 0 0 +1.0E+00\r\nvertex 1 0 1.\r\nvertex 0 .1e1 1\r\nendloop\r\nendfacet\r\n"
+        + b"facet\r\nouter loop\r\nvertex 0 0 nan\r\nvertex 1 0 0\r\nvertex 0 1 0\r\nendloop\r\nendfacet\r\nendsolid"
+    )
+    (GOOD / "old_mac.stl").write_bytes(f"solid a\n{facet(*flat)}endsolid a\n".replace("\n", "\r").encode())
+    (GOOD / "one_line.stl").write_text(f"solid a {facet(*flat)} endsolid a".replace("\n", " "))
+    (GOOD / "utf16.stl").write_bytes(b"\xff\xfe" + f"solid a\n{facet(*flat)}endsolid a\n".encode("utf-16-le"))
+    far = [(500000.25 + x, 4649776.125 + y, 10.5) for x, y, _ in flat]
+    (GOOD / "far_away.stl").write_text(f"solid a\n{facet(*far)}endsolid a\n")
+    whole = binary(b"counts", [(TRIANGLE, 0), ([v + 2 for v in TRIANGLE], 0)])
+    (GOOD / "count_zero.stl").write_bytes(whole[:80] + struct.pack("<I", 0) + whole[84:])
+    (GOOD / "count_large.stl").write_bytes(whole[:80] + struct.pack("<I", 1000) + whole[84:] + b"\0\0\0")
+    (GOOD / "count_small.stl").write_bytes(whole[:80] + struct.pack("<I", 1) + whole[84:])
+    material = b"COLOR=" + bytes([255, 0, 0, 51]) + b",MATERIAL=" + bytes([0, 0, 255, 255] + [0] * 8)
+    (GOOD / "magics_material.stl").write_bytes(binary(material, [(TRIANGLE, 0x8000)]))
+    # A ridge of five facets with a crease of 30 degrees between neighbours, so that no two meet at more than 45.
+    corners = []
+    for i in range(4):
+        a, b = math.radians(30 * i), math.radians(30 * (i + 1))
+        corners += [((math.cos(a), math.sin(a), 0), (math.cos(b), math.sin(b), 0), (math.cos(b), math.sin(b), 1))]
+        corners += [((math.cos(a), math.sin(a), 0), (math.cos(b), math.sin(b), 1), (math.cos(a), math.sin(a), 1))]
+    (GOOD / "ridge.stl").write_bytes(binary(b"ridge", [([v for p in c for v in p], 0) for c in corners]))
+
+
 def write_good_plain():
     (GOOD / "colors.ply").write_text(
         "ply\nformat ascii 1.0\ncomment made by make_corpus.py\nelement vertex 4\n"
@@ -899,6 +1010,8 @@ def write_good_plain():
         "0 0 0\n4 0 0\n4 4 0\n2 1 0\n0 4 0\n5 0 1 2 3 4\n"
     )
 
+    write_good_ply()
+
     def facet(*corners):
         lines = "".join(f"   vertex {x} {y} {z}\n" for x, y, z in corners)
         return f" facet normal 0 0 0\n  outer loop\n{lines}  endloop\n endfacet\n"
@@ -917,6 +1030,8 @@ def write_good_plain():
         binary(b"COLOR=" + bytes([255, 0, 0, 51]), [(TRIANGLE, 0x8000), ([v + 2 for v in TRIANGLE], 31 << 5)])
     )
     (GOOD / "viscam.stl").write_bytes(binary(b"", [(TRIANGLE, 0x8000 | 31), ([v + 2 for v in TRIANGLE], 0)]))
+
+    write_good_stl(facet, binary)
 
     (GOOD / "box.mtl").write_text(
         "newmtl glass\nKd 1 0.5 0\nd 0.25\nnewmtl cut\\out\nKd 1 1 1\nmap_Kd leaf.png\nnewmtl fog\nKd 0 0 0\nTr 0.75\n"
@@ -1281,14 +1396,14 @@ def write_bad():
         f"{little}{three}element face 1\nproperty list uint int vertex_indices\n",
         struct.pack("<9fI3i", *TRIANGLE, 0xFFFFFFFF, 0, 1, 2),
     )
-    ply("points_only", f"{ascii_format}{three}", corners)
+    ply("packed_splats", f"{little}element vertex 1\nproperty uint packed_position\n", b"\0" * 4)
     ply("type_unknown", f"{ascii_format}element vertex 3\nproperty real x\n", corners)
     ply("no_format", three, corners)
     (BAD / "header_unfinished.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
     (BAD / "not_ply.ply").write_text("solid\n")
 
     header = b"".ljust(80, b" ")
-    (BAD / "facet_count.stl").write_bytes(header + struct.pack("<I", 0xFFFFFFFF) + b"\0" * 50)
+    (BAD / "facet_count.stl").write_bytes(header + struct.pack("<I", 0xFFFFFFFF) + b"\x7f" * 50)
     (BAD / "truncated_binary.stl").write_bytes(header + struct.pack("<I", 2) + b"\0" * 60)
     (BAD / "header_short.stl").write_bytes(header[:60])
     (BAD / "no_facets.stl").write_bytes(header + struct.pack("<I", 0))
@@ -1300,6 +1415,8 @@ def write_bad():
     (BAD / "two_corners.stl").write_text(loop + "endloop\nendfacet\nendsolid\n")
     (BAD / "four_corners.stl").write_text(loop + "vertex 0 1 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid\n")
     (BAD / "not_a_number.stl").write_text(loop + "vertex 0 one 0\nendloop\nendfacet\nendsolid\n")
+    (BAD / "comma.stl").write_text(loop + "vertex 0,5 1,0 0\nendloop\nendfacet\nendsolid\n")
+    (BAD / "facet_in_loop.stl").write_text(loop + "facet\nouter loop\n")
 
     (BAD / "face_range.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n")
     (BAD / "face_before_start.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -9\n")

@@ -1,4 +1,4 @@
-// The values that OBJ, PLY and STL files load to.
+// The values that OBJ files load to, and how polygons are split.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -24,70 +24,6 @@ float area(const Mesh& mesh) {
 }
 
 constexpr float linearHalf = 0.21404114F; // 0.5 on the sRGB curve, in linear light
-
-TEST(LoadPly, ColorsNamedByOneLetterAreSrgbAndTheirAlphaBlends) {
-  const Scene scene = loadGood("colors.ply");
-  const Mesh& mesh = scene.meshes.at(0);
-  ASSERT_EQ(mesh.vertexCount(), 4U);
-  EXPECT_EQ(mesh.indices.size(), 6U) << "the quad becomes two triangles";
-  expectNear(glm::vec3(mesh.vertex(0).color), {1.0F, linearHalf, 0.0F}, kColorTolerance);
-  EXPECT_EQ(mesh.vertex(0).color.a, 1.0F);
-  EXPECT_NEAR(mesh.vertex(1).color.a, 0.2F, kColorTolerance);
-  expectNear(mesh.vertex(2).normal, {0.0F, 0.0F, 1.0F});
-  const Material& material = scene.materials.at(0);
-  EXPECT_EQ(material.alphaMode, AlphaMode::Blend);
-  EXPECT_TRUE(material.doubleSided);
-  EXPECT_EQ(material.metallic, 0.0F);
-  EXPECT_EQ(material.roughness, 0.5F);
-  EXPECT_EQ(material.baseColor, glm::vec4(1.0F));
-}
-
-TEST(LoadPly, BigEndianStripsTurnToTheirNormals) {
-  const Scene scene = loadGood("strips_big_endian.ply");
-  const Mesh& mesh = scene.meshes.at(0);
-  ASSERT_EQ(mesh.indices.size(), 9U) << "two triangles before the restart, one after it";
-  expectNear(mesh.vertex(3).position, {1.0F, 1.0F, 0.0F});
-  expectNear(glm::vec3(mesh.vertex(0).color), {1.0F, 0.50288649F, 0.0F}, kColorTolerance);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(areaVector(mesh, i).z, 0.0F);
-  EXPECT_EQ(scene.materials.at(0).alphaMode, AlphaMode::Opaque);
-}
-
-TEST(LoadPly, ConcavePolygonsAreFilledOnce) {
-  const Scene scene = loadGood("concave.ply");
-  EXPECT_NEAR(area(scene.meshes.at(0)), 10.0F, 1e-4F);
-  expectNear(glm::vec3(scene.materials.at(0).baseColor), glm::vec3(0.8F));
-}
-
-TEST(LoadStl, TextHasNormalsSmoothedOverFlatEdgesOnly) {
-  const Scene scene = loadGood("text.stl");
-  const Mesh& mesh = scene.meshes.at(0);
-  ASSERT_EQ(mesh.indices.size(), 9U);
-  for (std::size_t i = 0; i < 6; ++i) expectNear(mesh.vertex(mesh.indices[i]).normal, {0.0F, 0.0F, 1.0F});
-  for (std::size_t i = 6; i < 9; ++i) expectNear(mesh.vertex(mesh.indices[i]).normal, {0.0F, -1.0F, 0.0F});
-  expectNear(glm::vec3(scene.materials.at(0).baseColor), glm::vec3(0.8F));
-}
-
-TEST(LoadStl, BinaryFilesMayBeginWithSolid) { EXPECT_EQ(loadGood("solid_binary.stl").meshes.at(0).indices.size(), 3U); }
-
-TEST(LoadStl, MagicsColors) {
-  const Scene scene = loadGood("magics.stl");
-  const std::vector<Vertex> vertices = scene.meshes.at(0).vertices();
-  ASSERT_EQ(vertices.size(), 6U);
-  for (const Vertex& vertex : vertices) {
-    expectNear(glm::vec3(vertex.color),
-               vertex.position.z < 1.0F ? glm::vec3(1.0F, 0.0F, 0.0F) : glm::vec3(0.0F, 1.0F, 0.0F));
-    EXPECT_NEAR(vertex.color.a, 0.2F, kColorTolerance);
-  }
-  EXPECT_EQ(scene.materials.at(0).alphaMode, AlphaMode::Blend);
-}
-
-TEST(LoadStl, ViscamColors) {
-  const Scene scene = loadGood("viscam.stl");
-  for (const Vertex& vertex : scene.meshes.at(0).vertices())
-    expectNear(glm::vec3(vertex.color), vertex.position.z < 1.0F ? glm::vec3(0.0F, 0.0F, 1.0F) : glm::vec3(0.8F),
-               kColorTolerance);
-  EXPECT_EQ(scene.materials.at(0).alphaMode, AlphaMode::Opaque);
-}
 
 const Material& materialNamed(const Scene& scene, const std::string& name) {
   const auto found = std::ranges::find(scene.materials, name, &Material::name);

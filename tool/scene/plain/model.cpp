@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "../image_decode.h"
 #include "../load.h"
 #include "../mesh_build.h"
@@ -85,7 +87,8 @@ TextureSlot TextureFiles::read(Scene& scene, std::string name) {
     Image image = decodeImage(readFileBeside(name, base_));
     slot.image = static_cast<std::int32_t>(scene.images.size());
     scene.images.push_back(std::move(image));
-  } catch (const LoadError&) {
+  } catch (const LoadError& error) {
+    warn(scene, fmt::format("the texture {}; surfaces are drawn without it", error.what()));
     slot.image = -1;
   }
   images_.emplace(std::move(name), slot.image);

@@ -1,15 +1,13 @@
-// Loads PLY: text and binary of both byte orders. Vertices may have normals, colours (red, green, blue, alpha; also
-// under the names r g b a and diffuse_red ...) and texture coordinates; faces are polygons or triangle strips. All
-// other elements and properties are skipped.
+// Loads PLY: text and binary of both byte orders, as scanners, photogrammetry and mesh programs write it. Faces are
+// polygons or triangle strips with colours of vertices, faces or corners and with textures; a file without faces is
+// drawn as points, edges as lines.
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <map>
+#include <numeric>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,423 +17,357 @@
 #include "../mesh_build.h"
 #include "../message.h"
 #include "model.h"
+#include "ply_data.h"
 #include "polygon.h"
-#include "text_reader.h"
 
 namespace vitrail::tool {
 namespace {
 
-enum class Type { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
-
-std::size_t sizeOf(Type type) {
-  constexpr std::array<std::size_t, 8> sizes{1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes[static_cast<std::size_t>(type)];
-}
-
-struct Property {
-  std::string name;
-  Type type = Type::Float32;
-  bool isList = false;
-  Type countType = Type::Uint8;
-};
-
-struct Element {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<Property> properties;
-};
-
-enum class Encoding { Text, LittleEndian, BigEndian };
-
-struct Header {
-  Encoding encoding = Encoding::Text;
-  std::vector<Element> elements;
-  std::string texture; // from a TextureFile comment
-  std::size_t bodyOffset = 0;
-};
-
-Type parseType(std::string_view word, const TextLines& lines) {
-  constexpr std::array<std::pair<std::string_view, Type>, 16> types{{{"char", Type::Int8},
-                                                                     {"int8", Type::Int8},
-                                                                     {"uchar", Type::Uint8},
-                                                                     {"uint8", Type::Uint8},
-                                                                     {"short", Type::Int16},
-                                                                     {"int16", Type::Int16},
-                                                                     {"ushort", Type::Uint16},
-                                                                     {"uint16", Type::Uint16},
-                                                                     {"int", Type::Int32},
-                                                                     {"int32", Type::Int32},
-                                                                     {"uint", Type::Uint32},
-                                                                     {"uint32", Type::Uint32},
-                                                                     {"float", Type::Float32},
-                                                                     {"float32", Type::Float32},
-                                                                     {"double", Type::Float64},
-                                                                     {"float64", Type::Float64}}};
-  for (const auto& [name, type] : types)
-    if (word == name) return type;
-  lines.fail(fmt::format("\"{}\" is not a PLY type", oneLine(word)));
-}
-
-Property parseProperty(TextLines& lines) {
-  Property property;
-  std::string_view type = lines.word();
-  if (type == "list") {
-    property.isList = true;
-    property.countType = parseType(lines.word(), lines);
-    if (property.countType >= Type::Float32) lines.fail("a list's length is not an integer");
-    type = lines.word();
+// Linear light of an sRGB colour with alpha. Bytes are looked up; alpha that is not a number is opaque.
+glm::vec4 linearColor(const glm::vec4& srgb) {
+  static const std::array<float, 256> ofByte = [] {
+    std::array<float, 256> table{};
+    for (std::size_t i = 0; i < table.size(); ++i)
+      table[i] = static_cast<float>(linearFromSrgb(static_cast<double>(static_cast<float>(i) / 255.0F)));
+    return table;
+  }();
+  glm::vec4 linear(1.0F);
+  for (int c = 0; c < 3; ++c) {
+    const float value = srgb[c];
+    const float scaled = value * 255.0F;
+    const auto byte = static_cast<std::size_t>(scaled >= 0.0F && scaled <= 255.0F ? scaled + 0.5F : 0.0F);
+    linear[c] = static_cast<float>(byte) / 255.0F == value
+                    ? ofByte[byte]
+                    : static_cast<float>(linearFromSrgb(static_cast<double>(value)));
   }
-  property.type = parseType(type, lines);
-  property.name = lines.word();
-  if (property.name.empty()) lines.fail("a property has no name");
-  return property;
+  if (srgb.a < 1.0F) linear.a = std::max(srgb.a, 0.0F);
+  return linear;
 }
 
-Element parseElement(TextLines& lines) {
-  Element element;
-  element.name = lines.word();
-  const std::string_view count = lines.word();
-  const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), element.count);
-  if (count.empty() || error != std::errc{} || end != count.data() + count.size())
-    lines.fail(fmt::format("\"{}\" is not a count of elements", oneLine(count)));
-  return element;
+std::vector<std::uint64_t> packedColors(std::span<const glm::vec4> srgb) {
+  std::vector<std::uint64_t> colors(srgb.size());
+  std::ranges::transform(srgb, colors.begin(), [](const glm::vec4& color) { return packColor(linearColor(color)); });
+  return colors;
 }
 
-Encoding parseEncoding(TextLines& lines) {
-  const std::string_view name = lines.word();
-  if (name == "ascii") return Encoding::Text;
-  if (name == "binary_little_endian") return Encoding::LittleEndian;
-  if (name == "binary_big_endian") return Encoding::BigEndian;
-  lines.fail(fmt::format("\"{}\" is not a PLY format", oneLine(name)));
+std::vector<glm::vec2> finiteTexCoords(std::vector<glm::vec2> texCoords) {
+  for (glm::vec2& place : texCoords)
+    if (!std::isfinite(place.x) || !std::isfinite(place.y)) place = glm::vec2(0.0F);
+  return texCoords;
 }
 
-Header parseHeader(std::string_view text) {
-  Header header;
-  TextLines lines(text);
-  if (!lines.next() || lines.word() != "ply") throw LoadError("the file does not begin with \"ply\"");
-  bool hasFormat = false;
-  while (lines.next()) {
-    const std::string_view word = lines.word();
-    if (word == "end_header") {
-      if (!hasFormat) throw LoadError("the PLY header states no format");
-      header.bodyOffset = lines.nextLineOffset();
-      return header;
-    }
-    if (word == "format") {
-      header.encoding = parseEncoding(lines);
-      hasFormat = true;
-    } else if (word == "element") {
-      header.elements.push_back(parseElement(lines));
-    } else if (word == "property") {
-      if (header.elements.empty()) lines.fail("a property comes before any element");
-      header.elements.back().properties.push_back(parseProperty(lines));
-    } else if (word == "comment" && lines.word() == "TextureFile") {
-      header.texture = lines.rest();
-    }
-    // Other lines are comments, or what careless writers left there.
-  }
-  throw LoadError("the PLY header does not end");
+bool isDirection(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && v != glm::vec3(0.0F);
 }
 
-// The values of the body, one after the other, whatever their encoding.
-class PlyBody {
+// What a vertex is beside its place: of the file's vertex itself, or of a corner of a face.
+struct Look {
+  glm::vec4 color{1.0F}; // sRGB
+  glm::vec2 texCoord{0.0F};
+
+  bool operator==(const Look&) const = default;
+};
+
+// A triangle's corners as places in PlyData::corners, and the face that it is of.
+struct CornerTriangles {
+  std::vector<std::uint32_t> corners;
+  std::vector<std::uint32_t> faces;
+};
+
+class PlyScene {
  public:
-  PlyBody(std::span<const std::byte> bytes, Encoding encoding) : bytes_(bytes), encoding_(encoding) {}
+  PlyScene(const PlyHeader& header, PlyData data, const std::filesystem::path& base)
+      : header_(header), data_(std::move(data)), textures_(base) {}
 
-  // Throws LoadError where there is no room for `count` things of at least `bytes` bytes each in a binary file, before
-  // memory is taken for them.
-  void require(std::uint64_t count, std::size_t bytes, std::string_view what) const {
-    // In text each takes a character and a separator at least; the last one needs no separator.
-    const std::size_t least = encoding_ == Encoding::Text ? 2 : bytes;
-    if (count > (bytes_.size() - offset_ + 1) / least)
-      throw LoadError(
-          fmt::format("{} {} are stated, but only {} bytes are left", count, oneLine(what), bytes_.size() - offset_));
-  }
-
-  // `where` is called for the message, as in "vertex 7".
-  template <typename Where>
-  double next(Type type, Where where) {
-    if (encoding_ == Encoding::Text) return nextWord(where);
-    const std::size_t size = sizeOf(type);
-    if (bytes_.size() - offset_ < size) throw LoadError(fmt::format("the file ends in {}", where()));
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      const std::size_t place = encoding_ == Encoding::BigEndian ? i : size - 1 - i;
-      bits = (bits << 8U) | std::to_integer<std::uint64_t>(bytes_[offset_ + place]);
-    }
-    offset_ += size;
-    return decode(type, bits);
+  Scene build(const glm::dvec3& origin) {
+    scene_.origin = origin;
+    scene_.file.format = header_.encoding == PlyEncoding::Text ? "PLY (text)" : "PLY (binary)";
+    scene_.file.generator = printable(header_.generator);
+    // Programs write zeros where they have no normals.
+    if (std::ranges::none_of(data_.normals, isDirection)) data_.normals.clear();
+    const bool anyFace = !data_.corners.empty();
+    if (anyFace) addFaces();
+    if (!data_.edges.empty()) addEdges();
+    if (!anyFace && data_.edges.empty()) addPoints();
+    if (scene_.draws.empty() && data_.notFinite > 0)
+      throw LoadError("everything in it has a vertex that is not finite");
+    noteInvisible();
+    return std::move(scene_);
   }
 
  private:
-  static double decode(Type type, std::uint64_t bits) {
-    switch (type) {
-      case Type::Int8:
-        return static_cast<std::int8_t>(bits);
-      case Type::Int16:
-        return static_cast<std::int16_t>(bits);
-      case Type::Int32:
-        return static_cast<std::int32_t>(bits);
-      case Type::Float32:
-        return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
-      case Type::Float64:
-        return std::bit_cast<double>(bits);
-      default:
-        return static_cast<double>(bits);
-    }
-  }
+  bool isFinite(std::uint32_t vertex) const { return !std::isnan(data_.positions[vertex].x); }
 
-  template <typename Where>
-  double nextWord(Where where) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
-    constexpr std::string_view blanks = " \t\r\n";
-    const std::size_t begin = text.find_first_not_of(blanks, offset_);
-    if (begin == std::string_view::npos) throw LoadError(fmt::format("the file ends in {}", where()));
-    const std::size_t end = std::min(text.find_first_of(blanks, begin), text.size());
-    const std::string_view word = text.substr(begin, end - begin);
-    offset_ = end;
-    float value = 0.0F;
-    if (parseWhole(word)) return whole_;
-    if (!parseFloat(word, value))
-      throw LoadError(fmt::format("{}: \"{}\" is not a finite number", where(), oneLine(word)));
-    return static_cast<double>(value);
-  }
+  // --- Faces.
 
-  // Integers are kept exact, where a float would round them.
-  bool parseWhole(std::string_view word) {
-    std::int64_t number = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    whole_ = static_cast<double>(number);
-    return error == std::errc{} && end == word.data() + word.size();
-  }
-
-  std::span<const std::byte> bytes_;
-  Encoding encoding_;
-  std::size_t offset_ = 0;
-  double whole_ = 0.0;
-};
-
-// What a vertex property fills.
-enum class Slot { None, X, Y, Z, NormalX, NormalY, NormalZ, Red, Green, Blue, Alpha, U, V };
-constexpr std::size_t slotCount = 13;
-
-Slot slotOf(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, Slot>, 24> slots{{
-      {"x", Slot::X},
-      {"y", Slot::Y},
-      {"z", Slot::Z},
-      {"nx", Slot::NormalX},
-      {"ny", Slot::NormalY},
-      {"nz", Slot::NormalZ},
-      {"red", Slot::Red},
-      {"green", Slot::Green},
-      {"blue", Slot::Blue},
-      {"alpha", Slot::Alpha},
-      {"r", Slot::Red},
-      {"g", Slot::Green},
-      {"b", Slot::Blue},
-      {"a", Slot::Alpha},
-      {"diffuse_red", Slot::Red},
-      {"diffuse_green", Slot::Green},
-      {"diffuse_blue", Slot::Blue},
-      {"diffuse_alpha", Slot::Alpha},
-      {"u", Slot::U},
-      {"v", Slot::V},
-      {"s", Slot::U},
-      {"t", Slot::V},
-      {"texture_u", Slot::U},
-      {"texture_v", Slot::V},
-  }};
-  for (const auto& [known, slot] : slots)
-    if (name == known) return slot;
-  return Slot::None;
-}
-
-// Integer colours run to their type's largest value, floating ones to 1.
-double colorScale(Type type) {
-  constexpr std::array<double, 8> largest{127.0, 255.0, 32767.0, 65535.0, 2147483647.0, 4294967295.0, 1.0, 1.0};
-  return 1.0 / largest[static_cast<std::size_t>(type)];
-}
-
-// Not a number where a float cannot hold it; what uses it decides what that means.
-float narrowed(double value) {
-  constexpr auto largest = static_cast<double>(std::numeric_limits<float>::max());
-  return std::abs(value) <= largest ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
-}
-
-// Reads the body's elements in the order that the header states.
-class PlyReader {
- public:
-  PlyReader(const Header& header, std::span<const std::byte> body) : header_(header), body_(body, header.encoding) {
-    for (const Element& element : header.elements)
-      if (element.name == "vertex") vertexCount_ += element.count;
-    if (vertexCount_ == 0) throw LoadError("the PLY file has no vertices");
-    if (vertexCount_ > mostVertices) throw LoadError(fmt::format("{} vertices are too many", vertexCount_));
-  }
-
-  Mesh read() {
-    for (const Element& element : header_.elements) {
-      std::size_t least = 0;
-      for (const Property& property : element.properties)
-        least += sizeOf(property.isList ? property.countType : property.type);
-      body_.require(element.count, std::max<std::size_t>(least, 1), "elements named " + element.name);
-      if (element.name == "vertex")
-        readVertices(element);
+  // What faces need of their corners, and of the file's textures. Textures hide colours: the programs that write both
+  // take the one for the likeness of the other.
+  void chooseLooks() {
+    const bool anyTexCoords = !data_.cornerTexCoords.empty() || !data_.texCoords.empty();
+    for (const std::string& name : header_.textures) {
+      if (anyTexCoords)
+        slots_.push_back(textures_.read(scene_, name));
       else
-        readLists(element);
+        warn(scene_,
+             fmt::format("TextureFile {}: is not drawn, since the file has no texture coordinates", oneLine(name)));
     }
-    std::size_t begin = 0;
-    for (const std::uint32_t size : polygonSizes_) {
-      addPolygon(std::span(corners_).subspan(begin, size), mesh_.positions, mesh_.indices);
-      begin += size;
-    }
-    return std::move(mesh_);
+    textured_ = std::ranges::any_of(slots_, [](const TextureSlot& slot) { return slot.image >= 0; });
+    const bool anyColors = !data_.colors.empty() || !data_.faceColors.empty() || !data_.cornerColors.empty();
+    if (textured_ && anyColors) warn(scene_, "the colours of vertices and faces are not drawn: the texture is");
+    vertexColors_ = !textured_ && !data_.colors.empty();
+    cornerColors_ = !textured_ && !vertexColors_ && !data_.cornerColors.empty();
+    faceColors_ = !textured_ && !vertexColors_ && !cornerColors_ && !data_.faceColors.empty();
+    if (vertexColors_ && (!data_.faceColors.empty() || !data_.cornerColors.empty()))
+      warn(scene_, "the colours of faces are not drawn: those of vertices are");
+    cornerTexCoords_ = textured_ && !data_.cornerTexCoords.empty();
+    if (data_.oddTexCoords > 0)
+      warn(scene_,
+           fmt::format("passed over, since they do not have two numbers a corner: the texcoord lists of {} of {} faces",
+                       data_.oddTexCoords, data_.faceCount));
   }
 
-  std::vector<glm::vec3> normals() { return std::move(normals_); }
-  bool hasNormals() const { return has(Slot::NormalX) && has(Slot::NormalY) && has(Slot::NormalZ); }
-  bool hasColors() const { return has(Slot::Red) && has(Slot::Green) && has(Slot::Blue); }
-  bool hasTexCoords() const { return has(Slot::U) && has(Slot::V); }
+  Look lookOf(std::uint32_t corner, std::uint32_t face) const {
+    const std::uint32_t vertex = data_.corners[corner];
+    Look look;
+    if (vertexColors_) look.color = data_.colors[vertex];
+    if (cornerColors_) look.color = data_.cornerColors[corner];
+    if (faceColors_) look.color = data_.faceColors[face];
+    if (cornerTexCoords_)
+      look.texCoord = data_.cornerTexCoords[corner];
+    else if (textured_)
+      look.texCoord = data_.texCoords[vertex];
+    return look;
+  }
 
- private:
-  static constexpr std::uint64_t mostVertices = 0xfffffffe;
-
-  bool has(Slot slot) const { return present_[static_cast<std::size_t>(slot)]; }
-
-  // Reads one property and gives each of its values, of a list or alone, to `take`.
-  template <typename Take, typename Where>
-  void readValues(const Property& property, Take take, Where where) {
-    if (!property.isList) {
-      take(body_.next(property.type, where));
+  void addFaces() {
+    chooseLooks();
+    const bool severalTextures = textured_ && slots_.size() > 1 && !data_.faceTextures.empty();
+    const bool shared = !cornerColors_ && !faceColors_ && !cornerTexCoords_ && !severalTextures;
+    if (shared && data_.sizes.empty() && data_.notFinite == 0) {
+      addSharedVertices(std::move(data_.corners));
       return;
     }
-    const double length = body_.next(property.countType, where);
-    if (!(length >= 0.0 && length <= 4294967295.0) || length != std::floor(length))
-      throw LoadError(fmt::format("{}: a list has the length {}", where(), length));
-    const auto count = static_cast<std::uint64_t>(length);
-    body_.require(count, sizeOf(property.type), "list values");
-    for (std::uint64_t i = 0; i < count; ++i) take(body_.next(property.type, where));
-  }
-
-  void readVertices(const Element& element) {
-    std::vector<Slot> slots;
-    for (const Property& property : element.properties) {
-      slots.push_back(property.isList ? Slot::None : slotOf(property.name));
-      present_[static_cast<std::size_t>(slots.back())] = true;
+    CornerTriangles triangles = splitFaces();
+    if (shared) {
+      for (std::uint32_t& corner : triangles.corners) corner = data_.corners[corner];
+      addSharedVertices(std::move(triangles.corners));
+      return;
     }
-    if (!has(Slot::X) || !has(Slot::Y) || !has(Slot::Z)) throw LoadError("the PLY vertices have no x, y and z");
-    mesh_.positions.reserve(static_cast<std::size_t>(element.count));
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      const auto where = [i] { return fmt::format("vertex {}", i); };
-      std::array<double, slotCount> values{};
-      values[static_cast<std::size_t>(Slot::Alpha)] = 1.0;
-      for (std::size_t p = 0; p < slots.size(); ++p) {
-        const Property& property = element.properties[p];
-        const bool color = slots[p] >= Slot::Red && slots[p] <= Slot::Alpha;
-        const double scale = color ? colorScale(property.type) : 1.0;
-        readValues(
-            property, [&](double value) { values[static_cast<std::size_t>(slots[p])] = value * scale; }, where);
+    if (data_.normals.empty()) makeVertexNormals(triangles);
+    std::map<std::int32_t, CornerTriangles> groups; // by texture
+    if (severalTextures) {
+      for (std::size_t i = 0; i < triangles.faces.size(); ++i) {
+        CornerTriangles& group = groups[textureOf(triangles.faces[i])];
+        group.faces.push_back(triangles.faces[i]);
+        for (std::size_t c = 0; c < 3; ++c) group.corners.push_back(triangles.corners[3 * i + c]);
       }
-      addVertex(values, where);
+    } else {
+      groups[slots_.empty() ? -1 : 0] = std::move(triangles);
     }
+    for (const auto& [texture, group] : groups) addSplitVertices(group, texture);
   }
 
-  template <typename Where>
-  void addVertex(const std::array<double, slotCount>& values, Where where) {
-    const auto value = [&values](Slot slot) { return narrowed(values[static_cast<std::size_t>(slot)]); };
-    Vertex vertex;
-    vertex.position = {value(Slot::X), value(Slot::Y), value(Slot::Z)};
-    for (int c = 0; c < 3; ++c)
-      if (!std::isfinite(vertex.position[c])) throw LoadError(fmt::format("{}: its position is not finite", where()));
-    if (hasNormals()) vertex.normal = {value(Slot::NormalX), value(Slot::NormalY), value(Slot::NormalZ)};
-    if (hasColors()) vertex.color = {linearFromSrgb({value(Slot::Red), value(Slot::Green), value(Slot::Blue)}), 1.0F};
-    // Written so that what is not a number leaves the vertex opaque.
-    const float alpha = value(Slot::Alpha);
-    if (alpha < 1.0F) vertex.color.a = std::max(alpha, 0.0F);
-    // v grows upwards in these files and downwards in glTF.
-    const glm::vec2 uv(value(Slot::U), 1.0F - value(Slot::V));
-    if (std::isfinite(uv.x) && std::isfinite(uv.y)) vertex.texCoord0 = uv;
-    normals_.push_back(vertex.normal);
-    vertex.normal = Vertex{}.normal;
-    mesh_.add(vertex);
+  // -1: none.
+  std::int32_t textureOf(std::uint32_t face) const {
+    const std::int32_t number = data_.faceTextures[face];
+    return number >= 0 && static_cast<std::size_t>(number) < slots_.size() ? number : -1;
   }
 
-  // Faces, triangle strips, and elements that are of no interest.
-  void readLists(const Element& element) {
-    const bool face = element.name == "face";
-    const bool strips = element.name == "tristrips";
-    std::vector<double> list;
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      const auto where = [&element, i] { return fmt::format("{} {}", oneLine(element.name), i); };
-      for (const Property& property : element.properties) {
-        const bool indices = property.isList && (property.name == "vertex_indices" || property.name == "vertex_index");
-        list.clear();
-        readValues(
-            property,
-            [&](double value) {
-              if (indices) list.push_back(value);
-            },
-            where);
-        if (indices && face) addFace(list, where);
-        if (indices && strips) addStrips(list, where);
+  // Splits faces into triangles, and leaves out those with a corner that is not finite.
+  CornerTriangles splitFaces() {
+    CornerTriangles triangles;
+    triangles.corners.reserve(data_.corners.size());
+    triangles.faces.reserve(data_.faceCount);
+    std::vector<glm::vec3> outline;
+    std::vector<std::uint32_t> order;
+    std::vector<std::uint32_t> pieces;
+    std::size_t left = 0;
+    std::uint32_t begin = 0;
+    for (std::uint32_t face = 0; face < data_.faceCount; ++face) {
+      const std::uint32_t size = data_.sizes.empty() ? 3 : data_.sizes[face];
+      const auto corners = std::span(data_.corners).subspan(begin, size);
+      if (data_.notFinite > 0 && !std::ranges::all_of(corners, [&](std::uint32_t i) { return isFinite(i); })) {
+        ++left;
+      } else if (size == 3) {
+        triangles.corners.insert(triangles.corners.end(), {begin, begin + 1, begin + 2});
+        triangles.faces.push_back(face);
+      } else if (size > 3) {
+        outline.resize(size);
+        order.resize(size);
+        pieces.clear();
+        for (std::uint32_t i = 0; i < size; ++i) {
+          outline[i] = data_.positions[corners[i]];
+          order[i] = i;
+        }
+        addPolygon(order, outline, pieces);
+        for (const std::uint32_t piece : pieces) triangles.corners.push_back(begin + piece);
+        triangles.faces.insert(triangles.faces.end(), pieces.size() / 3, face);
+      }
+      begin += size;
+    }
+    if (left > 0)
+      warn(scene_, fmt::format("left out, since a vertex is not finite: {} of {} faces", left, data_.faceCount));
+    return triangles;
+  }
+
+  // The file's vertices as they are, and not again what of them later steps do not need.
+  void addSharedVertices(std::vector<std::uint32_t> indices) {
+    Mesh mesh;
+    mesh.indices = std::move(indices);
+    mesh.positions = data_.edges.empty() ? std::move(data_.positions) : data_.positions;
+    if (vertexColors_) mesh.colors = packedColors(data_.colors);
+    if (textured_ && !data_.texCoords.empty()) mesh.texCoords0 = finiteTexCoords(std::move(data_.texCoords));
+    const NormalsFrom normals = data_.normals.empty() ? NormalsFrom::SharedCorners : NormalsFrom::File;
+    addPlainMesh(scene_, std::move(mesh), normals, material(0), std::move(data_.normals));
+  }
+
+  // Before vertices are split, so that faces of two colours still share their normals.
+  void makeVertexNormals(const CornerTriangles& triangles) {
+    Mesh mesh;
+    mesh.positions = data_.positions;
+    for (const std::uint32_t corner : triangles.corners) mesh.indices.push_back(data_.corners[corner]);
+    makeSmoothNormals(mesh);
+    for (const std::uint32_t normal : mesh.normals) data_.normals.push_back(unpackDirection(normal));
+  }
+
+  // A vertex for each look that a vertex of the file has in the faces around it.
+  void addSplitVertices(const CornerTriangles& triangles, std::int32_t texture) {
+    constexpr std::uint32_t none = 0xffffffff;
+    constexpr int mostCompared = 32; // what a hostile file makes of it stays linear
+    std::vector<std::uint32_t> newest(data_.positions.size(), none);
+    std::vector<std::uint32_t> older; // of the mesh's vertices: the one before of the same vertex of the file
+    std::vector<Look> looks;
+    std::vector<glm::vec3> normals;
+    Mesh mesh;
+    for (std::size_t i = 0; i < triangles.corners.size(); ++i) {
+      const std::uint32_t corner = triangles.corners[i];
+      const std::uint32_t vertex = data_.corners[corner];
+      const Look look = lookOf(corner, triangles.faces[i / 3]);
+      std::uint32_t found = newest[vertex];
+      for (int n = 0; found != none && looks[found] != look; ++n) found = n < mostCompared ? older[found] : none;
+      if (found == none) {
+        found = static_cast<std::uint32_t>(looks.size());
+        older.push_back(newest[vertex]);
+        newest[vertex] = found;
+        looks.push_back(look);
+        normals.push_back(data_.normals[vertex]);
+        mesh.positions.push_back(data_.positions[vertex]);
+        if (colored()) mesh.colors.push_back(packColor(linearColor(look.color)));
+        if (textured_) mesh.texCoords0.push_back(look.texCoord);
+      }
+      mesh.indices.push_back(found);
+    }
+    if (textured_) mesh.texCoords0 = finiteTexCoords(std::move(mesh.texCoords0));
+    addPlainMesh(scene_, std::move(mesh), NormalsFrom::File, material(texture), std::move(normals));
+  }
+
+  bool colored() const { return vertexColors_ || cornerColors_ || faceColors_; }
+
+  Material material(std::int32_t texture) const {
+    TextureSlot slot;
+    if (texture >= 0 && static_cast<std::size_t>(texture) < slots_.size())
+      slot = slots_[static_cast<std::size_t>(texture)];
+    Material result = plainMaterial(colored() || slot.image >= 0);
+    result.baseColorTexture = slot;
+    return result;
+  }
+
+  // --- Edges and points.
+
+  void addEdges() {
+    vertexColors_ = !data_.colors.empty();
+    Mesh mesh;
+    mesh.primitive = Primitive::Lines;
+    const bool own = !data_.edgeColors.empty();
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < data_.edges.size(); i += 2) {
+      if (!isFinite(data_.edges[i]) || !isFinite(data_.edges[i + 1])) {
+        ++left;
+        continue;
+      }
+      for (std::size_t c = 0; c < 2; ++c) {
+        const std::uint32_t vertex = data_.edges[i + c];
+        mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+        mesh.positions.push_back(data_.positions[vertex]);
+        if (own || vertexColors_)
+          mesh.colors.push_back(packColor(linearColor(own ? data_.edgeColors[i / 2] : data_.colors[vertex])));
       }
     }
+    if (left > 0)
+      warn(scene_, fmt::format("left out, since an end is not finite: {} of {} edges", left, data_.edges.size() / 2));
+    addUnlitMesh(scene_, std::move(mesh), plainMaterial(own || vertexColors_));
   }
 
-  template <typename Where>
-  std::uint32_t vertexIndex(double value, Where where) const {
-    if (!(value >= 0.0 && value < static_cast<double>(vertexCount_)) || value != std::floor(value))
-      throw LoadError(fmt::format("{}: names vertex {}, but there are {}", where(), value, vertexCount_));
-    return static_cast<std::uint32_t>(value);
+  void addPoints() {
+    vertexColors_ = !data_.colors.empty();
+    if (data_.splats)
+      warn(scene_,
+           "the vertices are Gaussian splats: their centres are drawn as points in their first colour; their extent "
+           "(scale, rot) and what depends on the view (f_rest) are not drawn");
+    if (data_.notFinite > 0)
+      warn(scene_, fmt::format("left out, since they are not finite: {} of {} points", data_.notFinite,
+                               data_.positions.size()));
+    Mesh mesh;
+    mesh.primitive = Primitive::Points;
+    if (data_.notFinite > 0) keepFinitePoints();
+    mesh.positions = std::move(data_.positions);
+    if (vertexColors_) mesh.colors = packedColors(data_.colors);
+    for (const glm::vec3& normal : data_.normals)
+      mesh.normals.push_back(packDirection(isDirection(normal) ? glm::vec3(glm::normalize(glm::dvec3(normal)))
+                                                               : glm::vec3(0.0F, 0.0F, 1.0F)));
+    mesh.indices.resize(mesh.positions.size());
+    std::iota(mesh.indices.begin(), mesh.indices.end(), 0U);
+    addUnlitMesh(scene_, std::move(mesh), plainMaterial(vertexColors_));
   }
 
-  template <typename Where>
-  void addFace(std::span<const double> list, Where where) {
-    for (const double value : list) corners_.push_back(vertexIndex(value, where));
-    polygonSizes_.push_back(static_cast<std::uint32_t>(list.size()));
+  void keepFinitePoints() {
+    std::size_t kept = 0;
+    for (std::uint32_t i = 0; i < data_.positions.size(); ++i) {
+      if (!isFinite(i)) continue;
+      data_.positions[kept] = data_.positions[i];
+      if (!data_.colors.empty()) data_.colors[kept] = data_.colors[i];
+      if (!data_.normals.empty()) data_.normals[kept] = data_.normals[i];
+      ++kept;
+    }
+    data_.positions.resize(kept);
+    if (!data_.colors.empty()) data_.colors.resize(kept);
+    if (!data_.normals.empty()) data_.normals.resize(kept);
   }
 
-  // -1 ends a strip and begins the next one.
-  template <typename Where>
-  void addStrips(std::span<const double> list, Where where) {
-    std::vector<std::uint32_t> strip;
-    const auto finish = [&] {
-      const std::vector<std::uint32_t> triangles = triangleList(strip, Topology::Strip);
-      mesh_.indices.insert(mesh_.indices.end(), triangles.begin(), triangles.end());
-      strip.clear();
+  void noteInvisible() {
+    const auto invisible = [](const Mesh& mesh) {
+      return !mesh.colors.empty() &&
+             std::ranges::all_of(mesh.colors, [](std::uint64_t color) { return unpackColor(color).a <= 0.0F; });
     };
-    for (const double value : list) {
-      if (value == -1.0)
-        finish();
-      else
-        strip.push_back(vertexIndex(value, where));
-    }
-    finish();
+    if (!scene_.meshes.empty() && std::ranges::all_of(scene_.meshes, invisible))
+      warn(scene_, "every colour has alpha 0: nothing of the model is seen");
   }
 
-  const Header& header_;
-  PlyBody body_;
-  std::uint64_t vertexCount_ = 0;
-  std::array<bool, slotCount> present_{};
-  Mesh mesh_;
-  std::vector<glm::vec3> normals_;     // of the vertices
-  std::vector<std::uint32_t> corners_; // of all polygons, one after the other
-  std::vector<std::uint32_t> polygonSizes_;
+  const PlyHeader& header_;
+  PlyData data_;
+  TextureFiles textures_;
+  Scene scene_;
+  std::vector<TextureSlot> slots_; // of the header's textures; an image of -1: it could not be read
+  bool textured_ = false;
+  bool vertexColors_ = false;
+  bool cornerColors_ = false;
+  bool faceColors_ = false;
+  bool cornerTexCoords_ = false;
 };
 
 } // namespace
 
 Scene loadPly(std::span<const std::byte> file, const std::filesystem::path& base) {
-  const Header header = parseHeader({reinterpret_cast<const char*>(file.data()), file.size()});
-  PlyReader reader(header, file.subspan(header.bodyOffset));
-  Mesh mesh = reader.read();
-  Scene scene;
-  TextureSlot texture;
-  if (!header.texture.empty() && reader.hasTexCoords()) texture = TextureFiles(base).read(scene, header.texture);
-  Material material = plainMaterial(reader.hasColors() || texture.image >= 0);
-  material.baseColorTexture = texture;
-  addPlainMesh(scene, std::move(mesh), reader.hasNormals() ? NormalsFrom::File : NormalsFrom::SharedCorners,
-               std::move(material), reader.normals());
+  const PlyHeader header = parsePlyHeader({reinterpret_cast<const char*>(file.data()), file.size()});
+  const std::span<const std::byte> body = file.subspan(header.bodyOffset);
+  PlyData data = readPlyBody(header, body, glm::dvec3(0.0));
+  // Few models are far away; those are read a second time rather than all kept in double precision.
+  const glm::dvec3 origin = data.bounds.origin();
+  if (origin != glm::dvec3(0.0)) {
+    data = {};
+    data = readPlyBody(header, body, origin);
+  }
+  Scene scene = PlyScene(header, std::move(data), base).build(origin);
   requireDrawable(scene);
   return scene;
 }

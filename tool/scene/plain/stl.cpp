@@ -1,11 +1,12 @@
 // Loads STL, text and binary, with the colours that two binary dialects keep in a facet's 16 spare bits: Materialise
-// Magics (a header with "COLOR=") and VisCAM. Facet normals are made from the corners, since what files state is often
-// zero or wrong.
+// Magics (a header with "COLOR=" or "MATERIAL=") and VisCAM. Normals are made from the corners, since what files state
+// is often zero or wrong.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -15,8 +16,11 @@
 #include "../bytes.h"
 #include "../load.h"
 #include "../mesh_build.h"
+#include "../threads.h"
+#include "letters.h"
 #include "model.h"
-#include "text_reader.h"
+#include "stl_facets.h"
+#include "text_encoding.h"
 
 namespace vitrail::tool {
 namespace {
@@ -24,17 +28,7 @@ namespace {
 constexpr std::size_t headerBytes = 80;
 constexpr std::size_t facetsBegin = headerBytes + 4;
 constexpr std::size_t facetBytes = 50; // normal, 3 corners, 16 spare bits
-
-void addCorner(Mesh& mesh, const glm::vec3& position, const glm::vec4& color) {
-  for (int c = 0; c < 3; ++c)
-    if (!std::isfinite(position[c]))
-      throw LoadError(fmt::format("facet {}: a corner is not finite", mesh.vertexCount() / 3));
-  Vertex vertex;
-  vertex.position = position;
-  vertex.color = color;
-  mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertexCount()));
-  mesh.add(vertex);
-}
+constexpr std::size_t mostFacets = 0xfffffffe / 3;
 
 glm::vec4 fiveBitColor(std::uint32_t r, std::uint32_t g, std::uint32_t b, float alpha) {
   const glm::vec3 srgb =
@@ -47,104 +41,174 @@ class FacetColors {
  public:
   explicit FacetColors(std::span<const std::byte> file) {
     const std::string_view header(reinterpret_cast<const char*>(file.data()), headerBytes);
-    constexpr std::string_view tag = "COLOR=";
+    // A material's first colour is preferred to the plain one; it has no transparency of its own.
+    magics_ = readColor(file, header, "COLOR=", default_);
+    glm::vec4 diffuse = default_;
+    if (readColor(file, header, "MATERIAL=", diffuse)) {
+      default_ = glm::vec4(glm::vec3(diffuse), magics_ ? default_.a : 1.0F);
+      magics_ = true;
+    }
+  }
+
+  // What tells the colours of facets apart, and 0 where the spare bits mean nothing.
+  std::uint32_t tagOf(std::uint32_t bits) const {
+    const bool marked = (bits & 0x8000U) != 0;
+    if (magics_) return marked ? 0x8000U : bits;
+    return marked ? bits : 0;
+  }
+
+  glm::vec4 of(std::uint32_t tag) const {
+    const bool marked = (tag & 0x8000U) != 0;
+    if (magics_) return marked ? default_ : fiveBitColor(tag, tag >> 5U, tag >> 10U, default_.a);
+    return marked ? fiveBitColor(tag >> 10U, tag >> 5U, tag, 1.0F) : default_;
+  }
+
+  // Whether colours are stated where facets have these tags.
+  bool any(const std::vector<Welder::Key>& keys) const {
+    return magics_ || std::ranges::any_of(keys, [](const Welder::Key& key) { return key.tag != 0; });
+  }
+
+ private:
+  static bool readColor(std::span<const std::byte> file, std::string_view header, std::string_view tag,
+                        glm::vec4& color) {
     const std::size_t found = header.find(tag);
-    magics_ = found != std::string_view::npos && found + tag.size() + 4 <= headerBytes;
-    if (!magics_) return;
+    if (found == std::string_view::npos || found + tag.size() + 4 > headerBytes) return false;
     glm::vec4 rgba;
     for (std::size_t c = 0; c < 4; ++c)
       rgba[static_cast<int>(c)] =
           static_cast<float>(std::to_integer<std::uint32_t>(file[found + tag.size() + c])) / 255.0F;
-    default_ = glm::vec4(linearFromSrgb(glm::vec3(rgba)), rgba.a);
-    any_ = true;
+    color = glm::vec4(linearFromSrgb(glm::vec3(rgba)), rgba.a);
+    return true;
   }
 
-  glm::vec4 of(std::uint32_t bits) {
-    const bool marked = (bits & 0x8000U) != 0;
-    if (magics_) return marked ? default_ : fiveBitColor(bits, bits >> 5U, bits >> 10U, default_.a);
-    if (!marked) return default_;
-    any_ = true;
-    return fiveBitColor(bits >> 10U, bits >> 5U, bits, 1.0F);
-  }
-
-  // Whether any colour was stated so far.
-  bool any() const { return any_; }
-
- private:
   glm::vec4 default_{0.8F, 0.8F, 0.8F, 1.0F}; // what a file without colours looks like
   bool magics_ = false;
-  bool any_ = false;
 };
 
-Scene loadBinary(std::span<const std::byte> file, std::uint32_t facets) {
-  FacetColors colors(file);
-  Mesh mesh;
-  mesh.positions.reserve(std::size_t{3} * facets);
-  mesh.indices.reserve(std::size_t{3} * facets);
-  for (std::size_t i = 0; i < facets; ++i) {
-    const std::size_t begin = facetsBegin + i * facetBytes;
-    const glm::vec4 color = colors.of(littleEndian(file, begin + 48, 2));
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      glm::vec3 position;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::uint32_t bits = littleEndian(file, begin + 12 + corner * 12 + c * 4, 4);
-        std::memcpy(&position[static_cast<int>(c)], &bits, sizeof bits);
-      }
-      addCorner(mesh, position, color);
-    }
+// --- Binary files.
+
+glm::dvec3 placeAt(std::span<const std::byte> file, std::size_t begin) {
+  glm::dvec3 place;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::uint32_t bits = littleEndian(file, begin + c * 4, 4);
+    float value = 0.0F;
+    std::memcpy(&value, &bits, sizeof bits);
+    place[static_cast<int>(c)] = static_cast<double>(value);
   }
-  if (!colors.any()) mesh.colors.clear();
-  Scene scene;
-  addPlainMesh(scene, std::move(mesh), NormalsFrom::Places, plainMaterial(colors.any()));
-  return scene;
+  return place;
 }
 
-Scene loadText(std::string_view text) {
-  Mesh mesh;
-  TextLines lines(text);
-  std::size_t corners = 0; // of the loop that is open
-  bool inLoop = false;
-  while (lines.next()) {
-    const std::string_view word = lines.word();
-    if (word == "outer") {
-      inLoop = true;
-      corners = 0;
-    } else if (word == "vertex") {
-      if (!inLoop) lines.fail("a vertex stands outside of a loop");
-      if (++corners > 3) lines.fail("a loop has more than 3 vertices");
-      glm::vec3 position;
-      for (int c = 0; c < 3; ++c) position[c] = lines.number();
-      addCorner(mesh, position, glm::vec4(1.0F));
-    } else if (word == "endloop") {
-      if (!inLoop || corners != 3) lines.fail("a loop ends without 3 vertices");
-      inLoop = false;
+StlFacets readBinaryStl(std::span<const std::byte> file, std::size_t facets, const FacetColors& colors,
+                        const glm::dvec3& origin) {
+  constexpr std::size_t leastFacets = 20'000;
+  const std::size_t count = partsFor(facets, leastFacets);
+  std::vector<StlFacets> parts(count);
+  inParts(count, [&](std::size_t part) {
+    const std::size_t first = facets * part / count;
+    const std::size_t last = facets * (part + 1) / count;
+    parts[part].indices.reserve(3 * (last - first));
+    for (std::size_t i = first; i < last; ++i) {
+      const std::size_t begin = facetsBegin + i * facetBytes;
+      parts[part].add({placeAt(file, begin + 12), placeAt(file, begin + 24), placeAt(file, begin + 36)}, origin,
+                      colors.tagOf(littleEndian(file, begin + 48, 2)));
     }
+  });
+  for (std::size_t part = 1; part < count; ++part) parts[0].append(std::move(parts[part]));
+  return std::move(parts[0]);
+}
+
+// How many facets are read. Exporters leave counts behind that are zero or too large; what the file has room for is
+// then taken, if it looks like facets.
+std::size_t facetCount(std::span<const std::byte> file, Scene& scene) {
+  const std::size_t stated = littleEndian(file, headerBytes, 4);
+  const std::size_t room = (file.size() - facetsBegin) / facetBytes;
+  if (stated > 0 && stated <= room) {
+    if (room > stated)
+      warn(scene, fmt::format("the STL header states {} facets, but the file has room for {}: the others are left out",
+                              stated, room));
+    return stated;
   }
-  if (inLoop) lines.fail("the file ends inside a loop");
-  Scene scene;
-  addPlainMesh(scene, std::move(mesh), NormalsFrom::Places, plainMaterial(false));
-  return scene;
+  constexpr double farthest = 1e15;
+  bool sound = room > 0 && room <= mostFacets;
+  for (std::size_t i = 0; sound && i < room; ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const glm::dvec3 place = glm::abs(placeAt(file, facetsBegin + i * facetBytes + 12 + 12 * c));
+      sound = sound && place.x <= farthest && place.y <= farthest && place.z <= farthest;
+    }
+  if (!sound && stated > 0)
+    throw LoadError(fmt::format("the STL header states {} facets, but the file has room for {}", stated, room));
+  if (sound)
+    warn(scene,
+         fmt::format("the STL header states {} facets, but the file has room for {}: those are drawn", stated, room));
+  return sound ? room : 0;
+}
+
+// --- Either kind.
+
+void addFacets(Scene& scene, StlFacets facets, const FacetColors* colors) {
+  if (facets.notFinite > 0)
+    warn(scene, fmt::format("left out, since a corner is not finite: {} of {} facets", facets.notFinite,
+                            facets.notFinite + facets.indices.size() / 3));
+  if (facets.notFinite > 0 && facets.indices.empty()) throw LoadError("every facet has a corner that is not finite");
+  Mesh mesh;
+  mesh.indices = std::move(facets.indices);
+  const std::vector<Welder::Key> keys = facets.vertices.take();
+  const bool colored = colors != nullptr && colors->any(keys);
+  mesh.positions.reserve(keys.size());
+  for (const Welder::Key& key : keys) mesh.positions.push_back(key.position);
+  if (colored)
+    for (const Welder::Key& key : keys) mesh.colors.push_back(packColor(colors->of(key.tag)));
+  addPlainMesh(scene, std::move(mesh), NormalsFrom::Places, plainMaterial(colored));
+}
+
+// Reads with `read(origin)`: models that turn out to be far from their origin a second time, relative to their middle.
+template <typename Read>
+StlFacets readCentred(Scene& scene, Read read) {
+  StlFacets facets = read(glm::dvec3(0.0));
+  scene.origin = facets.bounds.origin();
+  if (scene.origin == glm::dvec3(0.0)) return facets;
+  facets = StlFacets();
+  return read(scene.origin);
+}
+
+void addBinaryStl(Scene& scene, std::span<const std::byte> file) {
+  scene.file.format = "STL (binary)";
+  if (file.size() < facetsBegin)
+    throw LoadError(fmt::format("the file ends after {} bytes, in the STL header", file.size()));
+  const FacetColors colors(file);
+  const std::size_t count = facetCount(file, scene);
+  addFacets(scene,
+            readCentred(scene, [&](const glm::dvec3& origin) { return readBinaryStl(file, count, colors, origin); }),
+            &colors);
+}
+
+// Binary files may begin with "solid" as well, and text files without: bytes that no text holds tell, since a binary
+// file has zeros in its count or its normals.
+bool isStlText(std::string_view text) {
+  const std::string start = lowerCase(text.substr(0, 1024));
+  if (start.find('\0') != std::string::npos) return false;
+  const std::size_t begin = start.find_first_not_of(" \t\r\n");
+  return begin != std::string::npos &&
+         (start.compare(begin, 5, "solid") == 0 || start.find("facet") != std::string::npos);
+}
+
+// False: the file is no text.
+bool addTextStl(Scene& scene, std::span<const std::byte> file) {
+  const PlainText plain(file);
+  const std::string_view text = plain.view();
+  if (!isStlText(text)) return false;
+  scene.file.format = "STL (text)";
+  addFacets(scene, readCentred(scene, [&](const glm::dvec3& origin) { return readStlText(text, origin); }), nullptr);
+  return true;
 }
 
 } // namespace
 
 Scene loadStl(std::span<const std::byte> file) {
-  const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
-  const bool headed = file.size() >= facetsBegin;
-  const std::uint32_t facets = headed ? littleEndian(file, headerBytes, 4) : 0;
-  const std::size_t room = headed ? (file.size() - facetsBegin) / facetBytes : 0;
-  // Binary files may begin with "solid" as well: the size tells.
-  const bool exact = headed && facetsBegin + std::size_t{facets} * facetBytes == file.size();
-  const std::size_t start = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+  const bool exact = file.size() >= facetsBegin &&
+                     facetsBegin + std::size_t{littleEndian(file, headerBytes, 4)} * facetBytes == file.size();
   Scene scene;
-  if (!exact && text.substr(start).starts_with("solid")) {
-    scene = loadText(text);
-  } else {
-    if (!headed) throw LoadError(fmt::format("the file ends after {} bytes, in the STL header", file.size()));
-    if (facets > room)
-      throw LoadError(fmt::format("the STL header states {} facets, but the file has room for {}", facets, room));
-    scene = loadBinary(file, facets);
-  }
+  if (exact || !addTextStl(scene, file)) addBinaryStl(scene, file);
   requireDrawable(scene);
   return scene;
 }

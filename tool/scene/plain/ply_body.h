@@ -1,0 +1,129 @@
+// Reads the values of a PLY file's elements, whatever their encoding.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "ply_header.h"
+
+namespace vitrail::tool {
+
+// What a single value of an element is, by the names that programs give it.
+enum class PlySlot {
+  None,
+  X,
+  Y,
+  Z,
+  NormalX,
+  NormalY,
+  NormalZ,
+  Red,
+  Green,
+  Blue,
+  Alpha,
+  U,
+  V, // of vertices; colours of faces and edges, too
+  SplatRed,
+  SplatGreen,
+  SplatBlue,
+  SplatOpacity, // of Gaussian splats
+  TexNumber,    // of faces
+  Vertex1,
+  Vertex2 // of edges
+};
+constexpr std::size_t plySlotCount = 20;
+
+// What a list of an element is.
+enum class PlyList { None, Corners, TexCoords, Colors };
+constexpr std::size_t plyListCount = 4;
+
+// One element's values. Lists of no meaning are passed over; their place here stays empty.
+struct PlyRow {
+  std::array<double, plySlotCount> values{};
+  std::array<std::vector<double>, plyListCount> lists;
+
+  double operator[](PlySlot slot) const { return values[static_cast<std::size_t>(slot)]; }
+  const std::vector<double>& operator[](PlyList list) const { return lists[static_cast<std::size_t>(list)]; }
+};
+
+// Which properties of an element mean something.
+class PlyLayout {
+ public:
+  // A value with a meaning, and where binary files hold it in an element without lists.
+  struct Field {
+    PlySlot slot;
+    PlyType type;
+    std::size_t offset;
+  };
+
+  explicit PlyLayout(const PlyElement& element);
+
+  bool has(PlySlot slot) const { return present_[static_cast<std::size_t>(slot)]; }
+  bool has(PlyList list) const { return listPresent_[static_cast<std::size_t>(list)]; }
+  PlyType typeOf(PlySlot slot) const { return types_[static_cast<std::size_t>(slot)]; }
+  PlySlot slotOf(std::size_t property) const { return slots_[property]; }
+  PlyList listOf(std::size_t property) const { return lists_[property]; }
+  // Bytes that an element takes in a binary file at least: exactly, where it has no list.
+  std::size_t leastBytes() const { return leastBytes_; }
+  bool hasLists() const { return hasLists_; }
+  std::span<const Field> fields() const { return fields_; }
+
+ private:
+  std::vector<PlySlot> slots_; // one a property
+  std::vector<PlyList> lists_;
+  std::array<bool, plySlotCount> present_{};
+  std::array<PlyType, plySlotCount> types_{};
+  std::array<bool, plyListCount> listPresent_{};
+  std::size_t leastBytes_ = 0;
+  bool hasLists_ = false;
+  std::vector<Field> fields_;
+};
+
+// Walks over the body of a file.
+class PlyBody {
+ public:
+  PlyBody(std::span<const std::byte> bytes, PlyEncoding encoding);
+
+  // Throws LoadError where there is no room for `count` things of at least `bytes` bytes each, before memory is taken
+  // for them.
+  void require(std::uint64_t count, std::size_t bytes, std::string_view what) const;
+
+  // Reads all of an element and gives each row and its number to `use`. Throws LoadError.
+  template <typename Use>
+  void readRows(const PlyElement& element, const PlyLayout& layout, Use use) {
+    PlyRow row;
+    if (encoding_ == PlyEncoding::Text || layout.hasLists()) {
+      for (std::uint64_t i = 0; i < element.count; ++i) {
+        readRow(element, layout, i, row);
+        use(row, i);
+      }
+      return;
+    }
+    require(element.count, layout.leastBytes(), element.name);
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      for (const PlyLayout::Field& field : layout.fields())
+        row.values[static_cast<std::size_t>(field.slot)] = decode(field.type, &bytes_[offset_ + field.offset]);
+      offset_ += layout.leastBytes();
+      use(row, i);
+    }
+  }
+
+ private:
+  void readRow(const PlyElement& element, const PlyLayout& layout, std::uint64_t number, PlyRow& row);
+  void readList(const PlyElement& element, const PlyProperty& property, std::uint64_t number,
+                std::vector<double>* values);
+  double next(const PlyElement& element, PlyType type, std::uint64_t number);
+  double nextWord(const PlyElement& element, std::uint64_t number);
+  double decode(PlyType type, const std::byte* at) const;
+
+  std::span<const std::byte> bytes_;
+  PlyEncoding encoding_;
+  bool swapped_; // the bytes of a number run the other way than this machine's
+  std::size_t offset_ = 0;
+};
+
+} // namespace vitrail::tool
