@@ -178,39 +178,6 @@ void makeSmoothNormals(Mesh& mesh) {
   setNormals(mesh, std::move(normals));
 }
 
-void makeCreasedNormals(Mesh& mesh, float crease) {
-  separateTriangles(mesh);
-  std::vector<glm::vec3> flat(mesh.indices.size());
-  for (std::size_t i = 0; i < flat.size(); ++i) flat[i] = unit(areaVector(mesh, i / 3 * 3));
-  // Corners at one place are neighbours in this order.
-  const auto place = [&mesh](std::uint32_t corner) {
-    const glm::vec3& p = mesh.positions[corner];
-    return std::tuple(p.x, p.y, p.z);
-  };
-  std::vector<std::uint32_t> order = mesh.indices;
-  std::ranges::sort(order, {}, place);
-
-  const double cosine = std::cos(static_cast<double>(crease));
-  std::vector<glm::vec3> normals(flat.size());
-  for (std::size_t begin = 0; begin < order.size();) {
-    std::size_t end = begin + 1;
-    while (end < order.size() && place(order[end]) == place(order[begin])) ++end;
-    // All pairs are compared; where thousands of triangles meet, each keeps the normal of its plane.
-    constexpr std::size_t mostCompared = 256;
-    const bool compared = end - begin <= mostCompared;
-    for (std::size_t i = begin; i < end; ++i) {
-      const glm::vec3& own = flat[order[i]];
-      glm::dvec3 sum(0.0);
-      for (std::size_t j = begin; compared && j < end; ++j)
-        if (glm::dot(glm::dvec3(own), glm::dvec3(flat[order[j]])) > cosine) sum += areaVector(mesh, order[j] / 3 * 3);
-      const glm::vec3 mean = unit(sum);
-      normals[order[i]] = mean == glm::vec3(0.0F) ? own : mean;
-    }
-    begin = end;
-  }
-  setNormals(mesh, std::move(normals));
-}
-
 void turnTrianglesToNormals(Mesh& mesh) {
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     glm::dvec3 normals(0.0);
