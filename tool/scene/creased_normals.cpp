@@ -1,5 +1,6 @@
 // Normals of surfaces that are smooth but for their edges.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -85,6 +86,10 @@ struct NewVertices {
   std::vector<std::uint32_t> normals; // packed
 };
 
+// Which of the corners at a place are inclined to one of them by less than the crease.
+constexpr std::size_t mostCompared = 256;
+using Neighbours = std::array<std::uint64_t, mostCompared / 64>;
+
 class CornerNormals {
  public:
   CornerNormals(const Mesh& mesh, std::span<const Facing> facings, float crease)
@@ -94,13 +99,13 @@ class CornerNormals {
   void add(std::span<const std::uint32_t> corners, NewVertices& made, std::vector<std::uint32_t>& indices) {
     const std::size_t first = made.originals.size();
     // All pairs are compared; where thousands of triangles meet, each keeps the normal of its plane.
-    constexpr std::size_t mostCompared = 256;
     const bool compared = corners.size() <= mostCompared;
     own_.clear();
     for (const std::uint32_t corner : corners) own_.push_back(facings_[corner / 3]);
+    compareAll(compared);
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const std::uint32_t original = mesh_.indices[corners[i]];
-      const std::uint32_t normal = packDirection(compared ? meanAround(own_[i]) : usable(own_[i].normal));
+      const std::uint32_t normal = normals_[i];
       std::size_t found = compared ? first : made.originals.size();
       while (found < made.originals.size() && (made.originals[found] != original || made.normals[found] != normal))
         ++found;
@@ -117,11 +122,30 @@ class CornerNormals {
     return normal == glm::vec3(0.0F) ? glm::vec3(0.0F, 0.0F, 1.0F) : normal;
   }
 
-  glm::vec3 meanAround(const Facing& facing) const {
+  // The normal of each corner at the place.
+  void compareAll(bool compared) {
+    normals_.clear();
+    near_.clear();
+    for (std::size_t i = 0; i < own_.size(); ++i) {
+      if (!compared) {
+        normals_.push_back(packDirection(usable(own_[i].normal)));
+        continue;
+      }
+      Neighbours near{};
+      for (std::size_t j = 0; j < own_.size(); ++j)
+        near[j / 64] |= std::uint64_t{glm::dot(own_[i].normal, own_[j].normal) > cosine_} << (j % 64);
+      // Corners with the same neighbours have the same mean: on a smooth surface that is all of them.
+      const auto same = std::ranges::find(near_, near);
+      normals_.push_back(same != near_.end() ? normals_[static_cast<std::size_t>(same - near_.begin())]
+                                             : packDirection(meanOf(near, own_[i])));
+      near_.push_back(near);
+    }
+  }
+
+  glm::vec3 meanOf(const Neighbours& near, const Facing& facing) const {
     glm::dvec3 sum(0.0);
-    for (const Facing& other : own_)
-      if (glm::dot(facing.normal, other.normal) > cosine_)
-        sum += glm::dvec3(other.normal) * static_cast<double>(other.area);
+    for (std::size_t j = 0; j < own_.size(); ++j)
+      if ((near[j / 64] >> (j % 64) & 1U) != 0) sum += glm::dvec3(own_[j].normal) * static_cast<double>(own_[j].area);
     const double length = glm::length(sum);
     return usable(length > 0.0 ? glm::vec3(sum / length) : facing.normal);
   }
@@ -129,7 +153,10 @@ class CornerNormals {
   const Mesh& mesh_;
   std::span<const Facing> facings_;
   float cosine_;
-  std::vector<Facing> own_; // of the corners at the place
+  // Of the corners at the place:
+  std::vector<Facing> own_;
+  std::vector<Neighbours> near_;
+  std::vector<std::uint32_t> normals_; // packed
 };
 
 } // namespace

@@ -51,9 +51,9 @@ void makeFlatNormals(Mesh& mesh);
 // Normals that are the mean of the planes around each vertex, weighted by area.
 void makeSmoothNormals(Mesh& mesh);
 
-// The normal of each corner is the mean, weighted by area, of the triangles that have a corner at the same place and are
-// inclined to its own by less than `crease`, in radians. Vertices whose corners then differ are split. The mesh has no
-// triangle without area.
+// The normal of each corner is the mean, weighted by area, of the triangles that have a corner at the same place and
+// are inclined to its own by less than `crease`, in radians. Vertices whose corners then differ are split. The mesh has
+// no triangle without area.
 void makeCreasedNormals(Mesh& mesh, float crease);
 
 // Turns the triangles whose plane faces away from their vertices' normals.

@@ -1,6 +1,7 @@
 // Finds equal vertices in one pass, without sorting.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +28,27 @@ class Welder {
   // The number of this place; the next one where it is new.
   std::uint32_t add(const glm::vec3& position, std::uint32_t tag = 0) {
     const Key key{position + 0.0F, tag};
-    const std::uint32_t hash = hashOf(key);
+    return add(key, hashOf(key));
+  }
+
+  // The same for the three corners of a triangle, in their order, whose places in memory are fetched at once.
+  std::array<std::uint32_t, 3> add(const std::array<glm::vec3, 3>& positions, std::uint32_t tag) {
+    std::array<Key, 3> keys;
+    std::array<std::uint32_t, 3> hashes;
+    for (std::size_t i = 0; i < 3; ++i) {
+      keys[i] = {positions[i] + 0.0F, tag};
+      hashes[i] = hashOf(keys[i]);
+      __builtin_prefetch(&slots_[hashes[i] & mask_]);
+    }
+    return {add(keys[0], hashes[0]), add(keys[1], hashes[1]), add(keys[2], hashes[2])};
+  }
+
+  std::size_t size() const { return keys_.size(); }
+  // The keys in their order; the table is empty afterwards.
+  std::vector<Key> take();
+
+ private:
+  std::uint32_t add(const Key& key, std::uint32_t hash) {
     for (std::size_t slot = hash & mask_;; slot = (slot + 1) & mask_) {
       const Slot found = slots_[slot];
       if (found.number == none) return insert(slot, key, hash);
@@ -35,12 +56,6 @@ class Welder {
     }
   }
 
-  std::size_t size() const { return keys_.size(); }
-  const std::vector<Key>& keys() const { return keys_; }
-  // The keys in their order; the table is empty afterwards.
-  std::vector<Key> take();
-
- private:
   static constexpr std::uint32_t none = 0xffffffff;
 
   struct Slot {

@@ -4,7 +4,8 @@
 namespace vitrail::tool {
 
 inline bool endsLine(char c) { return c == '\n' || c == '\r'; }
-inline bool endsWord(char c) { return c == ' ' || endsLine(c) || c == '\t' || c == '\v' || c == '\f'; }
+// Spaces, and all control characters beside tabs and line ends, which some files are padded with.
+inline bool endsWord(char c) { return static_cast<unsigned char>(c) <= ' '; }
 
 // The number that [begin, end) starts with; where it ends, or null where there is none. What a double cannot hold is
 // NaN, and so are the ways in which programs write that they had no number: nan, -inf, nan(ind), -1.#IND00.

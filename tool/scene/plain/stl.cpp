@@ -107,6 +107,8 @@ StlFacets readBinaryStl(std::span<const std::byte> file, std::size_t facets, con
     const std::size_t first = facets * part / count;
     const std::size_t last = facets * (part + 1) / count;
     parts[part].indices.reserve(3 * (last - first));
+    // A closed surface has half as many vertices as triangles.
+    parts[part].vertices = Welder((last - first) / 2);
     for (std::size_t i = first; i < last; ++i) {
       const std::size_t begin = facetsBegin + i * facetBytes;
       parts[part].add({placeAt(file, begin + 12), placeAt(file, begin + 24), placeAt(file, begin + 36)}, origin,

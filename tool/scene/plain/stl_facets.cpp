@@ -17,10 +17,9 @@ void StlFacets::add(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& 
     }
     places[i] = glm::vec3(moved);
   }
-  for (std::size_t i = 0; i < 3; ++i) {
-    bounds.add(corners[i]);
-    indices.push_back(vertices.add(places[i], color));
-  }
+  for (const glm::dvec3& corner : corners) bounds.add(corner);
+  const std::array<std::uint32_t, 3> numbers = vertices.add(places, color);
+  indices.insert(indices.end(), numbers.begin(), numbers.end());
 }
 
 void StlFacets::append(StlFacets part) {
