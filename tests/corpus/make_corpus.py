@@ -909,6 +909,18 @@ def write_good_ply():
         + "4 0 1 2 3 8 0 0 1 0 1 1 0 1 0\n3 0 1 2 6 0 0 1 0 1 0.25 1\n3 0 1 2 6 0 0 1 0 1 1 2\n3 0 1 3 0 -1\n",
         ["made by make_corpus.py", "TextureFile leaf.png", "TextureFile a+b c.png", "TextureFile not there.png"],
     )
+    # Artec's way of two textures.
+    text(
+        "artec.ply",
+        [
+            ("vertex", 4, XYZ),
+            ("face", 2, [CORNERS]),
+            ("multi_texture_vertex", 4, ["uchar tx", "float u", "float v"]),
+            ("multi_texture_face", 2, ["uchar tx", "uint tn", "list uchar int texture_vertex_indices"]),
+        ],
+        SQUARE + "3 0 1 2\n3 0 2 3\n0 0 0\n0 1 0\n1 1 0.25\n1 0 1\n0 7 3 0 1 2\n1 7 3 0 2 3\n",
+        ["TextureFile leaf.png", "TextureFile a+b c.png"],
+    )
     text(
         "corner_colors.ply",
         [("vertex", 3, XYZ), ("face", 2, [CORNERS, "list uchar float color"])],

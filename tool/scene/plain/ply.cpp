@@ -91,7 +91,7 @@ class PlyScene {
     if (!anyFace && data_.edges.empty()) addPoints();
     if (scene_.draws.empty() && data_.notFinite > 0)
       throw LoadError("everything in it has a vertex that is not finite");
-    noteInvisible();
+    warnIfInvisible(scene_);
     return std::move(scene_);
   }
 
@@ -120,10 +120,13 @@ class PlyScene {
     if (vertexColors_ && (!data_.faceColors.empty() || !data_.cornerColors.empty()))
       warn(scene_, "the colours of faces are not drawn: those of vertices are");
     cornerTexCoords_ = textured_ && !data_.cornerTexCoords.empty();
+    if (header_.textures.empty() && !data_.cornerTexCoords.empty())
+      warn(scene_, "the texture is not drawn: the file has texture coordinates of faces, but names no TextureFile");
     if (data_.oddTexCoords > 0)
       warn(scene_,
-           fmt::format("passed over, since they do not have two numbers a corner: the texcoord lists of {} of {} faces",
-                       data_.oddTexCoords, data_.faceCount));
+           fmt::format(
+               "passed over, since they do not have two numbers a corner: the texture coordinates of {} of {} faces",
+               data_.oddTexCoords, data_.faceCount));
   }
 
   Look lookOf(std::uint32_t corner, std::uint32_t face) const {
@@ -332,15 +335,6 @@ class PlyScene {
     data_.positions.resize(kept);
     if (!data_.colors.empty()) data_.colors.resize(kept);
     if (!data_.normals.empty()) data_.normals.resize(kept);
-  }
-
-  void noteInvisible() {
-    const auto invisible = [](const Mesh& mesh) {
-      return !mesh.colors.empty() &&
-             std::ranges::all_of(mesh.colors, [](std::uint64_t color) { return unpackColor(color).a <= 0.0F; });
-    };
-    if (!scene_.meshes.empty() && std::ranges::all_of(scene_.meshes, invisible))
-      warn(scene_, "every colour has alpha 0: nothing of the model is seen");
   }
 
   const PlyHeader& header_;

@@ -18,7 +18,7 @@ namespace {
 
 PlySlot slotNamed(std::string_view name) {
   using enum PlySlot;
-  constexpr std::array<std::pair<std::string_view, PlySlot>, 42> slots{{
+  constexpr std::array<std::pair<std::string_view, PlySlot>, 41> slots{{
       {"x", X},
       {"y", Y},
       {"z", Z},
@@ -50,13 +50,12 @@ PlySlot slotNamed(std::string_view name) {
       {"texture_t", V},
       {"texcoord_u", U},
       {"texcoord_v", V},
-      {"tx", U},
-      {"ty", V},
       {"f_dc_0", SplatRed},
       {"f_dc_1", SplatGreen},
       {"f_dc_2", SplatBlue},
       {"opacity", SplatOpacity},
       {"texnumber", TexNumber},
+      {"tx", TexNumber},
       {"vertex1", Vertex1},
       {"vertex2", Vertex2},
       {"vertex_1", Vertex1},
@@ -71,6 +70,7 @@ PlyList listNamed(std::string_view name) {
   if (name == "vertex_indices" || name == "vertex_index") return PlyList::Corners;
   if (name == "texcoord") return PlyList::TexCoords;
   if (name == "color") return PlyList::Colors;
+  if (name == "texture_vertex_indices") return PlyList::TexCorners;
   return PlyList::None;
 }
 

@@ -38,8 +38,8 @@ enum class PlySlot {
 constexpr std::size_t plySlotCount = 20;
 
 // What a list of an element is.
-enum class PlyList { None, Corners, TexCoords, Colors };
-constexpr std::size_t plyListCount = 4;
+enum class PlyList { None, Corners, TexCoords, Colors, TexCorners };
+constexpr std::size_t plyListCount = 5;
 
 // One element's values. Lists of no meaning are passed over; their place here stays empty.
 struct PlyRow {

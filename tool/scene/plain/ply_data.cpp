@@ -96,11 +96,18 @@ class PlyReader {
       else if (element.name == "tristrips")
         body_.readRows(element, layout,
                        [&](const PlyRow& row, std::uint64_t i) { addStrips(row[PlyList::Corners], element, i); });
+      else if (element.name == "multi_texture_vertex")
+        body_.readRows(element, layout, [&](const PlyRow& row, std::uint64_t) {
+          texPlaces_.emplace_back(narrowed(row[PlySlot::U]), 1.0F - narrowed(row[PlySlot::V]));
+        });
+      else if (element.name == "multi_texture_face")
+        readTexFaces(element, layout);
       else if (element.name == "edge")
         readEdges(element, layout);
       else
         body_.readRows(element, layout, [](const PlyRow&, std::uint64_t) {});
     }
+    if (!texFaces_.empty()) spreadTexFaces();
     if (!data_.faceColors.empty()) data_.faceColors.resize(data_.faceCount, glm::vec4(1.0F));
     if (!data_.faceTextures.empty()) data_.faceTextures.resize(data_.faceCount, 0);
     if (!data_.cornerTexCoords.empty()) data_.cornerTexCoords.resize(data_.corners.size());
@@ -169,10 +176,7 @@ class PlyReader {
       for (const double corner : corners) data_.corners.push_back(vertexNumber(corner, element, i));
       addFace(corners.size());
       if (colors) data_.faceColors.push_back(statedColor(row, layout));
-      if (layout.has(PlySlot::TexNumber)) {
-        const double number = row[PlySlot::TexNumber];
-        data_.faceTextures.push_back(std::abs(number) < 1e9 ? static_cast<std::int32_t>(number) : -1);
-      }
+      if (layout.has(PlySlot::TexNumber)) data_.faceTextures.push_back(textureNumber(row));
       if (layout.has(PlyList::TexCoords)) addTexCoords(row[PlyList::TexCoords], corners.size());
       if (layout.has(PlyList::Colors)) addCornerColors(row[PlyList::Colors], corners.size());
     });
@@ -202,6 +206,36 @@ class PlyReader {
       for (std::size_t c = 0; fits && c < channels; ++c) color[static_cast<int>(c)] = narrowed(list[channels * i + c]);
       data_.cornerColors.push_back(color);
     }
+  }
+
+  // Artec's way of texture coordinates: a list of places in textures, and for each face a texture and its corners among
+  // them.
+  void readTexFaces(const PlyElement& element, const PlyLayout& layout) {
+    body_.readRows(element, layout, [&](const PlyRow& row, std::uint64_t i) {
+      const std::vector<double>& corners = row[PlyList::TexCorners];
+      texFaces_.push_back(static_cast<std::uint32_t>(corners.size()));
+      texNumbers_.push_back(textureNumber(row));
+      for (const double corner : corners) {
+        if (!(corner >= 0.0 && corner < static_cast<double>(texPlaces_.size())))
+          throw LoadError(fmt::format("{} {}: names texture vertex {}, but there are {}", oneLine(element.name), i,
+                                      corner, texPlaces_.size()));
+        texCorners_.push_back(texPlaces_[static_cast<std::size_t>(corner)]);
+      }
+    });
+  }
+
+  void spreadTexFaces() {
+    if (!data_.sizes.empty() ? data_.sizes != texFaces_ : texFaces_ != std::vector<std::uint32_t>(data_.faceCount, 3)) {
+      data_.oddTexCoords += texFaces_.size();
+      return;
+    }
+    data_.cornerTexCoords = std::move(texCorners_);
+    data_.faceTextures = std::move(texNumbers_);
+  }
+
+  static std::int32_t textureNumber(const PlyRow& row) {
+    const double number = row[PlySlot::TexNumber];
+    return std::abs(number) < 1e9 ? static_cast<std::int32_t>(number) : -1;
   }
 
   // -1 ends a strip and begins the next one.
@@ -251,6 +285,10 @@ class PlyReader {
   glm::dvec3 origin_;
   std::uint64_t vertexCount_ = 0;
   PlyData data_;
+  std::vector<glm::vec2> texPlaces_;    // of the elements named multi_texture_vertex
+  std::vector<std::uint32_t> texFaces_; // those named multi_texture_face: how many corners each has
+  std::vector<std::int32_t> texNumbers_;
+  std::vector<glm::vec2> texCorners_;
 };
 
 } // namespace

@@ -147,6 +147,16 @@ std::size_t facetCount(std::span<const std::byte> file, Scene& scene) {
 
 // --- Either kind.
 
+// Whether they have colours.
+bool takeVertices(Mesh& mesh, const std::vector<Welder::Key>& keys, const FacetColors* colors) {
+  const bool colored = colors != nullptr && colors->any(keys);
+  mesh.positions.reserve(keys.size());
+  for (const Welder::Key& key : keys) mesh.positions.push_back(key.position);
+  if (colored)
+    for (const Welder::Key& key : keys) mesh.colors.push_back(packColor(colors->of(key.tag)));
+  return colored;
+}
+
 void addFacets(Scene& scene, StlFacets facets, const FacetColors* colors) {
   if (facets.notFinite > 0)
     warn(scene, fmt::format("left out, since a corner is not finite: {} of {} facets", facets.notFinite,
@@ -154,13 +164,9 @@ void addFacets(Scene& scene, StlFacets facets, const FacetColors* colors) {
   if (facets.notFinite > 0 && facets.indices.empty()) throw LoadError("every facet has a corner that is not finite");
   Mesh mesh;
   mesh.indices = std::move(facets.indices);
-  const std::vector<Welder::Key> keys = facets.vertices.take();
-  const bool colored = colors != nullptr && colors->any(keys);
-  mesh.positions.reserve(keys.size());
-  for (const Welder::Key& key : keys) mesh.positions.push_back(key.position);
-  if (colored)
-    for (const Welder::Key& key : keys) mesh.colors.push_back(packColor(colors->of(key.tag)));
+  const bool colored = takeVertices(mesh, facets.vertices.take(), colors);
   addPlainMesh(scene, std::move(mesh), NormalsFrom::Places, plainMaterial(colored));
+  warnIfInvisible(scene);
 }
 
 // Reads with `read(origin)`: models that turn out to be far from their origin a second time, relative to their middle.
