@@ -31,26 +31,39 @@ glm::vec3 unit(const glm::dvec3& v) {
   return length > 0.0 && std::isfinite(length) ? glm::vec3(v / length) : glm::vec3(0.0F);
 }
 
-std::vector<glm::dvec3> sumAreaVectors(const Mesh& mesh) {
-  std::vector<glm::dvec3> sums(mesh.vertexCount(), glm::dvec3(0.0));
+// The sum of the area vectors around each vertex, in the square of the model's size, so that floats hold those of any
+// model.
+std::vector<glm::vec3> sumAreas(const Mesh& mesh) {
+  std::vector<glm::vec3> sums(mesh.vertexCount(), glm::vec3(0.0F));
+  if (mesh.indices.empty()) return sums;
+  glm::vec3 low = mesh.positions[mesh.indices[0]];
+  glm::vec3 high = low;
+  for (const std::uint32_t index : mesh.indices) {
+    low = glm::min(low, mesh.positions[index]);
+    high = glm::max(high, mesh.positions[index]);
+  }
+  const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
+  const double scale = 1.0 / std::max({size.x, size.y, size.z, std::numeric_limits<double>::min()});
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const glm::dvec3 area = areaVector(mesh, i);
+    const glm::vec3 area(areaVector(mesh, i) * scale * scale);
     for (std::size_t c = 0; c < 3; ++c) sums[mesh.indices[i + c]] += area;
   }
   return sums;
 }
 
-// Packs normals. The triangles around a vertex can cancel each other out, which leaves none: then any one of them gives
-// the normal.
+// Packs normals of any length. The triangles around a vertex can cancel each other out, which leaves none: then any one
+// of them gives the normal.
 void setNormals(Mesh& mesh, std::vector<glm::vec3> normals) {
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-    for (std::size_t c = 0; c < 3; ++c) {
-      glm::vec3& normal = normals[mesh.indices[i + c]];
-      if (normal == glm::vec3(0.0F)) normal = unit(areaVector(mesh, i));
-    }
+  if (std::ranges::find(normals, glm::vec3(0.0F)) != normals.end())
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+      for (std::size_t c = 0; c < 3; ++c) {
+        glm::vec3& normal = normals[mesh.indices[i + c]];
+        if (normal == glm::vec3(0.0F)) normal = unit(areaVector(mesh, i));
+      }
   mesh.normals.resize(normals.size());
   for (std::size_t i = 0; i < normals.size(); ++i)
-    mesh.normals[i] = packDirection(normals[i] == glm::vec3(0.0F) ? glm::vec3(0.0F, 0.0F, 1.0F) : normals[i]);
+    mesh.normals[i] =
+        packDirection(normals[i] == glm::vec3(0.0F) ? glm::vec3(0.0F, 0.0F, 1.0F) : unit(glm::dvec3(normals[i])));
 }
 
 glm::vec3 anyOrthogonal(const glm::vec3& normal) {
@@ -171,12 +184,7 @@ void makeFlatNormals(Mesh& mesh) {
   setNormals(mesh, std::move(normals));
 }
 
-void makeSmoothNormals(Mesh& mesh) {
-  const std::vector<glm::dvec3> sums = sumAreaVectors(mesh);
-  std::vector<glm::vec3> normals(sums.size());
-  std::ranges::transform(sums, normals.begin(), unit);
-  setNormals(mesh, std::move(normals));
-}
+void makeSmoothNormals(Mesh& mesh) { setNormals(mesh, sumAreas(mesh)); }
 
 void turnTrianglesToNormals(Mesh& mesh) {
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -193,9 +201,9 @@ void setRepairedNormals(Mesh& mesh, std::vector<glm::vec3> normals) {
     complete = complete && normal != glm::vec3(0.0F);
   }
   if (!complete) {
-    const std::vector<glm::dvec3> sums = sumAreaVectors(mesh);
+    const std::vector<glm::vec3> sums = sumAreas(mesh);
     for (std::size_t i = 0; i < normals.size(); ++i)
-      if (normals[i] == glm::vec3(0.0F)) normals[i] = unit(sums[i]);
+      if (normals[i] == glm::vec3(0.0F)) normals[i] = sums[i];
   }
   setNormals(mesh, std::move(normals));
 }

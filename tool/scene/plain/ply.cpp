@@ -2,7 +2,6 @@
 // polygons or triangle strips with colours of vertices, faces or corners and with textures; a file without faces is
 // drawn as points, edges as lines.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -23,33 +22,6 @@
 namespace vitrail::tool {
 namespace {
 
-// Linear light of an sRGB colour with alpha. Bytes are looked up; alpha that is not a number is opaque.
-glm::vec4 linearColor(const glm::vec4& srgb) {
-  static const std::array<float, 256> ofByte = [] {
-    std::array<float, 256> table{};
-    for (std::size_t i = 0; i < table.size(); ++i)
-      table[i] = static_cast<float>(linearFromSrgb(static_cast<double>(static_cast<float>(i) / 255.0F)));
-    return table;
-  }();
-  glm::vec4 linear(1.0F);
-  for (int c = 0; c < 3; ++c) {
-    const float value = srgb[c];
-    const float scaled = value * 255.0F;
-    const auto byte = static_cast<std::size_t>(scaled >= 0.0F && scaled <= 255.0F ? scaled + 0.5F : 0.0F);
-    linear[c] = static_cast<float>(byte) / 255.0F == value
-                    ? ofByte[byte]
-                    : static_cast<float>(linearFromSrgb(static_cast<double>(value)));
-  }
-  if (srgb.a < 1.0F) linear.a = std::max(srgb.a, 0.0F);
-  return linear;
-}
-
-std::vector<std::uint64_t> packedColors(std::span<const glm::vec4> srgb) {
-  std::vector<std::uint64_t> colors(srgb.size());
-  std::ranges::transform(srgb, colors.begin(), [](const glm::vec4& color) { return packColor(linearColor(color)); });
-  return colors;
-}
-
 std::vector<glm::vec2> finiteTexCoords(std::vector<glm::vec2> texCoords) {
   for (glm::vec2& place : texCoords)
     if (!std::isfinite(place.x) || !std::isfinite(place.y)) place = glm::vec2(0.0F);
@@ -62,7 +34,7 @@ bool isDirection(const glm::vec3& v) {
 
 // What a vertex is beside its place: of the file's vertex itself, or of a corner of a face.
 struct Look {
-  glm::vec4 color{1.0F}; // sRGB
+  std::uint64_t color = 0; // packed; of no meaning where there are none
   glm::vec2 texCoord{0.0F};
 
   bool operator==(const Look&) const = default;
@@ -218,7 +190,7 @@ class PlyScene {
     Mesh mesh;
     mesh.indices = std::move(indices);
     mesh.positions = data_.edges.empty() ? std::move(data_.positions) : data_.positions;
-    if (vertexColors_) mesh.colors = packedColors(data_.colors);
+    if (vertexColors_) mesh.colors = data_.edges.empty() ? std::move(data_.colors) : data_.colors;
     if (textured_ && !data_.texCoords.empty()) mesh.texCoords0 = finiteTexCoords(std::move(data_.texCoords));
     const NormalsFrom normals = data_.normals.empty() ? NormalsFrom::SharedCorners : NormalsFrom::File;
     addPlainMesh(scene_, std::move(mesh), normals, material(0), std::move(data_.normals));
@@ -255,7 +227,7 @@ class PlyScene {
         looks.push_back(look);
         normals.push_back(data_.normals[vertex]);
         mesh.positions.push_back(data_.positions[vertex]);
-        if (colored()) mesh.colors.push_back(packColor(linearColor(look.color)));
+        if (colored()) mesh.colors.push_back(look.color);
         if (textured_) mesh.texCoords0.push_back(look.texCoord);
       }
       mesh.indices.push_back(found);
@@ -292,8 +264,7 @@ class PlyScene {
         const std::uint32_t vertex = data_.edges[i + c];
         mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
         mesh.positions.push_back(data_.positions[vertex]);
-        if (own || vertexColors_)
-          mesh.colors.push_back(packColor(linearColor(own ? data_.edgeColors[i / 2] : data_.colors[vertex])));
+        if (own || vertexColors_) mesh.colors.push_back(own ? data_.edgeColors[i / 2] : data_.colors[vertex]);
       }
     }
     if (left > 0)
@@ -314,7 +285,7 @@ class PlyScene {
     mesh.primitive = Primitive::Points;
     if (data_.notFinite > 0) keepFinitePoints();
     mesh.positions = std::move(data_.positions);
-    if (vertexColors_) mesh.colors = packedColors(data_.colors);
+    if (vertexColors_) mesh.colors = std::move(data_.colors);
     for (const glm::vec3& normal : data_.normals)
       mesh.normals.push_back(packDirection(isDirection(normal) ? glm::vec3(glm::normalize(glm::dvec3(normal)))
                                                                : glm::vec3(0.0F, 0.0F, 1.0F)));

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -11,6 +13,12 @@
 #include "ply_header.h"
 
 namespace vitrail::tool {
+
+// Not a number where a float cannot hold it; what uses it decides what that means.
+inline float narrowed(double value) {
+  constexpr auto largest = static_cast<double>(std::numeric_limits<float>::max());
+  return std::abs(value) <= largest ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
+}
 
 // What a single value of an element is, by the names that programs give it.
 enum class PlySlot {

@@ -12,64 +12,23 @@
 
 #include "../load.h"
 #include "../message.h"
+#include "../scene.h"
 #include "ply_body.h"
+#include "ply_colors.h"
 
 namespace vitrail::tool {
 namespace {
 
-constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
-
-// Not a number where a float cannot hold it; what uses it decides what that means.
-float narrowed(double value) {
-  constexpr auto largest = static_cast<double>(std::numeric_limits<float>::max());
-  return std::abs(value) <= largest ? static_cast<float>(value) : notANumber;
-}
-
-bool hasPlyColor(const PlyLayout& layout) {
-  return layout.has(PlySlot::Red) && layout.has(PlySlot::Green) && layout.has(PlySlot::Blue);
-}
-
-// As the file states it; scaleColors() brings it to 1.
-glm::vec4 statedColor(const PlyRow& row, const PlyLayout& layout) {
-  const float alpha = layout.has(PlySlot::Alpha) ? narrowed(row[PlySlot::Alpha]) : 1.0F;
-  return {narrowed(row[PlySlot::Red]), narrowed(row[PlySlot::Green]), narrowed(row[PlySlot::Blue]), alpha};
-}
-
-// What stands for all of a colour's channels `first` to `last`. Bytes run to 255, and so do larger integers that never
-// exceed it: many programs write those. Others run to 65535 or their type's largest value. Floats run to 1, and to 255
-// where any is above 2.
-float fullValue(std::span<const glm::vec4> colors, int first, int last, PlyType type) {
-  if (type == PlyType::Uint8) return 255.0F;
-  float largest = 0.0F;
-  for (const glm::vec4& color : colors)
-    for (int c = first; c <= last; ++c) largest = std::max(largest, color[c]); // passes a NaN over
-  if (!isInteger(type)) return largest > 2.0F ? 255.0F : 1.0F;
-  if (largest <= 255.0F) return 255.0F;
-  return largest <= 65535.0F ? 65535.0F : largest <= 2147483647.0F ? 2147483647.0F : 4294967295.0F;
-}
-
-void scaleColors(std::span<glm::vec4> colors, const PlyLayout& layout) {
-  // Bytes with a sign are those of writers who meant them without.
-  if (layout.typeOf(PlySlot::Red) == PlyType::Int8)
-    for (glm::vec4& color : colors)
-      for (int c = 0; c < 3; ++c)
-        if (color[c] < 0.0F) color[c] += 256.0F;
-  const float full = fullValue(colors, 0, 2, layout.typeOf(PlySlot::Red));
-  const float opaque = layout.has(PlySlot::Alpha) ? fullValue(colors, 3, 3, layout.typeOf(PlySlot::Alpha)) : 1.0F;
-  if (full == 1.0F && opaque == 1.0F) return;
-  for (glm::vec4& color : colors) color /= glm::vec4(full, full, full, opaque);
-}
-
 // A splat's colour where its spherical harmonics are left at the first, and its opacity, as Kerbl et al., "3D Gaussian
 // splatting for real-time radiance field rendering" (2023) store them.
-glm::vec4 splatColor(const PlyRow& row) {
+std::uint64_t splatColor(const PlyRow& row) {
   constexpr double constantHarmonic = 0.28209479177387814;
   glm::vec4 color(1.0F);
   color.r = narrowed(0.5 + constantHarmonic * row[PlySlot::SplatRed]);
   color.g = narrowed(0.5 + constantHarmonic * row[PlySlot::SplatGreen]);
   color.b = narrowed(0.5 + constantHarmonic * row[PlySlot::SplatBlue]);
   color.a = narrowed(1.0 / (1.0 + std::exp(-row[PlySlot::SplatOpacity])));
-  return color;
+  return packedFromSrgb(color);
 }
 
 class PlyReader {
@@ -108,38 +67,39 @@ class PlyReader {
         body_.readRows(element, layout, [](const PlyRow&, std::uint64_t) {});
     }
     if (!texFaces_.empty()) spreadTexFaces();
-    if (!data_.faceColors.empty()) data_.faceColors.resize(data_.faceCount, glm::vec4(1.0F));
+    if (!data_.faceColors.empty()) data_.faceColors.resize(data_.faceCount, white);
     if (!data_.faceTextures.empty()) data_.faceTextures.resize(data_.faceCount, 0);
     if (!data_.cornerTexCoords.empty()) data_.cornerTexCoords.resize(data_.corners.size());
-    if (!data_.cornerColors.empty()) data_.cornerColors.resize(data_.corners.size(), glm::vec4(1.0F));
-    if (!data_.edgeColors.empty()) data_.edgeColors.resize(data_.edges.size() / 2, glm::vec4(1.0F));
+    if (!data_.cornerColors.empty()) data_.cornerColors.resize(data_.corners.size(), white);
+    if (!data_.edgeColors.empty()) data_.edgeColors.resize(data_.edges.size() / 2, white);
     return std::move(data_);
   }
 
  private:
   static constexpr std::uint64_t mostVertices = 0xfffffffe;
+  const std::uint64_t white = packColor(glm::vec4(1.0F));
 
   void readVertices(const PlyElement& element, const PlyLayout& layout) {
     using enum PlySlot;
     if (!layout.has(X) || !layout.has(Y) || !layout.has(Z)) refusePlaces(element);
     const bool normals = layout.has(NormalX) && layout.has(NormalY) && layout.has(NormalZ);
-    const bool colors = hasPlyColor(layout);
-    data_.splats =
-        !colors && layout.has(SplatRed) && layout.has(SplatGreen) && layout.has(SplatBlue) && layout.has(SplatOpacity);
+    PlyColors colors(layout, data_.colors);
+    data_.splats = !colors.any() && layout.has(SplatRed) && layout.has(SplatGreen) && layout.has(SplatBlue) &&
+                   layout.has(SplatOpacity);
     const bool texCoords = layout.has(U) && layout.has(V);
     data_.positions.reserve(element.count);
     if (normals) data_.normals.reserve(element.count);
-    if (colors || data_.splats) data_.colors.reserve(element.count);
+    if (colors.any() || data_.splats) data_.colors.reserve(element.count);
     if (texCoords) data_.texCoords.reserve(element.count);
     body_.readRows(element, layout, [&](const PlyRow& row, std::uint64_t) {
       addPosition({row[X], row[Y], row[Z]});
       if (normals) data_.normals.emplace_back(narrowed(row[NormalX]), narrowed(row[NormalY]), narrowed(row[NormalZ]));
-      if (colors) data_.colors.push_back(statedColor(row, layout));
+      if (colors.any()) colors.add(row);
       if (data_.splats) data_.colors.push_back(splatColor(row));
       // v grows upwards in these files and downwards in glTF.
       if (texCoords) data_.texCoords.emplace_back(narrowed(row[U]), 1.0F - narrowed(row[V]));
     });
-    if (colors) scaleColors(data_.colors, layout);
+    colors.finish();
   }
 
   [[noreturn]] static void refusePlaces(const PlyElement& element) {
@@ -155,32 +115,32 @@ class PlyReader {
         (std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z))) {
       data_.bounds.add(place);
     } else {
-      position.x = notANumber;
+      position.x = std::numeric_limits<float>::quiet_NaN();
       ++data_.notFinite;
     }
     data_.positions.push_back(position);
   }
 
   void readFaces(const PlyElement& element, const PlyLayout& layout) {
-    const bool colors = hasPlyColor(layout);
+    PlyColors colors(layout, data_.faceColors);
     // Files may hold several elements of faces, not all of them with the same properties.
     const std::size_t before = data_.faceCount;
-    if (colors) data_.faceColors.resize(before, glm::vec4(1.0F));
+    if (colors.any()) data_.faceColors.resize(before, white);
     if (layout.has(PlySlot::TexNumber)) data_.faceTextures.resize(before, 0);
     if (layout.has(PlyList::TexCoords)) data_.cornerTexCoords.resize(data_.corners.size());
-    if (layout.has(PlyList::Colors)) data_.cornerColors.resize(data_.corners.size(), glm::vec4(1.0F));
+    if (layout.has(PlyList::Colors)) data_.cornerColors.resize(data_.corners.size(), white);
     if (layout.has(PlyList::Corners)) data_.corners.reserve(data_.corners.size() + 3 * element.count);
     body_.readRows(element, layout, [&](const PlyRow& row, std::uint64_t i) {
       const std::vector<double>& corners = row[PlyList::Corners];
       if (data_.corners.size() + corners.size() > mostVertices) throw LoadError("the faces have too many corners");
       for (const double corner : corners) data_.corners.push_back(vertexNumber(corner, element, i));
       addFace(corners.size());
-      if (colors) data_.faceColors.push_back(statedColor(row, layout));
+      if (colors.any()) colors.add(row);
       if (layout.has(PlySlot::TexNumber)) data_.faceTextures.push_back(textureNumber(row));
       if (layout.has(PlyList::TexCoords)) addTexCoords(row[PlyList::TexCoords], corners.size());
       if (layout.has(PlyList::Colors)) addCornerColors(row[PlyList::Colors], corners.size());
     });
-    if (colors) scaleColors(std::span(data_.faceColors).subspan(before), layout);
+    colors.finish();
   }
 
   void addFace(std::size_t size) {
@@ -204,7 +164,7 @@ class PlyReader {
     for (std::size_t i = 0; i < corners; ++i) {
       glm::vec4 color(1.0F);
       for (std::size_t c = 0; fits && c < channels; ++c) color[static_cast<int>(c)] = narrowed(list[channels * i + c]);
-      data_.cornerColors.push_back(color);
+      data_.cornerColors.push_back(packedFromSrgb(color));
     }
   }
 
@@ -263,14 +223,14 @@ class PlyReader {
       body_.readRows(element, layout, [](const PlyRow&, std::uint64_t) {});
       return;
     }
-    const std::size_t before = data_.edges.size() / 2;
-    if (hasPlyColor(layout)) data_.edgeColors.resize(before, glm::vec4(1.0F));
+    PlyColors colors(layout, data_.edgeColors);
+    if (colors.any()) data_.edgeColors.resize(data_.edges.size() / 2, white);
     body_.readRows(element, layout, [&](const PlyRow& row, std::uint64_t i) {
       data_.edges.push_back(vertexNumber(row[PlySlot::Vertex1], element, i));
       data_.edges.push_back(vertexNumber(row[PlySlot::Vertex2], element, i));
-      if (hasPlyColor(layout)) data_.edgeColors.push_back(statedColor(row, layout));
+      if (colors.any()) colors.add(row);
     });
-    if (hasPlyColor(layout)) scaleColors(std::span(data_.edgeColors).subspan(before), layout);
+    colors.finish();
   }
 
   std::uint32_t vertexNumber(double value, const PlyElement& element, std::uint64_t number) const {
