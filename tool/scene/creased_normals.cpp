@@ -26,8 +26,10 @@ struct Facing {
 
 // The place of each vertex, numbered in the order of their first vertices.
 struct Places {
-  std::vector<std::uint32_t> ofVertex;
+  std::vector<std::uint32_t> ofVertex; // empty: each has its own
   std::size_t count = 0;
+
+  std::uint32_t of(std::uint32_t vertex) const { return ofVertex.empty() ? vertex : ofVertex[vertex]; }
 };
 
 Places findPlaces(const Mesh& mesh) {
@@ -48,12 +50,12 @@ struct CornersAtPlaces {
 CornersAtPlaces sortCorners(const Mesh& mesh, const Places& places) {
   CornersAtPlaces sorted;
   sorted.begins.assign(places.count + 1, 0);
-  for (const std::uint32_t index : mesh.indices) ++sorted.begins[places.ofVertex[index]];
+  for (const std::uint32_t index : mesh.indices) ++sorted.begins[places.of(index)];
   // Each place's end, which moves down to its begin as it is filled from behind.
   std::partial_sum(sorted.begins.begin(), sorted.begins.end(), sorted.begins.begin());
   sorted.corners.resize(mesh.indices.size());
   for (std::size_t corner = mesh.indices.size(); corner-- > 0;)
-    sorted.corners[--sorted.begins[places.ofVertex[mesh.indices[corner]]]] = static_cast<std::uint32_t>(corner);
+    sorted.corners[--sorted.begins[places.of(mesh.indices[corner])]] = static_cast<std::uint32_t>(corner);
   return sorted;
 }
 
@@ -161,11 +163,11 @@ class CornerNormals {
 
 } // namespace
 
-void makeCreasedNormals(Mesh& mesh, float crease) {
+void makeCreasedNormals(Mesh& mesh, float crease, bool ownPlaces) {
   if (mesh.indices.empty()) return;
   constexpr std::size_t leastIndices = 30'000;
   const std::size_t parts = partsFor(mesh.indices.size(), leastIndices);
-  const Places places = findPlaces(mesh);
+  const Places places = ownPlaces ? Places{{}, mesh.vertexCount()} : findPlaces(mesh);
   const CornersAtPlaces sorted = sortCorners(mesh, places);
   const std::vector<Facing> facings = facingsOf(mesh, parts);
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "load.h"
+#include "threads.h"
 
 namespace vitrail::tool {
 namespace {
@@ -141,6 +142,16 @@ std::vector<std::uint32_t> lineList(std::span<const std::uint32_t> indices, Line
 }
 
 void dropDegenerateTriangles(Mesh& mesh) {
+  // Few meshes have any, and those that have none need not be written again.
+  constexpr std::size_t leastTriangles = 20'000;
+  const std::size_t triangles = mesh.indices.size() / 3;
+  const std::size_t parts = partsFor(triangles, leastTriangles);
+  std::vector<char> found(parts, 0);
+  inParts(parts, [&](std::size_t part) {
+    for (std::size_t i = triangles * part / parts; found[part] == 0 && i < triangles * (part + 1) / parts; ++i)
+      found[part] = areaVector(mesh, 3 * i) == glm::dvec3(0.0) ? 1 : 0;
+  });
+  if (mesh.indices.size() % 3 == 0 && std::ranges::find(found, 1) == found.end()) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     if (areaVector(mesh, i) == glm::dvec3(0.0)) continue;

@@ -53,8 +53,8 @@ void makeSmoothNormals(Mesh& mesh);
 
 // The normal of each corner is the mean, weighted by area, of the triangles that have a corner at the same place and
 // are inclined to its own by less than `crease`, in radians. Vertices whose corners then differ are split. The mesh has
-// no triangle without area.
-void makeCreasedNormals(Mesh& mesh, float crease);
+// no triangle without area. `ownPlaces`: no two vertices are at the same place.
+void makeCreasedNormals(Mesh& mesh, float crease, bool ownPlaces = false);
 
 // Turns the triangles whose plane faces away from their vertices' normals.
 void turnTrianglesToNormals(Mesh& mesh);

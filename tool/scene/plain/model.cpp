@@ -65,7 +65,8 @@ void addPlainMesh(Scene& scene, Mesh mesh, NormalsFrom normals, Material materia
       makeSmoothNormals(mesh);
       break;
     case NormalsFrom::Places:
-      makeCreasedNormals(mesh, crease);
+    case NormalsFrom::OwnPlaces:
+      makeCreasedNormals(mesh, crease, normals == NormalsFrom::OwnPlaces);
       break;
   }
   addDraw(scene, std::move(mesh), std::move(material));

@@ -24,7 +24,8 @@ enum class NormalsFrom {
   None,          // flat
   File,          // they are there
   SharedCorners, // smooth where triangles share a vertex
-  Places         // smooth where triangles meet at less than 45 degrees
+  Places,        // smooth where triangles meet at less than 45 degrees
+  OwnPlaces      // the same, of a mesh no two vertices of which are at the same place
 };
 
 // Makes the mesh keep scene.h's promises and adds it to the scene with its material, at the origin. Blends the material

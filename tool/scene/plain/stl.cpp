@@ -165,7 +165,8 @@ void addFacets(Scene& scene, StlFacets facets, const FacetColors* colors) {
   Mesh mesh;
   mesh.indices = std::move(facets.indices);
   const bool colored = takeVertices(mesh, facets.vertices.take(), colors);
-  addPlainMesh(scene, std::move(mesh), NormalsFrom::Places, plainMaterial(colored));
+  // Facets of two colours share places, but no vertices.
+  addPlainMesh(scene, std::move(mesh), colored ? NormalsFrom::Places : NormalsFrom::OwnPlaces, plainMaterial(colored));
   warnIfInvisible(scene);
 }
 
