@@ -137,7 +137,11 @@ class CornerNormals {
       for (std::size_t j = 0; j < own_.size(); ++j)
         near[j / 64] |= std::uint64_t{glm::dot(own_[i].normal, own_[j].normal) > cosine_} << (j % 64);
       // Corners with the same neighbours have the same mean: on a smooth surface that is all of them.
-      const auto same = std::ranges::find(near_, near);
+      const auto same = std::ranges::find_if(near_, [&](const Neighbours& other) {
+        std::uint64_t differ = 0; // a few words: not worth a call to compare memory
+        for (std::size_t word = 0; word < near.size(); ++word) differ |= near[word] ^ other[word];
+        return differ == 0;
+      });
       normals_.push_back(same != near_.end() ? normals_[static_cast<std::size_t>(same - near_.begin())]
                                              : packDirection(meanOf(near, own_[i])));
       near_.push_back(near);
