@@ -919,7 +919,7 @@ def write_good_ply():
             ("multi_texture_face", 2, ["uchar tx", "uint tn", "list uchar int texture_vertex_indices"]),
         ],
         SQUARE + "3 0 1 2\n3 0 2 3\n0 0 0\n0 1 0\n1 1 0.25\n1 0 1\n0 7 3 0 1 2\n1 7 3 0 2 3\n",
-        ["TextureFile leaf.png", "TextureFile a+b c.png"],
+        ["TextureFile C:\\scans\\LEAF.PNG", "TextureFile a+b c.png"],
     )
     text(
         "corner_colors.ply",

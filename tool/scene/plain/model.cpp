@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,7 +13,9 @@
 #include "../image_decode.h"
 #include "../load.h"
 #include "../mesh_build.h"
+#include "../message.h"
 #include "../read_file.h"
+#include "find_file.h"
 
 namespace vitrail::tool {
 namespace {
@@ -85,8 +89,7 @@ void warnIfInvisible(Scene& scene) {
     warn(scene, "every colour has alpha 0: nothing of the model is seen");
 }
 
-TextureSlot TextureFiles::read(Scene& scene, std::string name) {
-  std::ranges::replace(name, '\\', '/');
+TextureSlot TextureFiles::read(Scene& scene, const std::string& name) {
   TextureSlot slot;
   const auto known = images_.find(name);
   if (known != images_.end()) {
@@ -94,14 +97,16 @@ TextureSlot TextureFiles::read(Scene& scene, std::string name) {
     return slot;
   }
   try {
-    Image image = decodeImage(readFileBeside(name, base_));
+    if (base_.empty()) throw LoadError("external files are not read here");
+    const std::optional<std::filesystem::path> path = findFile(name, std::span(&base_, 1));
+    if (!path) throw LoadError("no such file");
+    Image image = decodeImage(readFile(*path));
     slot.image = static_cast<std::int32_t>(scene.images.size());
     scene.images.push_back(std::move(image));
   } catch (const LoadError& error) {
-    warn(scene, fmt::format("the texture {}; surfaces are drawn without it", error.what()));
-    slot.image = -1;
+    warn(scene, fmt::format("the texture {}: {}; surfaces are drawn without it", oneLine(name), error.what()));
   }
-  images_.emplace(std::move(name), slot.image);
+  images_.emplace(name, slot.image);
   return slot;
 }
 

@@ -44,7 +44,7 @@ void warnIfInvisible(Scene& scene);
 class TextureFiles {
  public:
   explicit TextureFiles(std::filesystem::path base) : base_(std::move(base)) {}
-  TextureSlot read(Scene& scene, std::string name);
+  TextureSlot read(Scene& scene, const std::string& name);
 
  private:
   std::filesystem::path base_;
