@@ -29,6 +29,10 @@ void main() {
   if (pixel.x >= width || local.y >= rows || pixel.y >= height) return;
   vec4 color = imageLoad(colorImage, ivec2(pixel));
   float alpha = saturate(color.a);
+  // Light that is added without hiding as much, of a reflection on glass or a flame, needs more alpha to be held at
+  // all: at least what the brightest channel has, in whole steps. What is rounded between the two is not.
+  float brightest = saturate(max(color.r, max(color.g, color.b)));
+  if (brightest > 1.002 * alpha) alpha = ceil(brightest * 255.0) / 255.0;
   vec3 straight = alpha > 0.0 ? color.rgb / alpha : vec3(0.0);
   pixels[local.y * width + pixel.x] = quantize(encode(straight.r)) | quantize(encode(straight.g)) << 8 |
                                       quantize(encode(straight.b)) << 16 | quantize(alpha) << 24;

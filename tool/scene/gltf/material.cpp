@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include "../image_decode.h"
 #include "../load.h"
 #include "../message.h"
+#include "material_extensions.h"
 #include "uri.h"
 
 namespace vitrail::tool {
@@ -74,8 +74,13 @@ AlphaMode alphaModeOf(const std::string& text, const std::string& where) {
 // Renames the sets of texture coordinates that the slots use to 0 and 1.
 void renameTexCoordSets(GltfMaterial& result, const std::string& where) {
   Material& material = result.material;
-  const std::array slots{&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
-                         &material.occlusionTexture, &material.emissiveTexture,          &material.transmissionTexture};
+  const std::array slots{
+      &material.baseColorTexture,           &material.metallicRoughnessTexture,  &material.normalTexture,
+      &material.occlusionTexture,           &material.emissiveTexture,           &material.transmissionTexture,
+      &material.thicknessTexture,           &material.specularTexture,           &material.specularColorTexture,
+      &material.clearcoatTexture,           &material.clearcoatRoughnessTexture, &material.sheenColorTexture,
+      &material.sheenRoughnessTexture,      &material.anisotropyTexture,         &material.iridescenceTexture,
+      &material.iridescenceThicknessTexture};
   std::vector<std::uint32_t> sets;
   for (const TextureSlot* slot : slots)
     if (slot->image >= 0 && std::ranges::find(sets, slot->texCoord) == sets.end()) sets.push_back(slot->texCoord);
@@ -172,14 +177,6 @@ TextureSlot GltfMaterialReader::slot(const TextureInfo& info, const std::string&
   return slot;
 }
 
-void GltfMaterialReader::readTransmission(Material& material, const tinygltf::Value& extension,
-                                          const std::string& where) {
-  if (extension.Has("transmissionFactor"))
-    material.transmission = clampedFactor(extension.Get("transmissionFactor").GetNumberAsDouble());
-  if (extension.Has("transmissionTexture"))
-    material.transmissionTexture = slot(textureInfo(extension.Get("transmissionTexture")), where);
-}
-
 GltfMaterial GltfMaterialReader::read(std::size_t index) {
   const tinygltf::Material& source = document_.model.materials[index];
   const std::string where = objectName("material", index, source.name);
@@ -203,17 +200,9 @@ GltfMaterial GltfMaterialReader::read(std::size_t index) {
   material.occlusionTexture = slot(source.occlusionTexture, where);
   material.occlusionStrength = clampedFactor(source.occlusionTexture.strength);
   material.emissiveTexture = slot(source.emissiveTexture, where);
-  double strength = 1.0;
-  const auto emissive = source.extensions.find("KHR_materials_emissive_strength");
-  if (emissive != source.extensions.end() && emissive->second.Has("emissiveStrength"))
-    strength = std::max(emissive->second.Get("emissiveStrength").GetNumberAsDouble(), 0.0);
-  for (int c = 0; c < 3; ++c)
-    // The product of two numbers that a float holds may be one that it does not.
-    material.emissive[c] =
-        static_cast<float>(std::min(clampedFactor(source.emissiveFactor[static_cast<std::size_t>(c)]) * strength,
-                                    static_cast<double>(std::numeric_limits<float>::max())));
-  const auto transmission = source.extensions.find("KHR_materials_transmission");
-  if (transmission != source.extensions.end()) readTransmission(material, transmission->second, where);
+  for (int c = 0; c < 3; ++c) material.emissive[c] = clampedFactor(source.emissiveFactor[static_cast<std::size_t>(c)]);
+  const auto texture = [&](const tinygltf::Value& info) { return slot(textureInfo(info), where); };
+  readMaterialExtensions(source, where, texture, material, scene_);
   renameTexCoordSets(result, where);
   return result;
 }

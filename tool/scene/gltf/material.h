@@ -29,7 +29,6 @@ class GltfMaterialReader {
  private:
   template <typename TextureInfo>
   TextureSlot slot(const TextureInfo& info, const std::string& where);
-  void readTransmission(Material& material, const tinygltf::Value& extension, const std::string& where);
   Sampler sampler(std::size_t index) const;
   std::int32_t image(std::size_t index);
 

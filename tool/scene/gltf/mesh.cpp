@@ -156,9 +156,10 @@ void finish(Mesh& mesh, const std::vector<Vertex>& vertices, const AccessorIndic
   if (hasNormals) setRepairedNormals(mesh, std::move(normals));
   if (hasTangents) setRepairedTangents(mesh, tangents);
   dropUnusedVertices(mesh);
-  if (hasTangents || material.normalTexture.image < 0) return;
+  const bool mapped = material.normalTexture.image >= 0;
+  if (hasTangents || (!mapped && material.anisotropy <= 0.0F)) return;
   if (!hasNormals) makeFlatNormals(mesh);
-  makeTangents(mesh, material.normalTexture);
+  makeTangents(mesh, mapped ? material.normalTexture : material.anisotropyTexture);
 }
 
 } // namespace
