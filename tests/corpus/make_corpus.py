@@ -392,6 +392,82 @@ def write_good_transmission():
     m.save("transmission.gltf")
 
 
+def write_good_material_extensions():
+    """One material with all extensions that it may have, and one of specular colour and glossiness."""
+    m = Model()
+    m.put("images", {"uri": data_uri(RED_GREEN, "image/png")})
+    m.put("textures", {"source": 0})
+    texture = {"index": 0}
+    extensions = {
+        "KHR_materials_ior": {"ior": 1.8},
+        "KHR_materials_volume": {
+            "thicknessFactor": 2,
+            "thicknessTexture": texture,
+            "attenuationDistance": 3,
+            "attenuationColor": [0.1, 0.2, 0.3],
+        },
+        "KHR_materials_specular": {
+            "specularFactor": 0.5,
+            "specularTexture": texture,
+            "specularColorFactor": [2, 0.5, 0],
+            "specularColorTexture": texture,
+        },
+        "KHR_materials_clearcoat": {
+            "clearcoatFactor": 0.6,
+            "clearcoatTexture": texture,
+            "clearcoatRoughnessFactor": 0.2,
+            "clearcoatRoughnessTexture": texture,
+            "clearcoatNormalTexture": texture,
+        },
+        "KHR_materials_sheen": {
+            "sheenColorFactor": [0.1, 0.2, 0.9],
+            "sheenColorTexture": texture,
+            "sheenRoughnessFactor": 0.3,
+            "sheenRoughnessTexture": texture,
+        },
+        "KHR_materials_anisotropy": {
+            "anisotropyStrength": 0.7,
+            "anisotropyRotation": 1.5,
+            "anisotropyTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"scale": [2, 3]}}},
+        },
+        "KHR_materials_iridescence": {
+            "iridescenceFactor": 0.8,
+            "iridescenceTexture": texture,
+            "iridescenceIor": 1.4,
+            "iridescenceThicknessMinimum": 200,
+            "iridescenceThicknessMaximum": 500,
+            "iridescenceThicknessTexture": texture,
+        },
+        "KHR_materials_diffuse_transmission": {
+            "diffuseTransmissionFactor": 0.25,
+            "diffuseTransmissionColorFactor": [0.5, 0.75, 1],
+            "diffuseTransmissionTexture": texture,
+        },
+    }
+    old = {
+        "diffuseFactor": [0.1, 0.2, 0.3, 0.4],
+        "diffuseTexture": texture,
+        "specularFactor": [0.5, 0.6, 0.7],
+        "glossinessFactor": 0.75,
+        "specularGlossinessTexture": texture,
+    }
+    m.put("materials", {"name": "all", "extensions": extensions})
+    fallback = {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 1}
+    gloss = {"name": "gloss", "pbrMetallicRoughness": fallback, "alphaMode": "BLEND"}
+    m.put("materials", {**gloss, "extensions": {"KHR_materials_pbrSpecularGlossiness": old}})
+    m.doc["extensionsUsed"] = [*extensions, "KHR_materials_pbrSpecularGlossiness", "KHR_texture_transform"]
+    attributes = {
+        "POSITION": m.accessor(QUAD, "VEC3"),
+        "NORMAL": m.accessor(UP * 4, "VEC3"),
+        "TEXCOORD_0": m.accessor([0, 1, 1, 1, 0, 0, 1, 0], "VEC2"),
+    }
+    indices = m.accessor([0, 1, 2, 2, 1, 3], "SCALAR", USHORT)
+    meshes = [m.mesh(attributes, indices=indices, material=i) for i in range(2)]
+    m.doc["nodes"] = [{"mesh": meshes[0]}, {"mesh": meshes[1], "translation": [2, 0, 0]}]
+    m.doc["scenes"] = [{"nodes": [0, 1]}]
+    m.save("material_extensions.gltf")
+
+
 def write_good_plain():
     (GOOD / "colors.ply").write_text(
         "ply\nformat ascii 1.0\ncomment made by make_corpus.py\nelement vertex 4\n"
@@ -658,6 +734,10 @@ def bad_documents():
     yield simple("material_factor_range", "materials", [{"pbrMetallicRoughness": {"metallicFactor": 1e39}}])
     glass = {"KHR_materials_transmission": {"transmissionTexture": {"index": 1}}}
     yield "material_transmission_range", change(setter("materials", [{"extensions": glass}]), triangle_with(**image))
+    coat = {"KHR_materials_clearcoat": {"clearcoatFactor": [1]}}
+    yield simple("material_extension_factor_type", "materials", [{"extensions": coat}])
+    shiny = {"KHR_materials_pbrSpecularGlossiness": {"specularGlossinessTexture": {"index": 1}}}
+    yield "material_extension_texture_range", change(setter("materials", [{"extensions": shiny}]), triangle_with(**image))
     yield simple("material_factor_type", "materials", [{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]}}])
     yield "texture_no_image", change(setter("textures", 0, {}), lambda: textured_quad(RED_GREEN))
     yield simple("mesh_mode", "meshes", 0, "primitives", 0, "mode", 7)
@@ -790,6 +870,7 @@ def main():
     write_good_poses()
     write_good_materials()
     write_good_transmission()
+    write_good_material_extensions()
     write_good_plain()
     write_good_obj()
     write_bad()

@@ -178,7 +178,7 @@ glm::dvec3 directLight(const Surface& surface, const Reflecting& r, const Shine&
   glm::dvec3 reflected = (1.0 - f) * r.diffuse / kPi + f * lobeOf(surface, r, shine.toLight, h);
   const double rough = std::clamp(surface.sheenRoughness, 0.07, 1.0);
   const double most = std::min(largestOf(surface.sheenColor), 1.0);
-  reflected *= 1.0 - most * sheenAlbedo(rough, std::min(cosine, r.nv));
+  reflected *= 1.0 - most * sheenAlbedo(rough, r.nv);
   const double power = 1.0 / (rough * rough);
   const double nh = std::min(glm::dot(r.n, h), 1.0);
   const double fibres = (2.0 + power) * std::pow(std::sqrt(1.0 - nh * nh), power) / (2.0 * kPi);

@@ -143,7 +143,7 @@ void addLight(Lit s, vec3 l, vec3 light, inout vec3 color, inout vec3 coat) {
   }
   vec3 reflected = (1.0 - fresnel) * s.diffuse / PI + fresnel * lobe;
   if (has(FEATURE_SHEEN)) {
-    reflected = reflected * sheenLeaves(s.sheen, min(nl, nv)) + s.sheen.color * sheenLobe(s.sheen, s.normal, h, nl, nv);
+    reflected = reflected * s.sheen.leaves + s.sheen.color * sheenLobe(s.sheen, s.normal, h, nl, nv);
   }
   color += light * nl * reflected;
 }
@@ -171,7 +171,7 @@ vec3 lit(Lit s, vec3 emissive) {
   ambient += hemisphere(mirrored) * fresnel;
   if (has(FEATURE_RARE)) ambient += hemisphere(-s.normal) * s.through;
   if (has(FEATURE_SHEEN)) {
-    ambient = ambient * sheenLeaves(s.sheen, nv) + hemisphere(s.normal) * s.sheen.color * sheenAlbedo(s.sheen, nv);
+    ambient = ambient * s.sheen.leaves + hemisphere(s.normal) * s.sheen.color * s.sheen.albedo;
   }
   color += s.occlusion * ambient + emissive;
   if (has(FEATURE_CLEARCOAT)) {
@@ -287,7 +287,8 @@ Surface shadeSurface() {
   s.normal = hasTexture(SLOT_NORMAL) && !has(FEATURE_FLAT) ? mappedNormal(smoothly, t.normal) : smoothly;
   s.occlusion = 1.0 + material.occlusionStrength * (t.occlusion - 1.0);
   setReflection(s, t, base.rgb, metallic, 1.0 - transmission);
-  if (has(FEATURE_SHEEN)) s.sheen = sheenOf(t.sheenColor, t.sheenRoughness);
+  float nv = max(dot(s.normal, s.view), 0.0001);
+  if (has(FEATURE_SHEEN)) s.sheen = sheenOf(t.sheenColor, t.sheenRoughness, nv);
   if (has(FEATURE_CLEARCOAT)) s.coat = coatOf(smoothly, s.view, t.clearcoat, t.clearcoatRoughness);
   if (has(FEATURE_RARE)) s.grooves = groovesOf(tangentOf(s.normal), s.normal, s.roughness, t.anisotropy);
   vec3 color = lit(s, material.emissive.rgb * t.emissive);

@@ -44,11 +44,9 @@ float coatLobe(Coat coat, vec3 view, vec3 l) {
 struct Sheen {
   vec3 color;
   float roughness;
+  float albedo; // what a white sheen reflects of light from everywhere
+  float leaves; // the share of the light that is left to what is below
 };
-
-Sheen sheenOf(vec3 color, float roughness) {
-  return Sheen(material.sheen.rgb * color, clamp(material.sheen.a * roughness, 0.07, 1.0));
-}
 
 float sheenLobe(Sheen sheen, vec3 n, vec3 h, float nl, float nv) {
   float power = 1.0 / (sheen.roughness * sheen.roughness);
@@ -56,27 +54,35 @@ float sheenLobe(Sheen sheen, vec3 n, vec3 h, float nl, float nv) {
   return (2.0 + power) * pow(sine, power) / (2.0 * PI) / (4.0 * (nl + nv - nl * nv));
 }
 
-// What a white sheen reflects of light from everywhere, by roughness (rows, 0 to 1) and the cosine from the normal.
-const float SHEEN_ALBEDO[64] = float[](
-    1.000, 0.316, 0.014, 0.000, 0.000, 0.000, 0.000, 0.000, 1.000, 0.646, 0.170, 0.037, 0.006, 0.001, 0.000, 0.000,
-    1.000, 0.667, 0.353, 0.182, 0.086, 0.035, 0.010, 0.001, 1.000, 0.598, 0.392, 0.257, 0.163, 0.095, 0.048, 0.016,
-    0.848, 0.543, 0.394, 0.289, 0.209, 0.144, 0.092, 0.049, 0.741, 0.504, 0.388, 0.303, 0.236, 0.179, 0.129, 0.085,
-    0.675, 0.478, 0.381, 0.310, 0.252, 0.202, 0.158, 0.116, 0.633, 0.460, 0.376, 0.314, 0.263, 0.219, 0.179, 0.141);
+// What a white sheen reflects of light from everywhere, by roughness (0 to 1) and the cosine from the normal (0, 1/7, ...
+// 1, two vectors).
+const vec4 SHEEN_ALBEDO[16] = vec4[](
+    vec4(1.000, 0.316, 0.014, 0.000), vec4(0.000, 0.000, 0.000, 0.000), vec4(1.000, 0.646, 0.170, 0.037),
+    vec4(0.006, 0.001, 0.000, 0.000), vec4(1.000, 0.667, 0.353, 0.182), vec4(0.086, 0.035, 0.010, 0.001),
+    vec4(1.000, 0.598, 0.392, 0.257), vec4(0.163, 0.095, 0.048, 0.016), vec4(0.848, 0.543, 0.394, 0.289),
+    vec4(0.209, 0.144, 0.092, 0.049), vec4(0.741, 0.504, 0.388, 0.303), vec4(0.236, 0.179, 0.129, 0.085),
+    vec4(0.675, 0.478, 0.381, 0.310), vec4(0.252, 0.202, 0.158, 0.116), vec4(0.633, 0.460, 0.376, 0.314),
+    vec4(0.263, 0.219, 0.179, 0.141));
 
-float sheenAlbedo(Sheen sheen, float cosine) {
-  float row = 7.0 * sheen.roughness;
-  float column = 7.0 * min(cosine, 1.0);
-  int r = min(int(row), 6);
-  int c = min(int(column), 6);
-  float x = column - float(c);
-  float low = mix(SHEEN_ALBEDO[8 * r + c], SHEEN_ALBEDO[8 * r + c + 1], x);
-  float high = mix(SHEEN_ALBEDO[8 * r + c + 8], SHEEN_ALBEDO[8 * r + c + 9], x);
-  return mix(low, high, row - float(r));
+// By the weights of linear interpolation: an index into an array would take drivers on CPUs longer to compile.
+float sheenAlbedo(float roughness, float cosine) {
+  vec4 low = max(1.0 - abs(7.0 * cosine - vec4(0.0, 1.0, 2.0, 3.0)), 0.0);
+  vec4 high = max(1.0 - abs(7.0 * cosine - vec4(4.0, 5.0, 6.0, 7.0)), 0.0);
+  float sum = 0.0;
+  for (int r = 0; r < 8; ++r) {
+    float weight = max(1.0 - abs(7.0 * roughness - float(r)), 0.0);
+    sum += weight * (dot(low, SHEEN_ALBEDO[2 * r]) + dot(high, SHEEN_ALBEDO[2 * r + 1]));
+  }
+  return sum;
 }
 
-// The share of the light that the sheen leaves to what is below it.
-float sheenLeaves(Sheen sheen, float cosine) {
-  return 1.0 - clamp(max(sheen.color.r, max(sheen.color.g, sheen.color.b)), 0.0, 1.0) * sheenAlbedo(sheen, cosine);
+Sheen sheenOf(vec3 color, float roughness, float nv) {
+  Sheen sheen;
+  sheen.color = material.sheen.rgb * color;
+  sheen.roughness = clamp(material.sheen.a * roughness, 0.07, 1.0);
+  sheen.albedo = sheenAlbedo(sheen.roughness, min(nv, 1.0));
+  sheen.leaves = 1.0 - min(max(sheen.color.r, max(sheen.color.g, sheen.color.b)), 1.0) * sheen.albedo;
+  return sheen;
 }
 
 // KHR_materials_anisotropy: fine grooves, which stretch the highlight across them.
