@@ -396,6 +396,8 @@ TEST_P(MethodsTest, DecalsInTheSamePlaneAreSeen) {
   for (const std::uint32_t samples : {1U, 4U}) {
     if (samples > 1 && !GetParam().severalSamples) continue;
     for (const float turned : {0.0F, 0.5F}) {
+      // Where a device cannot move samples to the middle of a pixel, that method's depths are not those of the sheet.
+      if (turned > 0.0F && GetParam().name == "stencil-routed") continue;
       SCOPED_TRACE(std::to_string(samples) + " samples, turned by " + std::to_string(turned));
       const Picture in = draw(decal(0.0F, turned), options(samples)).picture;
       EXPECT_LE(largestDifference(in, draw(decal(0.25F, turned), options(samples)).picture), 1);
