@@ -455,6 +455,9 @@ def write_good_material_extensions():
     fallback = {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 1}
     gloss = {"name": "gloss", "pbrMetallicRoughness": fallback, "alphaMode": "BLEND"}
     m.put("materials", {**gloss, "extensions": {"KHR_materials_pbrSpecularGlossiness": old}})
+    coat = {"clearcoatFactor": 1, "clearcoatTexture": {"index": 0, "texCoord": 2}}
+    several = {"baseColorTexture": texture, "metallicRoughnessTexture": {"index": 0, "texCoord": 1}}
+    m.put("materials", {"pbrMetallicRoughness": several, "extensions": {"KHR_materials_clearcoat": coat}})
     m.doc["extensionsUsed"] = [*extensions, "KHR_materials_pbrSpecularGlossiness", "KHR_texture_transform"]
     attributes = {
         "POSITION": m.accessor(QUAD, "VEC3"),
@@ -462,9 +465,9 @@ def write_good_material_extensions():
         "TEXCOORD_0": m.accessor([0, 1, 1, 1, 0, 0, 1, 0], "VEC2"),
     }
     indices = m.accessor([0, 1, 2, 2, 1, 3], "SCALAR", USHORT)
-    meshes = [m.mesh(attributes, indices=indices, material=i) for i in range(2)]
-    m.doc["nodes"] = [{"mesh": meshes[0]}, {"mesh": meshes[1], "translation": [2, 0, 0]}]
-    m.doc["scenes"] = [{"nodes": [0, 1]}]
+    meshes = [m.mesh(attributes, indices=indices, material=i) for i in range(3)]
+    m.doc["nodes"] = [{"mesh": mesh, "translation": [2 * mesh, 0, 0]} for mesh in meshes]
+    m.doc["scenes"] = [{"nodes": [0, 1, 2]}]
     m.save("material_extensions.gltf")
 
 

@@ -265,6 +265,20 @@ TEST(LoadGltf, ExtensionsOfMaterials) {
              "everywhere"));
 }
 
+// The textures of a third set are left out, and those of the first two stay.
+TEST(LoadGltf, TwoSetsOfTextureCoordinates) {
+  const Scene scene = loadGood("material_extensions.gltf");
+  const Material& material = scene.materials.at(2);
+  EXPECT_EQ(material.baseColorTexture.image, 0);
+  EXPECT_EQ(material.metallicRoughnessTexture.texCoord, 1U);
+  EXPECT_EQ(material.clearcoat, 1.0F);
+  EXPECT_EQ(material.clearcoatTexture.image, -1);
+  EXPECT_EQ(std::ranges::count(scene.warnings,
+                               "material 2: a texture with TEXCOORD_2 is left out: at most 2 sets of "
+                               "texture coordinates can be drawn"),
+            1);
+}
+
 // In place of the metallic-roughness material that is there for others.
 TEST(LoadGltf, SpecularGlossiness) {
   const Material gloss = loadGood("material_extensions.gltf").materials.at(1);

@@ -71,8 +71,8 @@ AlphaMode alphaModeOf(const std::string& text, const std::string& where) {
   throw LoadError(fmt::format("{}: alphaMode is \"{}\", none of OPAQUE, MASK and BLEND", where, oneLine(text)));
 }
 
-// Renames the sets of texture coordinates that the slots use to 0 and 1.
-void renameTexCoordSets(GltfMaterial& result, const std::string& where) {
+// Renames the sets of texture coordinates that the slots use to 0 and 1. Those of further sets are left out.
+void renameTexCoordSets(GltfMaterial& result, const std::string& where, Scene& scene) {
   Material& material = result.material;
   const std::array slots{
       &material.baseColorTexture,           &material.metallicRoughnessTexture,  &material.normalTexture,
@@ -82,13 +82,19 @@ void renameTexCoordSets(GltfMaterial& result, const std::string& where) {
       &material.sheenRoughnessTexture,      &material.anisotropyTexture,         &material.iridescenceTexture,
       &material.iridescenceThicknessTexture};
   std::vector<std::uint32_t> sets;
-  for (const TextureSlot* slot : slots)
-    if (slot->image >= 0 && std::ranges::find(sets, slot->texCoord) == sets.end()) sets.push_back(slot->texCoord);
+  for (TextureSlot* slot : slots) {
+    if (slot->image < 0 || std::ranges::find(sets, slot->texCoord) != sets.end()) continue;
+    if (sets.size() < 2) {
+      sets.push_back(slot->texCoord);
+      continue;
+    }
+    warn(scene,
+         fmt::format("{}: a texture with TEXCOORD_{} is left out: at most 2 sets of texture coordinates can be drawn",
+                     where, slot->texCoord));
+    slot->image = -1;
+  }
   std::ranges::sort(sets);
   if (sets.empty() || sets.back() < 2) return;
-  if (sets.size() > 2)
-    throw LoadError(
-        fmt::format("{}: uses {} sets of texture coordinates, but at most 2 can be drawn", where, sets.size()));
   for (std::size_t i = 0; i < sets.size(); ++i) result.texCoordSets[i] = sets[i];
   for (TextureSlot* slot : slots) slot->texCoord = sets.size() == 2 && slot->texCoord == sets[1] ? 1 : 0;
 }
@@ -203,7 +209,7 @@ GltfMaterial GltfMaterialReader::read(std::size_t index) {
   for (int c = 0; c < 3; ++c) material.emissive[c] = clampedFactor(source.emissiveFactor[static_cast<std::size_t>(c)]);
   const auto texture = [&](const tinygltf::Value& info) { return slot(textureInfo(info), where); };
   readMaterialExtensions(source, where, texture, material, scene_);
-  renameTexCoordSets(result, where);
+  renameTexCoordSets(result, where, scene_);
   return result;
 }
 
