@@ -38,13 +38,20 @@ double snapAlpha(double alpha, const NodeCoding& coding) {
   return root ? step * step : step;
 }
 
-// Straight alpha on the sRGB curve, in [0, 1]: what the 8-bit picture rounds. Light beyond alpha raises it.
+// Straight alpha on the sRGB curve, in [0, 1]: what the 8-bit picture rounds. The section "Output".
 glm::dvec4 displayColor(const glm::dvec4& premultiplied) {
-  double alpha = std::clamp(premultiplied.a, 0.0, 1.0);
-  const double brightest = std::min(std::max({premultiplied.r, premultiplied.g, premultiplied.b}), 1.0);
-  if (brightest > 1.002 * alpha) alpha = std::ceil(brightest * 255.0) / 255.0;
-  const auto channel = [&](double c) { return alpha > 0.0 ? encodeSrgb(std::clamp(c / alpha, 0.0, 1.0)) : 0.0; };
-  return {channel(premultiplied.r), channel(premultiplied.g), channel(premultiplied.b), std::clamp(alpha, 0.0, 1.0)};
+  const double alpha = std::clamp(premultiplied.a, 0.0, 1.0);
+  glm::dvec3 straight(0.0);
+  glm::dvec3 light(0.0);
+  for (int c = 0; c < 3; ++c) {
+    if (alpha > 0.0) straight[c] = encodeSrgb(std::clamp(premultiplied[c] / alpha, 0.0, 1.0));
+    const double beyond = std::max(premultiplied[c] - 1.002 * alpha, 0.0);
+    if (alpha < 1.0) light[c] = encodeSrgb(std::min(beyond / (1.0 - alpha), 1.0));
+  }
+  const double brightest = std::max({light.r, light.g, light.b});
+  if (brightest <= 0.0) return {straight, alpha};
+  const double raised = std::ceil((alpha + (1.0 - alpha) * brightest) * 255.0) / 255.0;
+  return {(alpha * straight + (1.0 - alpha) * light) / raised, raised};
 }
 
 double largestChange(const glm::dvec4& a, const glm::dvec4& b) {

@@ -18,7 +18,7 @@ constexpr GltfExtension kExtensions[] = {
     // The scene.
     {"EXT_mesh_gpu_instancing", Left, "of each instanced mesh one copy is drawn, at its node"},
     {"KHR_animation_pointer", Left, "what it animates beside nodes (materials, lights, cameras) stands still"},
-    {"KHR_lights_punctual", Left, "the file's lights do not shine"},
+    {"KHR_lights_punctual", Drawn, ""},
     {"KHR_materials_variants", Left, "the default materials are drawn"},
     {"KHR_node_visibility", Left, "hidden nodes are drawn"},
     {"EXT_lights_image_based", Left, "the file's surroundings do not light it"},
