@@ -31,8 +31,8 @@ void main() {
   float alpha = saturate(color.a);
   vec3 straight = alpha > 0.0 ? color.rgb / alpha : vec3(0.0);
   vec3 coded = vec3(encode(straight.r), encode(straight.g), encode(straight.b));
-  // Light beyond alpha, of a reflection on glass or a flame, shines from what alpha leaves free. What is rounded between
-  // the two is not.
+  // Light beyond alpha, of a reflection on glass or a flame, shines from what alpha leaves free. What rounding puts
+  // between the two is not beyond.
   vec3 beyond = max(color.rgb - 1.002 * alpha, 0.0) / max(1.0 - alpha, 1.0e-6);
   vec3 light = vec3(encode(beyond.r), encode(beyond.g), encode(beyond.b));
   float brightest = max(light.r, max(light.g, light.b));

@@ -70,7 +70,7 @@ std::uint64_t packColor(const glm::vec4& color);
 glm::vec4 unpackColor(std::uint64_t packed);
 
 // 8-bit RGBA, straight alpha, rows top to bottom without padding. Whether the colours are sRGB is the texture slot's
-// business: base colour and emissive are, the others are not.
+// business: those of colours are, the others are not.
 struct Image {
   std::uint32_t width = 0;
   std::uint32_t height = 0;

@@ -54,8 +54,8 @@ float sheenLobe(Sheen sheen, vec3 n, vec3 h, float nl, float nv) {
   return (2.0 + power) * pow(sine, power) / (2.0 * PI) / (4.0 * (nl + nv - nl * nv));
 }
 
-// What a white sheen reflects of light from everywhere, by roughness (0 to 1) and the cosine from the normal (0, 1/7, ...
-// 1, two vectors).
+// What a white sheen reflects of light from everywhere, by roughness (0, 1/7, ... 1) and the cosine from the normal
+// (the same, two vectors).
 const vec4 SHEEN_ALBEDO[16] = vec4[](
     vec4(1.000, 0.316, 0.014, 0.000), vec4(0.000, 0.000, 0.000, 0.000), vec4(1.000, 0.646, 0.170, 0.037),
     vec4(0.006, 0.001, 0.000, 0.000), vec4(1.000, 0.667, 0.353, 0.182), vec4(0.086, 0.035, 0.010, 0.001),
