@@ -998,6 +998,83 @@ def write_good_stl(facet, binary):
         corners += [((math.cos(a), math.sin(a), 0), (math.cos(b), math.sin(b), 0), (math.cos(b), math.sin(b), 1))]
         corners += [((math.cos(a), math.sin(a), 0), (math.cos(b), math.sin(b), 1), (math.cos(a), math.sin(a), 1))]
     (GOOD / "ridge.stl").write_bytes(binary(b"ridge", [([v for p in c for v in p], 0) for c in corners]))
+def write_good_material_extensions():
+    """One material with all extensions that it may have, and one of specular colour and glossiness."""
+    m = Model()
+    m.put("images", {"uri": data_uri(RED_GREEN, "image/png")})
+    m.put("textures", {"source": 0})
+    texture = {"index": 0}
+    extensions = {
+        "KHR_materials_ior": {"ior": 1.8},
+        "KHR_materials_volume": {
+            "thicknessFactor": 2,
+            "thicknessTexture": texture,
+            "attenuationDistance": 3,
+            "attenuationColor": [0.1, 0.2, 0.3],
+        },
+        "KHR_materials_specular": {
+            "specularFactor": 0.5,
+            "specularTexture": texture,
+            "specularColorFactor": [2, 0.5, 0],
+            "specularColorTexture": texture,
+        },
+        "KHR_materials_clearcoat": {
+            "clearcoatFactor": 0.6,
+            "clearcoatTexture": texture,
+            "clearcoatRoughnessFactor": 0.2,
+            "clearcoatRoughnessTexture": texture,
+            "clearcoatNormalTexture": texture,
+        },
+        "KHR_materials_sheen": {
+            "sheenColorFactor": [0.1, 0.2, 0.9],
+            "sheenColorTexture": texture,
+            "sheenRoughnessFactor": 0.3,
+            "sheenRoughnessTexture": texture,
+        },
+        "KHR_materials_anisotropy": {
+            "anisotropyStrength": 0.7,
+            "anisotropyRotation": 1.5,
+            "anisotropyTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"scale": [2, 3]}}},
+        },
+        "KHR_materials_iridescence": {
+            "iridescenceFactor": 0.8,
+            "iridescenceTexture": texture,
+            "iridescenceIor": 1.4,
+            "iridescenceThicknessMinimum": 200,
+            "iridescenceThicknessMaximum": 500,
+            "iridescenceThicknessTexture": texture,
+        },
+        "KHR_materials_diffuse_transmission": {
+            "diffuseTransmissionFactor": 0.25,
+            "diffuseTransmissionColorFactor": [0.5, 0.75, 1],
+            "diffuseTransmissionTexture": texture,
+        },
+    }
+    old = {
+        "diffuseFactor": [0.1, 0.2, 0.3, 0.4],
+        "diffuseTexture": texture,
+        "specularFactor": [0.5, 0.6, 0.7],
+        "glossinessFactor": 0.75,
+        "specularGlossinessTexture": texture,
+    }
+    m.put("materials", {"name": "all", "extensions": extensions})
+    fallback = {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 1}
+    gloss = {"name": "gloss", "pbrMetallicRoughness": fallback, "alphaMode": "BLEND"}
+    m.put("materials", {**gloss, "extensions": {"KHR_materials_pbrSpecularGlossiness": old}})
+    coat = {"clearcoatFactor": 1, "clearcoatTexture": {"index": 0, "texCoord": 2}}
+    several = {"baseColorTexture": texture, "metallicRoughnessTexture": {"index": 0, "texCoord": 1}}
+    m.put("materials", {"pbrMetallicRoughness": several, "extensions": {"KHR_materials_clearcoat": coat}})
+    m.doc["extensionsUsed"] = [*extensions, "KHR_materials_pbrSpecularGlossiness", "KHR_texture_transform"]
+    attributes = {
+        "POSITION": m.accessor(QUAD, "VEC3"),
+        "NORMAL": m.accessor(UP * 4, "VEC3"),
+        "TEXCOORD_0": m.accessor([0, 1, 1, 1, 0, 0, 1, 0], "VEC2"),
+    }
+    indices = m.accessor([0, 1, 2, 2, 1, 3], "SCALAR", USHORT)
+    meshes = [m.mesh(attributes, indices=indices, material=i) for i in range(3)]
+    m.doc["nodes"] = [{"mesh": mesh, "translation": [2 * mesh, 0, 0]} for mesh in meshes]
+    m.doc["scenes"] = [{"nodes": [0, 1, 2]}]
+    m.save("material_extensions.gltf")
 
 
 def write_good_plain():
@@ -1256,6 +1333,10 @@ def bad_documents():
     yield simple("material_factor_range", "materials", [{"pbrMetallicRoughness": {"metallicFactor": 1e39}}])
     glass = {"KHR_materials_transmission": {"transmissionTexture": {"index": 1}}}
     yield "material_transmission_range", change(setter("materials", [{"extensions": glass}]), triangle_with(**image))
+    coat = {"KHR_materials_clearcoat": {"clearcoatFactor": [1]}}
+    yield simple("material_extension_factor_type", "materials", [{"extensions": coat}])
+    shiny = {"KHR_materials_pbrSpecularGlossiness": {"specularGlossinessTexture": {"index": 1}}}
+    yield "material_extension_texture_range", change(setter("materials", [{"extensions": shiny}]), triangle_with(**image))
     yield simple("material_factor_type", "materials", [{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]}}])
     yield simple("mesh_mode", "meshes", 0, "primitives", 0, "mode", 7)
     yield simple("node_cycle", "nodes", [{"mesh": 0}, {"children": [2]}, {"children": [1]}])
@@ -1485,6 +1566,7 @@ def main():
     write_good_animations()
     write_good_materials()
     write_good_transmission()
+    write_good_material_extensions()
     write_good_plain()
     write_good_obj()
     write_good_compressed()

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "../../tool/scene/exposure.h"
 #include "library/reference/resolve.h"
 #include "rays.h"
 #include "shading.h"
@@ -37,11 +38,20 @@ double snapAlpha(double alpha, const NodeCoding& coding) {
   return root ? step * step : step;
 }
 
-// Straight alpha on the sRGB curve, in [0, 1]: what the 8-bit picture rounds.
+// Straight alpha on the sRGB curve, in [0, 1]: what the 8-bit picture rounds. The section "Output".
 glm::dvec4 displayColor(const glm::dvec4& premultiplied) {
-  const double alpha = premultiplied.a;
-  const auto channel = [&](double c) { return alpha > 0.0 ? encodeSrgb(std::clamp(c / alpha, 0.0, 1.0)) : 0.0; };
-  return {channel(premultiplied.r), channel(premultiplied.g), channel(premultiplied.b), std::clamp(alpha, 0.0, 1.0)};
+  const double alpha = std::clamp(premultiplied.a, 0.0, 1.0);
+  glm::dvec3 straight(0.0);
+  glm::dvec3 light(0.0);
+  for (int c = 0; c < 3; ++c) {
+    if (alpha > 0.0) straight[c] = encodeSrgb(std::clamp(premultiplied[c] / alpha, 0.0, 1.0));
+    const double beyond = std::max(premultiplied[c] - 1.002 * alpha, 0.0);
+    if (alpha < 1.0) light[c] = encodeSrgb(std::min(beyond / (1.0 - alpha), 1.0));
+  }
+  const double brightest = std::max({light.r, light.g, light.b});
+  if (brightest <= 0.0) return {straight, alpha};
+  const double raised = std::ceil((alpha + (1.0 - alpha) * brightest) * 255.0) / 255.0;
+  return {(alpha * straight + (1.0 - alpha) * light) / raised, raised};
 }
 
 double largestChange(const glm::dvec4& a, const glm::dvec4& b) {
@@ -79,6 +89,8 @@ class Eye {
   glm::dvec4 mean(const Samples& samples, const std::array<Color, kMostSamples>& behind) const;
 
   const ReferenceOptions& options_;
+  const Scene& scene_;
+  double exposure_;
   SurfaceFinder finder_;
   NodeCoding coding_;
   double brightest_; // of a stored colour
@@ -89,16 +101,21 @@ class Eye {
 
 void checkTextures(const Scene& scene) {
   for (const Material& material : scene.materials) {
-    if (material.metallicRoughnessTexture.image >= 0 || material.normalTexture.image >= 0 ||
-        material.occlusionTexture.image >= 0 || material.emissiveTexture.image >= 0 ||
-        material.transmissionTexture.image >= 0) {
-      throw std::invalid_argument("the reference knows base colour textures only");
+    for (const TextureSlot* slot :
+         {&material.metallicRoughnessTexture, &material.normalTexture, &material.occlusionTexture,
+          &material.emissiveTexture, &material.transmissionTexture, &material.specularTexture,
+          &material.specularColorTexture, &material.clearcoatTexture, &material.clearcoatRoughnessTexture,
+          &material.sheenColorTexture, &material.sheenRoughnessTexture, &material.anisotropyTexture,
+          &material.iridescenceTexture, &material.iridescenceThicknessTexture}) {
+      if (slot->image >= 0) throw std::invalid_argument("the reference knows base colour textures only");
     }
   }
 }
 
 Eye::Eye(const Scene& scene, const ReferenceOptions& options)
     : options_(options),
+      scene_(scene),
+      exposure_(lightExposure(scene)),
       finder_(scene, options),
       coding_{options.nodeFormat, options.samples, true},
       brightest_(options.nodeFormat == layout::VITRAIL_FORMAT_HDR ? kLargestHalf : 1.0),
@@ -110,6 +127,25 @@ Eye::Eye(const Scene& scene, const ReferenceOptions& options)
   }
 }
 
+// What the extensions of a material are.
+void setExtensions(Surface& lit, const Material& material) {
+  lit.ior = double{material.ior};
+  lit.specular = double{material.specular};
+  lit.specularColor = glm::dvec3(material.specularColor);
+  lit.specularGlossiness = material.specularGlossiness;
+  lit.clearcoat = double{material.clearcoat};
+  lit.clearcoatRoughness = double{material.clearcoatRoughness};
+  lit.sheenColor = glm::dvec3(material.sheenColor);
+  lit.sheenRoughness = double{material.sheenRoughness};
+  lit.anisotropy = double{material.anisotropy};
+  lit.anisotropyRotation = double{material.anisotropyRotation};
+  lit.iridescence = double{material.iridescence};
+  lit.iridescenceIor = double{material.iridescenceIor};
+  lit.filmThickness = double{material.iridescenceThickness.y};
+  lit.diffuseTransmission = double{material.diffuseTransmission};
+  lit.diffuseTransmissionColor = glm::dvec3(material.diffuseTransmissionColor);
+}
+
 // The colour of the section "Colour" of docs/shading.md.
 glm::dvec3 Eye::shadeSurface(const PictureRay& ray, const PixelSurface& surface) const {
   const RayHit& hit = surface.hit;
@@ -117,15 +153,24 @@ glm::dvec3 Eye::shadeSurface(const PictureRay& ray, const PixelSurface& surface)
   const glm::dvec3 base(surface.base);
   if (material.unlit) return base;
   glm::dvec3 normal(0.0);
+  glm::dvec3 tangent(0.0);
+  glm::dvec3 point(0.0);
+  const glm::dmat4 transform(scene_.draws[hit.draw].transform);
   const std::array<Vertex, 3> corner = finder_.corners(hit);
   const glm::dvec3 first(corner[0].position);
   const glm::dvec3 plane = glm::cross(glm::dvec3(corner[1].position) - first, glm::dvec3(corner[2].position) - first);
   for (int i = 0; i < 3; ++i) {
-    const glm::dvec3 vertexNormal =
-        finder_.meshOf(hit).normals.empty() ? plane : glm::dvec3(corner[static_cast<std::size_t>(i)].normal);
+    const Vertex& vertex = corner[static_cast<std::size_t>(i)];
+    const glm::dvec3 vertexNormal = finder_.meshOf(hit).normals.empty() ? plane : glm::dvec3(vertex.normal);
     normal += hit.barycentric[i] * (normalToWorld_[hit.draw] * vertexNormal);
+    tangent += hit.barycentric[i] * (glm::dmat3(transform) * glm::dvec3(vertex.tangent));
+    point += hit.barycentric[i] * glm::dvec3(transform * glm::dvec4(glm::dvec3(vertex.position), 1.0));
   }
   Surface lit;
+  setExtensions(lit, material);
+  lit.tangent = glm::dvec4(tangent, corner[0].tangent.w);
+  lit.ownLight = scene_.lights.empty();
+  for (const Light& light : scene_.lights) lit.lights.push_back(shineOf(light, exposure_, point));
   lit.normal = glm::normalize(normal) * (hit.front ? 1.0 : -1.0);
   const glm::dvec3 fromEye(ray.slope, -1.0); // camera space; an orthographic ray has no slope
   lit.toEye = cameraAxes_ * glm::normalize(-fromEye);

@@ -27,7 +27,7 @@ void findNearestOpaque(PixelSurfaces& found, std::uint32_t samples) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < found.opaque.size(); ++i) {
       const PixelSurface& surface = found.opaque[i];
-      if ((surface.covered >> s & 1U) == 0 || !(surface.depths[s] < nearest)) continue;
+      if ((surface.covered >> s & 1U) == 0 || !(surface.depths[s] <= nearest)) continue;
       nearest = surface.depths[s];
       found.nearestOpaque[s] = static_cast<int>(i);
     }
@@ -39,7 +39,7 @@ void testDepth(PixelSurface& surface, const PixelSurfaces& found, std::uint32_t 
   for (std::uint32_t s = 0; s < samples; ++s) {
     if ((surface.covered >> s & 1U) == 0 || found.nearestOpaque[s] < 0) continue;
     const double opaque = found.opaque[static_cast<std::size_t>(found.nearestOpaque[s])].depths[s];
-    if (surface.depths[s] >= opaque) surface.hidden |= 1U << s;
+    if (surface.depths[s] > opaque) surface.hidden |= 1U << s;
     if (almostSameDepth(surface.depths[s], opaque)) surface.tied |= 1U << s;
   }
 }
@@ -140,7 +140,8 @@ bool SurfaceFinder::evaluate(PixelSurface& surface) const {
   }
   surface.base = glm::dvec4(material.baseColor) * color;
   if (slot.image >= 0) {
-    surface.base *= sampleColorTexture(scene_.images[static_cast<std::size_t>(slot.image)], slot, uv);
+    surface.base *= sampleColorTexture(scene_.images[static_cast<std::size_t>(slot.image)], slot, uv,
+                                       material.alphaMode != AlphaMode::Opaque);
   }
   double& alpha = surface.base.a;
   if (material.alphaMode == AlphaMode::Mask && alpha < double{material.alphaCutoff}) return false;

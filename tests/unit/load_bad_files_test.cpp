@@ -107,6 +107,11 @@ const std::map<std::string, std::string>& expectedMessages() {
       {"material_range.gltf", "mesh 0: primitives[0].material is 0, but materials has 0 elements"},
       {"material_texture_range.gltf",
        "material 0: pbrMetallicRoughness.baseColorTexture.index is 1, but textures has 1 element"},
+      {"material_extension_factor_type.gltf",
+       "material 0: extensions.KHR_materials_clearcoat.clearcoatFactor is not a number"},
+      {"material_extension_texture_range.gltf",
+       "material 0: extensions.KHR_materials_pbrSpecularGlossiness.specularGlossinessTexture.index is 1, but textures "
+       "has 1 element"},
       {"material_transmission_range.gltf",
        "material 0: extensions.KHR_materials_transmission.transmissionTexture.index is 1, but textures has 1 element"},
       {"meshopt_count.gltf",

@@ -262,6 +262,68 @@ TEST(LoadGltf, Transmission) {
   EXPECT_FALSE(isTransparent(unlit)) << "KHR_materials_unlit leaves only the base colour";
 }
 
+TEST(LoadGltf, ExtensionsOfMaterials) {
+  const Scene scene = loadGood("material_extensions.gltf");
+  const Material& all = scene.materials.at(0);
+  EXPECT_EQ(all.ior, 1.8F);
+  EXPECT_EQ(all.thickness, 2.0F);
+  EXPECT_EQ(all.attenuationDistance, 3.0F);
+  EXPECT_EQ(all.attenuationColor, glm::vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(all.specular, 0.5F);
+  EXPECT_EQ(all.specularColor, glm::vec3(2.0F, 0.5F, 0.0F));
+  EXPECT_EQ(all.clearcoat, 0.6F);
+  EXPECT_EQ(all.clearcoatRoughness, 0.2F);
+  EXPECT_EQ(all.sheenColor, glm::vec3(0.1F, 0.2F, 0.9F));
+  EXPECT_EQ(all.sheenRoughness, 0.3F);
+  EXPECT_EQ(all.anisotropy, 0.7F);
+  EXPECT_EQ(all.anisotropyRotation, 1.5F);
+  EXPECT_EQ(all.anisotropyTexture.transform[1][1], 3.0F);
+  EXPECT_EQ(all.iridescence, 0.8F);
+  EXPECT_EQ(all.iridescenceIor, 1.4F);
+  EXPECT_EQ(all.iridescenceThickness, glm::vec2(200.0F, 500.0F));
+  EXPECT_EQ(all.diffuseTransmission, 0.25F);
+  EXPECT_EQ(all.diffuseTransmissionColor, glm::vec3(0.5F, 0.75F, 1.0F));
+  for (const TextureSlot* slot :
+       {&all.thicknessTexture, &all.specularTexture, &all.specularColorTexture, &all.clearcoatTexture,
+        &all.clearcoatRoughnessTexture, &all.sheenColorTexture, &all.sheenRoughnessTexture, &all.anisotropyTexture,
+        &all.iridescenceTexture, &all.iridescenceThicknessTexture}) {
+    EXPECT_EQ(slot->image, 0);
+  }
+  EXPECT_FALSE(all.specularGlossiness);
+  const auto warned = [&](const std::string& line) { return std::ranges::count(scene.warnings, line) == 1; };
+  EXPECT_TRUE(warned("material 0 \"all\": the clearcoatNormalTexture is not drawn: the coat is smooth"));
+  EXPECT_TRUE(
+      warned("material 0 \"all\": the diffuseTransmissionTexture is not drawn: light comes through the same "
+             "everywhere"));
+}
+
+// The textures of a third set are left out, and those of the first two stay.
+TEST(LoadGltf, TwoSetsOfTextureCoordinates) {
+  const Scene scene = loadGood("material_extensions.gltf");
+  const Material& material = scene.materials.at(2);
+  EXPECT_EQ(material.baseColorTexture.image, 0);
+  EXPECT_EQ(material.metallicRoughnessTexture.texCoord, 1U);
+  EXPECT_EQ(material.clearcoat, 1.0F);
+  EXPECT_EQ(material.clearcoatTexture.image, -1);
+  EXPECT_EQ(std::ranges::count(scene.warnings,
+                               "material 2: a texture with TEXCOORD_2 is left out: at most 2 sets of "
+                               "texture coordinates can be drawn"),
+            1);
+}
+
+// In place of the metallic-roughness material that is there for others.
+TEST(LoadGltf, SpecularGlossiness) {
+  const Material gloss = loadGood("material_extensions.gltf").materials.at(1);
+  EXPECT_TRUE(gloss.specularGlossiness);
+  EXPECT_EQ(gloss.baseColor, glm::vec4(0.1F, 0.2F, 0.3F, 0.4F));
+  EXPECT_EQ(gloss.baseColorTexture.image, 0);
+  EXPECT_EQ(gloss.specularColor, glm::vec3(0.5F, 0.6F, 0.7F));
+  EXPECT_EQ(gloss.roughness, 0.25F);
+  EXPECT_EQ(gloss.metallic, 0.0F);
+  EXPECT_EQ(gloss.metallicRoughnessTexture.image, 0);
+  EXPECT_EQ(gloss.alphaMode, AlphaMode::Blend);
+}
+
 TEST(LoadGltf, TextureTransformsScaleThenTurnThenMove) {
   const Scene scene = loadGood("material.gltf");
   const TextureSlot& slot = scene.materials.at(0).baseColorTexture;

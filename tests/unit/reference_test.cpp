@@ -114,6 +114,100 @@ TEST(ReferenceShading, LightBehind) {
   expectNear(shade(surface), {1.04 * 0.18, 1.04 * 0.17, 1.04 * 0.16}, 1e-12);
 }
 
+// All below look from where the light is, straight on: the hemisphere's middle is on both sides.
+constexpr glm::dvec3 kMiddle(0.27, 0.275, 0.29);
+constexpr double kPi = std::numbers::pi;
+
+Surface straightOn() {
+  Surface surface;
+  surface.metallic = 0.0;
+  surface.base = {0.5, 0.25, 1.0};
+  return surface;
+}
+
+TEST(ReferenceShading, WithoutSpecularOnlyTheDiffuseIsLeft) {
+  Surface surface = straightOn();
+  surface.specular = 0.0;
+  expectNear(shade(surface), surface.base * (2.0 / kPi + kMiddle), 1e-12);
+}
+
+// An index of 0 stands for infinity; at roughness 1 D is 1 / pi and Vis 1/4.
+TEST(ReferenceShading, AnInfiniteIndexReflectsAll) {
+  Surface surface = straightOn();
+  surface.ior = 0.0;
+  expectNear(shade(surface), 0.5 / kPi + kMiddle, 1e-12);
+}
+
+TEST(ReferenceShading, SpecularGlossiness) {
+  Surface surface = straightOn();
+  surface.specularGlossiness = true;
+  surface.specularColor = {0.5, 0.25, 0.0};
+  const glm::dvec3 f = surface.specularColor;
+  const glm::dvec3 diffuse = 0.5 * surface.base;
+  expectNear(shade(surface), 2.0 * ((1.0 - f) * diffuse / kPi + f / (4.0 * kPi)) + kMiddle * (diffuse + f), 1e-12);
+}
+
+TEST(ReferenceShading, AClearcoatReflectsAtwentyfifth) {
+  Surface surface = straightOn();
+  const glm::dvec3 bare = shade(surface);
+  surface.clearcoat = 0.5;
+  surface.clearcoatRoughness = 1.0;
+  expectNear(shade(surface), 0.98 * bare + 0.02 * (0.5 / kPi + kMiddle), 1e-12);
+}
+
+// Fibres do not shine back at the light, and take from what is below what the table says: 0.141.
+TEST(ReferenceShading, SheenStraightOn) {
+  Surface surface = straightOn();
+  const glm::dvec3 bare = shade(surface);
+  surface.sheenColor = {0.5, 0.2, 0.0};
+  surface.sheenRoughness = 1.0;
+  expectNear(shade(surface), bare * (1.0 - 0.5 * 0.141) + kMiddle * surface.sheenColor * 0.141, 1e-12);
+}
+
+// Roughness 1/2 along one axis and 1 along the other: D = 1 / (pi * 1/4 * 1).
+TEST(ReferenceShading, GroovesStraightOn) {
+  Surface surface = straightOn();
+  surface.metallic = 1.0;
+  surface.roughness = 0.5;
+  surface.anisotropy = 1.0;
+  expectNear(shade(surface), surface.base * (2.0 / kPi + kMiddle), 1e-12);
+}
+
+TEST(ReferenceShading, NoFilmIsNearlyNone) {
+  Surface surface = straightOn();
+  const glm::dvec3 bare = shade(surface);
+  surface.iridescence = 1.0;
+  surface.filmThickness = 0.0;
+  expectNear(shade(surface), bare, 0.01);
+  surface.filmThickness = 300.0;
+  EXPECT_GT(glm::length(shade(surface) - bare), 0.01);
+}
+
+TEST(ReferenceShading, LightFromTheOtherSideComesThrough) {
+  Surface surface = straightOn();
+  surface.toLight = {0.0, 0.0, -1.0};
+  surface.diffuseTransmission = 1.0;
+  surface.diffuseTransmissionColor = {0.1, 0.8, 0.3};
+  const glm::dvec3 through = surface.diffuseTransmissionColor;
+  expectNear(shade(surface), through * (2.0 * 0.96 / kPi + kMiddle) + 0.04 * kMiddle, 1e-12);
+}
+
+TEST(ReferenceShading, LightsOfTheScene) {
+  Light light;
+  light.position = {0.0F, 0.0F, 3.0F};
+  light.intensity = {8.0F, 4.0F, 2.0F};
+  const glm::dvec3 point(0.0, 0.0, 1.0);
+  expectNear(shineOf(light, 0.5, point).strength, {1.0, 0.5, 0.25}, 1e-12);
+  expectNear(shineOf(light, 0.5, point).toLight, {0.0, 0.0, 1.0}, 1e-12);
+  light.range = 4.0F;
+  expectNear(shineOf(light, 0.5, point).strength, 0.9375 * glm::dvec3(1.0, 0.5, 0.25), 1e-12);
+  light.kind = Light::Kind::Spot; // 60 degrees off between 45 and 90
+  light.direction = {std::sqrt(0.75F), 0.0F, -0.5F};
+  light.innerConeAngle = 0.25F * std::numbers::pi_v<float>;
+  light.outerConeAngle = 0.5F * std::numbers::pi_v<float>;
+  expectNear(shineOf(light, 0.5, point).strength, 0.5 * 0.9375 * glm::dvec3(1.0, 0.5, 0.25), 1e-6);
+}
+
 // What passes through a dielectric is not scattered back: at t = 1 only what black would reflect is left.
 TEST(ReferenceShading, TransmittedLightIsNotScattered) {
   Surface glass;

@@ -7,7 +7,8 @@ namespace vitrail::tool {
 
 namespace {
 
-// More than a row of the widest image that devices take (32768 pixels), so that images are cut between rows.
+// More than a row of the widest image that devices take (32768 pixels of up to 8 bytes), so that images are cut between
+// rows.
 constexpr std::uint64_t kStagingBytes = std::uint64_t{16} << 20U;
 
 constexpr Access kNothing{};
@@ -75,13 +76,14 @@ void Uploader::toBuffer(std::span<const std::byte> data, const GpuBuffer& buffer
   }
 }
 
-void Uploader::toImage(std::span<const std::uint8_t> rgba, const GpuImage& image) {
+void Uploader::toImage(std::span<const std::byte> pixels, const GpuImage& image) {
   const VkExtent2D extent = image.info().extent;
-  const std::uint64_t rowBytes = std::uint64_t{extent.width} * 4;
+  const std::uint64_t rowBytes =
+      std::uint64_t{extent.width} * (image.info().format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4);
   const auto rowsAtOnce = static_cast<std::uint32_t>(std::min<std::uint64_t>(kStagingBytes / rowBytes, extent.height));
   for (std::uint32_t row = 0; row < extent.height; row += rowsAtOnce) {
     const std::uint32_t rows = std::min(rowsAtOnce, extent.height - row);
-    std::memcpy(staging_.mapped(), rgba.data() + row * rowBytes, rows * rowBytes);
+    std::memcpy(staging_.mapped(), pixels.data() + row * rowBytes, rows * rowBytes);
     submitter_.run("texture upload", [&](VkCommandBuffer commands) {
       if (row == 0) {
         // A new image: nobody -> the copies and blits that write it.

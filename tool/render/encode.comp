@@ -21,7 +21,7 @@ float encode(float linear) {
   return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
 }
 
-uint quantize(float v) { return uint(v * 255.0 + 0.5); }
+uint quantize(float v) { return uint(min(v, 1.0) * 255.0 + 0.5); }
 
 void main() {
   uvec2 local = gl_GlobalInvocationID.xy;
@@ -30,6 +30,17 @@ void main() {
   vec4 color = imageLoad(colorImage, ivec2(pixel));
   float alpha = saturate(color.a);
   vec3 straight = alpha > 0.0 ? color.rgb / alpha : vec3(0.0);
-  pixels[local.y * width + pixel.x] = quantize(encode(straight.r)) | quantize(encode(straight.g)) << 8 |
-                                      quantize(encode(straight.b)) << 16 | quantize(alpha) << 24;
+  vec3 coded = vec3(encode(straight.r), encode(straight.g), encode(straight.b));
+  // Light beyond alpha, of a reflection on glass or a flame, shines from what alpha leaves free. What rounding puts
+  // between the two is not beyond.
+  vec3 beyond = max(color.rgb - 1.002 * alpha, 0.0) / max(1.0 - alpha, 1.0e-6);
+  vec3 light = vec3(encode(beyond.r), encode(beyond.g), encode(beyond.b));
+  float brightest = max(light.r, max(light.g, light.b));
+  if (brightest > 0.0) {
+    float raised = ceil(mix(alpha, 1.0, brightest) * 255.0) / 255.0;
+    coded = mix(light, coded, alpha) / raised;
+    alpha = raised;
+  }
+  pixels[local.y * width + pixel.x] = quantize(coded.r) | quantize(coded.g) << 8 | quantize(coded.b) << 16 |
+                                      quantize(alpha) << 24;
 }

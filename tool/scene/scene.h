@@ -70,7 +70,7 @@ std::uint64_t packColor(const glm::vec4& color);
 glm::vec4 unpackColor(std::uint64_t packed);
 
 // 8-bit RGBA, straight alpha, rows top to bottom without padding. Whether the colours are sRGB is the texture slot's
-// business: base colour and emissive are, the others are not.
+// business: those of colours are, the others are not.
 struct Image {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -145,6 +145,22 @@ struct Material {
   TextureSlot clearcoatRoughnessTexture; // g
   glm::vec3 sheenColor{0.0F};            // KHR_materials_sheen
   float sheenRoughness = 0.0F;
+  TextureSlot sheenColorTexture;     // sRGB
+  TextureSlot sheenRoughnessTexture; // a
+  // KHR_materials_pbrSpecularGlossiness in place of metallic and roughness: baseColor is the diffuse colour,
+  // specularColor what is reflected straight on, roughness 1 - glossiness, and metallicRoughnessTexture holds the
+  // specular colour (sRGB) and the glossiness (a).
+  bool specularGlossiness = false;
+  float anisotropy = 0.0F;         // KHR_materials_anisotropy: strength
+  float anisotropyRotation = 0.0F; // radians, counter-clockwise from the tangent
+  TextureSlot anisotropyTexture;   // rg: direction, b: strength
+  float iridescence = 0.0F;        // KHR_materials_iridescence
+  float iridescenceIor = 1.3F;
+  glm::vec2 iridescenceThickness{100.0F, 400.0F}; // nanometres, of the texture's 0 and 1
+  TextureSlot iridescenceTexture;                 // r
+  TextureSlot iridescenceThicknessTexture;        // g; without it the film is as thick as the second number
+  float diffuseTransmission = 0.0F;               // KHR_materials_diffuse_transmission
+  glm::vec3 diffuseTransmissionColor{1.0F};
 };
 
 // KHR_lights_punctual. It shines along its own -Z.

@@ -6,12 +6,15 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <set>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "light_data.h"
 #include "material_data.h"
 
 namespace vitrail::tool {
@@ -50,18 +53,33 @@ std::vector<std::uint32_t> usedMaterials(const Scene& scene) {
   return {used.begin(), used.end()};
 }
 
-// Uploads structures as one uniform buffer in which each starts at a multiple of kUniformStride.
+// Uploads structures as one uniform buffer in which each starts at a multiple of `stride`.
 template <typename Data>
-GpuBuffer uploadUniforms(Gpu& gpu, Uploader& uploader, const std::vector<Data>& data, const char* name) {
-  static_assert(sizeof(Data) <= kUniformStride);
-  checkCount(data.size(), std::numeric_limits<std::uint32_t>::max() / kUniformStride, name);
-  std::vector<std::byte> bytes(data.size() * kUniformStride);
-  for (std::size_t i = 0; i < data.size(); ++i) std::memcpy(&bytes[i * kUniformStride], &data[i], sizeof(Data));
+GpuBuffer uploadUniforms(Gpu& gpu, Uploader& uploader, const std::vector<Data>& data, std::uint32_t stride,
+                         const char* name) {
+  checkCount(data.size(), std::numeric_limits<std::uint32_t>::max() / stride, name);
+  std::vector<std::byte> bytes(data.size() * stride);
+  for (std::size_t i = 0; i < data.size(); ++i) std::memcpy(&bytes[i * stride], &data[i], sizeof(Data));
   // One at least, so that a scene without any has something to bind.
-  GpuBuffer buffer(gpu, std::max<std::size_t>(bytes.size(), kUniformStride),
+  GpuBuffer buffer(gpu, std::max<std::size_t>(bytes.size(), stride),
                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryKind::Device, name);
   uploader.toBuffer(bytes, buffer, 0, kShaderRead);
   return buffer;
+}
+
+// Draws that bind the same things go together: depth decides between opaque surfaces, and of those in one plane the
+// last one is seen. So masked ones, which may be decals, come after the others, and groups in the order of the file.
+void groupOpaque(std::vector<GpuDraw>& draws) {
+  std::map<std::tuple<bool, std::uint32_t, std::uint32_t>, std::size_t> groups; // the first draw of each
+  const auto keyOf = [](const GpuDraw& draw) {
+    return std::tuple((draw.features & shaders::FEATURE_MASK) != 0, draw.features, draw.materialOffset);
+  };
+  for (std::size_t i = 0; i < draws.size(); ++i) groups.try_emplace(keyOf(draws[i]), i);
+  std::stable_sort(draws.begin(), draws.end(), [&](const GpuDraw& a, const GpuDraw& b) {
+    const auto keyA = keyOf(a);
+    const auto keyB = keyOf(b);
+    return std::pair(std::get<0>(keyA), groups.at(keyA)) < std::pair(std::get<0>(keyB), groups.at(keyB));
+  });
 }
 
 } // namespace
@@ -71,6 +89,7 @@ GpuScene::GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
   Uploader uploader(gpu);
   const std::vector<MeshRange> ranges = placeMeshes(scene, opacity.has_value());
   uploadMaterials(uploader, scene, opacity);
+  uploadLights(uploader, scene);
   textures_ = std::make_unique<MaterialTextures>(gpu, uploader, scene, usedMaterials(scene));
   if (released != nullptr)
     for (Image& image : released->images) image.rgba = std::vector<std::uint8_t>();
@@ -144,7 +163,19 @@ void GpuScene::uploadMaterials(Uploader& uploader, const Scene& scene, std::opti
   std::vector<shaders::MaterialData> data;
   data.reserve(scene.materials.size());
   for (const Material& material : scene.materials) data.push_back(makeMaterialData(material, opacity));
-  materials_ = uploadUniforms(gpu_, uploader, data, "materials");
+  static_assert(sizeof(shaders::MaterialData) <= kMaterialStride && kMaterialStride % kUniformStride == 0);
+  materials_ = uploadUniforms(gpu_, uploader, data, kMaterialStride, "materials");
+}
+
+void GpuScene::uploadLights(Uploader& uploader, const Scene& scene) {
+  std::vector<shaders::LightData> data = makeLightData(scene, origin_);
+  lightCount_ = static_cast<std::uint32_t>(data.size());
+  if (data.empty()) data.emplace_back(); // something to bind
+  lights_ =
+      GpuBuffer(gpu_, data.size() * sizeof(shaders::LightData),
+                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryKind::Device, "lights");
+  uploader.toBuffer(std::as_bytes(std::span(data)), lights_, 0,
+                    {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT});
 }
 
 glm::mat4 GpuScene::placeOf(const Scene& scene, std::uint32_t instance) const {
@@ -185,12 +216,12 @@ GpuDraw GpuScene::describe(const Scene& scene, const DrawGroup& group, const Mes
   const Mesh& mesh = scene.meshes[group.mesh];
   GpuDraw draw;
   draw.mesh = group.mesh;
-  draw.materialOffset = group.material * kUniformStride;
+  draw.materialOffset = group.material * kMaterialStride;
   draw.firstIndex = static_cast<std::uint32_t>(transparent ? range.firstTransparentIndex : range.firstOpaqueIndex);
   draw.indexCount = static_cast<std::uint32_t>(mesh.indices.size());
   draw.firstInstance = static_cast<std::uint32_t>(sources_.size());
   draw.instanceCount = static_cast<std::uint32_t>(group.draws.size());
-  draw.features = featuresOf(scene, material, mesh);
+  draw.features = featuresOf(scene, material, mesh, textures_->isPremultiplied(group.material));
   draw.textures = textures_->set(group.material);
   // A mirror turns the triangles round, and glTF means the side that was outside before.
   draw.frontFace = group.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;
@@ -208,10 +239,7 @@ void GpuScene::listDraws(const Scene& scene, const std::vector<MeshRange>& range
       sources_.insert(sources_.end(), group.draws.begin(), group.draws.end());
     }
   }
-  // Depth decides between opaque surfaces: draws that bind the same things go together.
-  std::stable_sort(opaque_.begin(), opaque_.end(), [](const GpuDraw& a, const GpuDraw& b) {
-    return std::tie(a.features, a.materialOffset) < std::tie(b.features, b.materialOffset);
-  });
+  groupOpaque(opaque_);
 }
 
 void GpuScene::placeBoxes(const Scene& scene) {

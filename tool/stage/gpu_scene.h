@@ -18,6 +18,7 @@ namespace vitrail::tool {
 
 // The largest alignment of a uniform buffer's offset that a device may ask for.
 constexpr std::uint32_t kUniformStride = 256;
+constexpr std::uint32_t kMaterialStride = 768; // a multiple of it
 
 // Some instances of one mesh with one material: one indexed draw.
 struct GpuDraw {
@@ -58,7 +59,9 @@ class GpuScene {
   std::vector<std::uint32_t> transparentIndices(const Scene& scene, std::size_t i) const;
   const VertexStreams& streams() const { return *streams_; }
   const GpuBuffer& indices() const { return indices_; }     // 32-bit
-  const GpuBuffer& materials() const { return materials_; } // of shaders::MaterialData, kUniformStride apart
+  const GpuBuffer& materials() const { return materials_; } // of shaders::MaterialData, kMaterialStride apart
+  const GpuBuffer& lights() const { return lights_; }       // of shaders::LightData; one at least
+  std::uint32_t lightCount() const { return lightCount_; }
   void cmdBindInstances(VkCommandBuffer commands) const;
   // The point of the world that is the GPU's (0, 0, 0): near the scene, so that a model far from the world's own origin
   // keeps its precision in 32-bit floats. Views are moved with it.
@@ -78,6 +81,7 @@ class GpuScene {
   void uploadMeshes(Uploader& uploader, const Scene& scene, const std::vector<MeshRange>& ranges, Scene* released);
   std::vector<std::uint32_t> submittedIndices(const Scene& scene, std::size_t mesh) const;
   void uploadMaterials(Uploader& uploader, const Scene& scene, std::optional<float> opacity);
+  void uploadLights(Uploader& uploader, const Scene& scene);
   void uploadInstances(Uploader& uploader, const Scene& scene);
   GpuDraw describe(const Scene& scene, const DrawGroup& group, const MeshRange& range, bool transparent) const;
   void listDraws(const Scene& scene, const std::vector<MeshRange>& ranges, bool allTransparent);
@@ -91,6 +95,8 @@ class GpuScene {
   GpuBuffer indices_;
   GpuBuffer instances_; // kInstanceBytes each
   GpuBuffer materials_;
+  GpuBuffer lights_;
+  std::uint32_t lightCount_ = 0;
   std::unique_ptr<MaterialTextures> textures_;
   std::vector<std::uint32_t> sources_; // of each instance
   std::vector<GpuDraw> opaque_;

@@ -8,12 +8,22 @@ layout(constant_id = 0) const uint kFeatures = 0u;
 
 layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameData frame; };
 layout(set = 0, binding = 1, std140) uniform MaterialBlock { MaterialData material; };
+layout(set = 0, binding = 2, std430) readonly buffer LightBlock { LightData lights[]; };
 layout(set = 1, binding = 0) uniform sampler2D baseColorTexture;
 layout(set = 1, binding = 1) uniform sampler2D metallicRoughnessTexture;
 layout(set = 1, binding = 2) uniform sampler2D normalTexture;
 layout(set = 1, binding = 3) uniform sampler2D occlusionTexture;
 layout(set = 1, binding = 4) uniform sampler2D emissiveTexture;
 layout(set = 1, binding = 5) uniform sampler2D transmissionTexture;
+layout(set = 1, binding = 6) uniform sampler2D specularTexture;
+layout(set = 1, binding = 7) uniform sampler2D specularColorTexture;
+layout(set = 1, binding = 8) uniform sampler2D clearcoatTexture;
+layout(set = 1, binding = 9) uniform sampler2D clearcoatRoughnessTexture;
+layout(set = 1, binding = 11) uniform sampler2D sheenColorTexture;
+layout(set = 1, binding = 12) uniform sampler2D sheenRoughnessTexture;
+layout(set = 1, binding = 13) uniform sampler2D anisotropyTexture;
+layout(set = 1, binding = 14) uniform sampler2D iridescenceTexture;
+layout(set = 1, binding = 15) uniform sampler2D iridescenceThicknessTexture;
 
 // Where the surface is shaded: at the middle of the pixel, unless the including shader says otherwise.
 #ifndef SURFACE_IN
@@ -23,12 +33,16 @@ layout(location = 0) SURFACE_IN vec3 inPosition;
 layout(location = 1) SURFACE_IN vec3 inNormal;
 layout(location = 2) SURFACE_IN vec4 inTangent;
 layout(location = 3) SURFACE_IN vec4 inColor;
-layout(location = 4) SURFACE_IN vec2 inTexCoords[SLOT_COUNT];
+layout(location = 4) SURFACE_IN vec4 inTexCoords[SLOT_PAIRS];
 
 const float PI = 3.14159265358979;
 
 bool has(uint feature) { return (kFeatures & feature) != 0u; }
 bool hasTexture(uint slot) { return has(1u << slot); }
+vec2 texCoord(uint slot) {
+  vec4 two = inTexCoords[slot / 2u];
+  return slot % 2u == 0u ? two.xy : two.zw;
+}
 
 // Unit length; `fallback` for a vector without a direction.
 vec3 direction(vec3 v, vec3 fallback) {
@@ -45,19 +59,29 @@ vec3 viewDirection() {
 // leave the derivatives undefined.
 vec3 planeNormal() { return has(FEATURE_FLAT) ? cross(dFdx(inPosition), dFdy(inPosition)) : vec3(0.0); }
 
-// The shading normal on the side that is seen. `sampled` is the normal map's texel, `v` points to the eye.
-vec3 surfaceNormal(vec3 plane, vec3 sampled, vec3 v) {
+// The normal without the normal map, on the side that is seen. `v` points to the eye.
+vec3 smoothNormal(vec3 plane, vec3 v) {
   if (has(FEATURE_FLAT)) return direction(dot(plane, v) < 0.0 ? -plane : plane, v);
   vec3 normal = direction(inNormal, v);
-  if (hasTexture(SLOT_NORMAL)) {
-    vec3 axis = abs(normal.x) < 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-    vec3 tangent = direction(inTangent.xyz - normal * dot(normal, inTangent.xyz), normalize(cross(axis, normal)));
-    vec3 bitangent = cross(normal, tangent) * (inTangent.w < 0.0 ? -1.0 : 1.0);
-    vec3 n = sampled * 2.0 - 1.0;
-    n.xy *= material.normalScale;
-    normal = direction(tangent * n.x + bitangent * n.y + normal * n.z, normal);
-  }
   return gl_FrontFacing ? normal : -normal;
+}
+
+// The tangent that goes with a normal. Its bitangent is w times their cross product.
+vec4 tangentOf(vec3 normal) {
+  vec3 axis = abs(normal.x) < 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+  vec3 tangent = direction(inTangent.xyz - normal * dot(normal, inTangent.xyz), normalize(cross(axis, normal)));
+  return vec4(tangent, inTangent.w < 0.0 ? -1.0 : 1.0);
+}
+
+// The normal map's normal on the side that is seen, as the other one is. `sampled` is its texel.
+vec3 mappedNormal(vec3 smoothly, vec3 sampled) {
+  float side = gl_FrontFacing ? 1.0 : -1.0;
+  vec3 normal = side * smoothly;
+  vec4 tangent = tangentOf(normal);
+  vec3 bitangent = cross(normal, tangent.xyz) * tangent.w;
+  vec3 n = sampled * 2.0 - 1.0;
+  n.xy *= material.normalScale;
+  return side * direction(tangent.xyz * n.x + bitangent * n.y + normal * n.z, normal);
 }
 
 vec3 hemisphere(vec3 d) { return mix(vec3(0.18, 0.17, 0.16), vec3(0.36, 0.38, 0.42), 0.5 + 0.5 * d.y); }
@@ -81,25 +105,80 @@ float grazing(float c) {
   return x * x * x * x * x;
 }
 
-// What a surface reflects. `scattered` is the share of the diffuse light that does not pass through it.
-vec3 lit(vec3 base, float metallic, float scattered, float roughness, float occlusion, vec3 n, vec3 v) {
-  vec3 l = frame.toLight.xyz;
-  vec3 h = direction(l + v, n);
-  float nv = max(dot(n, v), 0.0001);
-  float nl = max(dot(n, l), 0.0);
-  float a2 = roughness * roughness * roughness * roughness;
-  vec3 f0 = mix(vec3(0.04), base, metallic);
-  vec3 diffuse = scattered * (1.0 - metallic) * base;
+#include "surface_layers.glsl"
 
-  vec3 direct = vec3(0.0);
-  if (nl > 0.0) {
-    vec3 fresnel = f0 + (1.0 - f0) * grazing(max(dot(v, h), 0.0));
-    vec3 specular = fresnel * distribution(n, h, a2) * visibility(nl, nv, a2);
-    direct = 2.0 * nl * ((1.0 - fresnel) * diffuse / PI + specular);
+// A lit surface: what its light is reflected by.
+struct Lit {
+  vec3 normal;
+  vec3 view;
+  vec3 diffuse; // scattered back
+  vec3 f0;      // reflected straight on
+  vec3 f90;     // at grazing angles
+  float roughness;
+  float occlusion;
+  float ambientShare; // of the diffuse ambient light: what a strong reflection leaves
+  Sheen sheen;
+  Coat coat;
+  Grooves grooves;
+  vec4 film;    // FEATURE_RARE: what a thin film reflects, and its share
+  vec3 through; // FEATURE_RARE: scattered to the other side
+};
+
+// Adds a light that shines from `l` with the strength `light`.
+void addLight(Lit s, vec3 l, vec3 light, inout vec3 color, inout vec3 coat) {
+  float nl = max(dot(s.normal, l), 0.0);
+  if (has(FEATURE_CLEARCOAT)) coat += light * coatLobe(s.coat, s.view, l);
+  if (has(FEATURE_RARE)) color += light * max(-dot(s.normal, l), 0.0) * (1.0 - s.f0) * s.through / PI;
+  if (nl <= 0.0) return;
+  vec3 h = direction(l + s.view, s.normal);
+  float nv = max(dot(s.normal, s.view), 0.0001);
+  float a2 = s.roughness * s.roughness * s.roughness * s.roughness;
+  vec3 fresnel = s.f0 + (s.f90 - s.f0) * grazing(max(dot(s.view, h), 0.0));
+  float lobe = 0.0;
+  if (has(FEATURE_RARE)) {
+    fresnel = mix(fresnel, s.film.rgb, s.film.a);
+    lobe = groovesLobe(s.grooves, s.normal, s.view, l, h);
+  } else {
+    lobe = distribution(s.normal, h, a2) * visibility(nl, nv, a2);
   }
-  vec3 reflected = 2.0 * dot(n, v) * n - v;
-  vec3 ambientFresnel = f0 + (max(vec3(1.0 - roughness), f0) - f0) * grazing(nv);
-  return direct + occlusion * (hemisphere(n) * diffuse + hemisphere(reflected) * ambientFresnel);
+  vec3 reflected = (1.0 - fresnel) * s.diffuse / PI + fresnel * lobe;
+  if (has(FEATURE_SHEEN)) {
+    reflected = reflected * s.sheen.leaves + s.sheen.color * sheenLobe(s.sheen, s.normal, h, nl, nv);
+  }
+  color += light * nl * reflected;
+}
+
+// What comes from a surface: the light that it reflects, and its own.
+vec3 lit(Lit s, vec3 emissive) {
+  vec3 color = vec3(0.0);
+  vec3 coat = vec3(0.0);
+  if (has(FEATURE_LIGHTS)) {
+    uint count = uint(frame.toLight.w);
+    for (uint i = 0u; i < count; ++i) {
+      vec3 l;
+      vec3 light = lightAt(lights[i], l);
+      addLight(s, l, light, color, coat);
+    }
+  } else {
+    addLight(s, frame.toLight.xyz, vec3(2.0), color, coat);
+  }
+  float nv = max(dot(s.normal, s.view), 0.0001);
+  vec3 mirrored = 2.0 * dot(s.normal, s.view) * s.normal - s.view;
+  vec3 fresnel = s.f0 + (max(s.f90 * (1.0 - s.roughness), s.f0) - s.f0) * grazing(nv);
+  if (has(FEATURE_RARE)) fresnel = mix(fresnel, s.film.rgb, s.film.a);
+  vec3 ambient = hemisphere(s.normal) * s.diffuse;
+  if (has(FEATURE_SPECULAR)) ambient *= s.ambientShare;
+  ambient += hemisphere(mirrored) * fresnel;
+  if (has(FEATURE_RARE)) ambient += hemisphere(-s.normal) * s.through;
+  if (has(FEATURE_SHEEN)) {
+    ambient = ambient * s.sheen.leaves + hemisphere(s.normal) * s.sheen.color * s.sheen.albedo;
+  }
+  color += s.occlusion * ambient + emissive;
+  if (has(FEATURE_CLEARCOAT)) {
+    vec3 above = coat + s.occlusion * hemisphere(2.0 * dot(s.coat.normal, s.view) * s.coat.normal - s.view);
+    color = mix(color, above, s.coat.share);
+  }
+  return color;
 }
 
 // A surface at one pixel, as docs/shading.md states it.
@@ -110,39 +189,109 @@ struct Surface {
   float passes; // the share of the light behind that passes; 0 without FEATURE_TRANSMISSION
 };
 
+// What a surface's textures hold, of those that it has.
+struct Texels {
+  vec4 base;
+  vec4 metallicRoughness; // or specular colour and glossiness
+  vec3 normal;
+  float occlusion;
+  vec3 emissive;
+  float transmission;
+  float specular;
+  vec3 specularColor;
+  float clearcoat;
+  float clearcoatRoughness;
+  vec3 sheenColor;
+  float sheenRoughness;
+  vec3 anisotropy;
+  float iridescence;
+  float iridescenceThickness;
+};
+
+#define TEXEL(slot, image) (hasTexture(slot) ? texture(image, texCoord(slot)) : vec4(1.0))
+Texels sampleTextures() {
+  Texels t;
+  t.base = TEXEL(SLOT_BASE_COLOR, baseColorTexture);
+  // Colours times alpha were filtered, so that those of texels that are not there do not show.
+  if (has(FEATURE_PREMULTIPLIED)) t.base.rgb = t.base.a > 0.0 ? t.base.rgb / t.base.a : vec3(0.0);
+  t.metallicRoughness = TEXEL(SLOT_METALLIC_ROUGHNESS, metallicRoughnessTexture);
+  t.normal = TEXEL(SLOT_NORMAL, normalTexture).rgb;
+  t.occlusion = TEXEL(SLOT_OCCLUSION, occlusionTexture).r;
+  t.emissive = TEXEL(SLOT_EMISSIVE, emissiveTexture).rgb;
+  t.transmission = TEXEL(SLOT_TRANSMISSION, transmissionTexture).r;
+  t.specular = TEXEL(SLOT_SPECULAR, specularTexture).a;
+  t.specularColor = TEXEL(SLOT_SPECULAR_COLOR, specularColorTexture).rgb;
+  t.clearcoat = TEXEL(SLOT_CLEARCOAT, clearcoatTexture).r;
+  t.clearcoatRoughness = TEXEL(SLOT_CLEARCOAT_ROUGHNESS, clearcoatRoughnessTexture).g;
+  t.sheenColor = TEXEL(SLOT_SHEEN_COLOR, sheenColorTexture).rgb;
+  t.sheenRoughness = TEXEL(SLOT_SHEEN_ROUGHNESS, sheenRoughnessTexture).a;
+  t.anisotropy = hasTexture(SLOT_ANISOTROPY) ? texture(anisotropyTexture, texCoord(SLOT_ANISOTROPY)).rgb
+                                             : vec3(1.0, 0.5, 1.0);
+  t.iridescence = TEXEL(SLOT_IRIDESCENCE, iridescenceTexture).r;
+  t.iridescenceThickness = TEXEL(SLOT_IRIDESCENCE_THICKNESS, iridescenceThicknessTexture).g;
+  return t;
+}
+
+// Fills in what a surface is made of. `base` is its base or diffuse colour, `scattered` the share of its diffuse light
+// that does not pass through it.
+void setReflection(inout Lit s, Texels t, vec3 base, float metallic, float scattered) {
+  s.roughness = material.roughness * t.metallicRoughness.g;
+  s.ambientShare = 1.0;
+  if (has(FEATURE_SPECULAR_GLOSSINESS)) {
+    s.roughness = 1.0 - (1.0 - material.roughness) * t.metallicRoughness.a;
+    s.f0 = min(material.specularColor.rgb * t.metallicRoughness.rgb, 1.0);
+    s.f90 = vec3(1.0);
+    s.diffuse = scattered * (1.0 - max(s.f0.r, max(s.f0.g, s.f0.b))) * base;
+  } else {
+    vec3 dielectric = vec3(0.04);
+    float dielectric90 = 1.0;
+    if (has(FEATURE_SPECULAR)) {
+      dielectric90 = material.specularColor.a * t.specular;
+      dielectric = min(material.reflectance * material.specularColor.rgb * t.specularColor, 1.0) * dielectric90;
+      s.ambientShare = min((1.0 - max(dielectric.r, max(dielectric.g, dielectric.b))) / 0.96, 1.0);
+    }
+    s.f0 = mix(dielectric, base, metallic);
+    s.f90 = mix(vec3(dielectric90), vec3(1.0), metallic);
+    s.diffuse = scattered * (1.0 - metallic) * base;
+  }
+  s.roughness = clamp(s.roughness, 0.045, 1.0);
+  if (has(FEATURE_RARE)) {
+    float share = material.diffuseTransmission.a;
+    s.through = scattered * (1.0 - metallic) * share * material.diffuseTransmission.rgb;
+    s.diffuse *= 1.0 - share;
+    float thickness = mix(material.iridescence.z, material.iridescence.w, t.iridescenceThickness);
+    float nv = max(dot(s.normal, s.view), 0.0001);
+    s.film = vec4(filmReflection(s.f0, nv, material.iridescence.y, thickness),
+                  clamp(material.iridescence.x * t.iridescence, 0.0, 1.0));
+  }
+}
+
 // Discards what the mask cuts away, after every texture has been sampled: what kFeatures decides is uniform, so the
 // derivatives are defined.
 Surface shadeSurface() {
+  Texels t = sampleTextures();
   vec4 base = material.baseColor;
-  vec3 metallicRoughness = vec3(1.0);
-  vec3 normalSample = vec3(0.5, 0.5, 1.0);
-  float occlusionSample = 1.0;
-  float transmission = has(FEATURE_TRANSMISSION) ? material.transmission : 0.0;
-  vec3 emissive = material.emissive.rgb;
   if (has(FEATURE_VERTEX_COLOR)) base *= inColor;
-  if (hasTexture(SLOT_BASE_COLOR)) base *= texture(baseColorTexture, inTexCoords[SLOT_BASE_COLOR]);
-  if (hasTexture(SLOT_METALLIC_ROUGHNESS)) {
-    metallicRoughness = texture(metallicRoughnessTexture, inTexCoords[SLOT_METALLIC_ROUGHNESS]).rgb;
-  }
-  if (hasTexture(SLOT_NORMAL)) normalSample = texture(normalTexture, inTexCoords[SLOT_NORMAL]).rgb;
-  if (hasTexture(SLOT_OCCLUSION)) occlusionSample = texture(occlusionTexture, inTexCoords[SLOT_OCCLUSION]).r;
-  if (hasTexture(SLOT_EMISSIVE)) emissive *= texture(emissiveTexture, inTexCoords[SLOT_EMISSIVE]).rgb;
-  if (hasTexture(SLOT_TRANSMISSION)) {
-    transmission *= texture(transmissionTexture, inTexCoords[SLOT_TRANSMISSION]).r;
-  }
-
+  base *= t.base;
   vec3 plane = planeNormal();
   if (has(FEATURE_MASK) && base.a < material.alphaCutoff) discard;
   float alpha = material.opacity * mix(1.0, base.a, material.alphaFromBase);
   if (has(FEATURE_UNLIT)) return Surface(base.rgb, alpha, vec3(1.0), 0.0);
 
-  vec3 v = viewDirection();
-  vec3 n = surfaceNormal(plane, normalSample, v);
-  float roughness = clamp(material.roughness * metallicRoughness.g, 0.045, 1.0);
-  float metallic = clamp(material.metallic * metallicRoughness.b, 0.0, 1.0);
-  float occlusion = 1.0 + material.occlusionStrength * (occlusionSample - 1.0);
-  transmission = clamp(transmission, 0.0, 1.0);
-  vec3 color = lit(base.rgb, metallic, 1.0 - transmission, roughness, occlusion, n, v) + emissive;
+  float metallic = clamp(material.metallic * t.metallicRoughness.b, 0.0, 1.0);
+  if (has(FEATURE_SPECULAR_GLOSSINESS)) metallic = 0.0;
+  float transmission = has(FEATURE_TRANSMISSION) ? clamp(material.transmission * t.transmission, 0.0, 1.0) : 0.0;
+  Lit s;
+  s.view = viewDirection();
+  vec3 smoothly = smoothNormal(plane, s.view);
+  s.normal = hasTexture(SLOT_NORMAL) && !has(FEATURE_FLAT) ? mappedNormal(smoothly, t.normal) : smoothly;
+  s.occlusion = 1.0 + material.occlusionStrength * (t.occlusion - 1.0);
+  setReflection(s, t, base.rgb, metallic, 1.0 - transmission);
+  float nv = max(dot(s.normal, s.view), 0.0001);
+  if (has(FEATURE_SHEEN)) s.sheen = sheenOf(t.sheenColor, t.sheenRoughness, nv);
+  if (has(FEATURE_CLEARCOAT)) s.coat = coatOf(smoothly, s.view, t.clearcoat, t.clearcoatRoughness);
+  if (has(FEATURE_RARE)) s.grooves = groovesOf(tangentOf(s.normal), s.normal, s.roughness, t.anisotropy);
+  vec3 color = lit(s, material.emissive.rgb * t.emissive);
   return Surface(color, alpha, base.rgb, transmission * (1.0 - metallic));
 }
 

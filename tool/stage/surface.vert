@@ -24,7 +24,7 @@ layout(location = 0) out vec3 outPosition;
 layout(location = 1) out vec3 outNormal;
 layout(location = 2) out vec4 outTangent;
 layout(location = 3) out vec4 outColor;
-layout(location = 4) out vec2 outTexCoords[SLOT_COUNT];
+layout(location = 4) out vec4 outTexCoords[SLOT_PAIRS];
 
 // Both passes must give one vertex the same bits, or transparent decals on opaque surfaces would flicker.
 invariant gl_Position;
@@ -67,5 +67,7 @@ void main() {
   vec3 tangent = fromOctahedral(vec2(float(inTangent.x) / 32767.0, float(inTangent.y >> 1) / 16383.0));
   outTangent = vec4(tangent * rows, (inTangent.y & 1) != 0 ? -mirrored : mirrored);
   outColor = inColor;
-  for (uint slot = 0u; slot < SLOT_COUNT; ++slot) outTexCoords[slot] = slotCoordinates(slot);
+  for (uint pair = 0u; pair < SLOT_PAIRS; ++pair) {
+    outTexCoords[pair] = vec4(slotCoordinates(2u * pair), slotCoordinates(2u * pair + 1u));
+  }
 }

@@ -42,7 +42,7 @@ SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const Gpu
     info.vertexShader = shaders::surface_vert;
     info.vertices = surfaceVertexLayout();
     info.topology = topologyOf(draw.features);
-    info.depthTest = VK_COMPARE_OP_GREATER;
+    info.depthTest = VK_COMPARE_OP_GREATER_OR_EQUAL; // of surfaces in one plane the one that is drawn last is seen
     describe(draw.features, info);
     info.layout = layout_.get();
     info.constants.emplace_back(0, draw.features);
@@ -59,13 +59,14 @@ Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
       transparentRuns_(runsOf(scene_.transparentDraws())),
       viewBuffer_(gpu, sizeof(shaders::FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::Upload,
                   "frame data"),
-      frameSet_(
-          gpu,
-          {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT},
-           {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT}},
-          "frame") {
+      frameSet_(gpu,
+                {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT},
+                 {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT},
+                 {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_FRAGMENT_BIT}},
+                "frame") {
   frameSet_.writeBuffer(0, viewBuffer_.get(), viewBuffer_.size());
   frameSet_.writeBuffer(1, scene_.materials().get(), sizeof(shaders::MaterialData));
+  frameSet_.writeBuffer(2, scene_.lights().get(), scene_.lights().size());
 }
 
 std::vector<SurfaceRun> Surfaces::runsOf(std::span<const GpuDraw> draws) {
@@ -80,7 +81,8 @@ std::vector<SurfaceRun> Surfaces::runsOf(std::span<const GpuDraw> draws) {
 
 void Surfaces::setView(const shaders::FrameData& view) {
   view_ = view;
-  std::memcpy(viewBuffer_.mapped(), &view, sizeof(view));
+  view_.toLight.w = static_cast<float>(scene_.lightCount());
+  std::memcpy(viewBuffer_.mapped(), &view_, sizeof(view_));
 }
 
 void Surfaces::cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout) const {

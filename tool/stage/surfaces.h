@@ -31,7 +31,7 @@ struct SurfaceProgram {
 class SurfacePipelines {
  public:
   // Fills in what draws with some features are drawn with: of `info`, which has the vertex shader and passes fragments
-  // in front of the opaque scene, all but layout and constant 0 may be changed.
+  // that are not behind the opaque scene, all but layout and constant 0 may be changed.
   using Describe = std::function<void(std::uint32_t features, GraphicsPipelineInfo& info)>;
 
   // Makes them all. Throws GpuError.

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 #include <fmt/format.h>
+#include <glm/gtc/packing.hpp>
 
 #include "../gpu/vk.h"
+#include "../scene/srgb.h"
+#include "material_data.h"
 
 namespace vitrail::tool {
 
@@ -14,25 +18,43 @@ namespace {
 constexpr VkImageUsageFlags kTextureUsage =
     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 
-// A material's slots in the order of surface_shared.h.
-std::array<const TextureSlot*, shaders::SLOT_COUNT> slotsOf(const Material& material) {
-  std::array<const TextureSlot*, shaders::SLOT_COUNT> slots{};
-  slots[shaders::SLOT_BASE_COLOR] = &material.baseColorTexture;
-  slots[shaders::SLOT_METALLIC_ROUGHNESS] = &material.metallicRoughnessTexture;
-  slots[shaders::SLOT_NORMAL] = &material.normalTexture;
-  slots[shaders::SLOT_OCCLUSION] = &material.occlusionTexture;
-  slots[shaders::SLOT_EMISSIVE] = &material.emissiveTexture;
-  slots[shaders::SLOT_TRANSMISSION] = &material.transmissionTexture;
-  return slots;
-}
-
 bool isFilled(const Scene& scene, const TextureSlot& slot) {
   if (slot.image < 0) return false;
   const Image& image = scene.images.at(static_cast<std::size_t>(slot.image));
   return image.width > 0 && image.height > 0;
 }
 
-bool isSrgb(std::uint32_t slot) { return slot == shaders::SLOT_BASE_COLOR || slot == shaders::SLOT_EMISSIVE; }
+bool isColor(const Material& material, std::uint32_t slot) {
+  return slot == shaders::SLOT_BASE_COLOR || slot == shaders::SLOT_EMISSIVE || slot == shaders::SLOT_SPECULAR_COLOR ||
+         slot == shaders::SLOT_SHEEN_COLOR || (slot == shaders::SLOT_METALLIC_ROUGHNESS && material.specularGlossiness);
+}
+
+bool isTranslucent(const Image& image) {
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+    if (image.rgba[i] != 255) return true;
+  }
+  return false;
+}
+
+// Texels in linear light, times alpha, as 16-bit floats: 8 bits on the sRGB curve would leave little of the colours at
+// low alpha.
+std::vector<std::uint16_t> premultiply(const Image& image) {
+  std::array<float, 256> linear{};
+  for (std::size_t i = 0; i < linear.size(); ++i) {
+    linear.at(i) = linearFromSrgb(glm::vec3(static_cast<float>(i) / 255.0F)).r;
+  }
+  std::vector<std::uint16_t> products(std::size_t{256} * 256); // by alpha and colour
+  for (std::size_t i = 0; i < products.size(); ++i) {
+    products[i] = glm::packHalf1x16(linear.at(i % 256) * (static_cast<float>(i / 256) / 255.0F));
+  }
+  std::vector<std::uint16_t> texels(image.rgba.size());
+  for (std::size_t i = 0; i + 3 < texels.size(); i += 4) {
+    const std::size_t alpha = image.rgba[i + 3];
+    for (std::size_t c = i; c < i + 3; ++c) texels[c] = products[alpha * 256 + image.rgba[c]];
+    texels[i + 3] = glm::packHalf1x16(static_cast<float>(alpha) / 255.0F);
+  }
+  return texels;
+}
 
 VkSamplerAddressMode addressMode(Wrap wrap) {
   switch (wrap) {
@@ -56,16 +78,22 @@ MaterialTextures::MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& sc
   info.usage = kTextureUsage;
   white_ = GpuImage(gpu, info, "white texture");
   const std::array<std::uint8_t, 4> white{255, 255, 255, 255};
-  uploader.toImage(white, white_);
+  uploader.toImage(std::as_bytes(std::span(white)), white_);
   createLayout();
 
   std::map<Combination, std::size_t> known;
   std::vector<Combination> combinations;
   for (const std::uint32_t material : used) {
-    const auto slots = slotsOf(scene.materials.at(material));
+    const Material& source = scene.materials.at(material);
+    const auto slots = slotsOf(source);
     Combination combination;
+    if (source.alphaMode != AlphaMode::Opaque && hasAlpha(scene, source.baseColorTexture)) {
+      premultiplied_.insert(material);
+    }
     for (std::uint32_t i = 0; i < shaders::SLOT_COUNT; ++i) {
-      combination.at(i) = slotTexture(uploader, scene, *slots.at(i), isSrgb(i));
+      Texels texels = isColor(source, i) ? Texels::Srgb : Texels::Linear;
+      if (i == shaders::SLOT_BASE_COLOR && isPremultiplied(material)) texels = Texels::Premultiplied;
+      combination.at(i) = slotTexture(uploader, scene, *slots.at(i), texels);
     }
     const auto [found, isNew] = known.try_emplace(combination, combinations.size());
     if (isNew) combinations.push_back(combination);
@@ -81,6 +109,13 @@ std::uint32_t MaterialTextures::filledSlots(const Scene& scene, const Material& 
     if (isFilled(scene, *slots.at(i))) filled |= 1U << i;
   }
   return filled;
+}
+
+bool MaterialTextures::hasAlpha(const Scene& scene, const TextureSlot& slot) {
+  if (!isFilled(scene, slot)) return false;
+  const auto [known, isNew] = translucent_.try_emplace(slot.image, false);
+  if (isNew) known->second = isTranslucent(scene.images.at(static_cast<std::size_t>(slot.image)));
+  return known->second;
 }
 
 void MaterialTextures::createLayout() {
@@ -138,24 +173,32 @@ void MaterialTextures::createSets(const std::vector<Combination>& combinations) 
 }
 
 std::pair<VkImageView, VkSampler> MaterialTextures::slotTexture(Uploader& uploader, const Scene& scene,
-                                                                const TextureSlot& slot, bool srgb) {
+                                                                const TextureSlot& slot, Texels texels) {
   if (!isFilled(scene, slot)) return {white_.view(), sampler(Sampler{})};
-  return {view(uploader, scene, static_cast<std::uint32_t>(slot.image), srgb), sampler(slot.sampler)};
+  return {view(uploader, scene, static_cast<std::uint32_t>(slot.image), texels), sampler(slot.sampler)};
 }
 
-VkImageView MaterialTextures::view(Uploader& uploader, const Scene& scene, std::uint32_t image, bool srgb) {
-  const auto found = images_.find({image, srgb});
+VkImageView MaterialTextures::view(Uploader& uploader, const Scene& scene, std::uint32_t image, Texels texels) {
+  const auto found = images_.find({image, texels});
   if (found != images_.end()) return found->second.view();
 
   const Image& source = scene.images.at(image);
   GpuImageInfo info;
   info.extent = {source.width, source.height};
-  info.format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+  info.format = texels == Texels::Premultiplied ? VK_FORMAT_R16G16B16A16_SFLOAT
+                : texels == Texels::Srgb        ? VK_FORMAT_R8G8B8A8_SRGB
+                                                : VK_FORMAT_R8G8B8A8_UNORM;
   info.usage = kTextureUsage;
   info.mipLevels = static_cast<std::uint32_t>(std::bit_width(std::max(source.width, source.height)));
-  GpuImage texture(gpu_, info, fmt::format("texture {}{}", image, srgb ? " (sRGB)" : ""));
-  uploader.toImage(source.rgba, texture);
-  return images_.emplace(std::pair{image, srgb}, std::move(texture)).first->second.view();
+  const char* kind = texels == Texels::Premultiplied ? " (premultiplied)" : texels == Texels::Srgb ? " (sRGB)" : "";
+  GpuImage texture(gpu_, info, fmt::format("texture {}{}", image, kind));
+  if (texels == Texels::Premultiplied) {
+    const std::vector<std::uint16_t> halves = premultiply(source);
+    uploader.toImage(std::as_bytes(std::span(halves)), texture);
+  } else {
+    uploader.toImage(std::as_bytes(std::span(source.rgba)), texture);
+  }
+  return images_.emplace(std::pair{image, texels}, std::move(texture)).first->second.view();
 }
 
 VkSampler MaterialTextures::sampler(const Sampler& sampler) {

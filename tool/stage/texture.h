@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -29,24 +30,34 @@ class MaterialTextures {
   // One bit a slot, as in surface_shared.h: which slots a material fills.
   static std::uint32_t filledSlots(const Scene& scene, const Material& material);
 
+  // Whether the base colour texture of a material that was named in `used` is kept premultiplied: where its alpha
+  // counts and is not 1 everywhere.
+  bool isPremultiplied(std::uint32_t material) const { return premultiplied_.contains(material); }
+
  private:
+  // How an image's texels are kept: its numbers; on the sRGB curve, colours; those in linear light times alpha.
+  enum class Texels { Linear, Srgb, Premultiplied };
   using Combination = std::array<std::pair<VkImageView, VkSampler>, shaders::SLOT_COUNT>;
 
   void createLayout();
   void createSets(const std::vector<Combination>& combinations);
   std::pair<VkImageView, VkSampler> slotTexture(Uploader& uploader, const Scene& scene, const TextureSlot& slot,
-                                                bool srgb);
-  VkImageView view(Uploader& uploader, const Scene& scene, std::uint32_t image, bool srgb);
+                                                Texels texels);
+  VkImageView view(Uploader& uploader, const Scene& scene, std::uint32_t image, Texels texels);
   VkSampler sampler(const Sampler& sampler);
 
+  bool hasAlpha(const Scene& scene, const TextureSlot& slot);
+
   Gpu& gpu_;
-  std::map<std::pair<std::uint32_t, bool>, GpuImage> images_; // by image and whether it is read as sRGB
+  std::map<std::pair<std::uint32_t, Texels>, GpuImage> images_; // by number
   GpuImage white_;
   std::vector<std::pair<Sampler, Unique<VkSampler>>> samplers_;
   Unique<VkDescriptorSetLayout> layout_;
   Unique<VkDescriptorPool> pool_;
   std::vector<VkDescriptorSet> sets_;
   std::map<std::uint32_t, std::size_t> setOfMaterial_;
+  std::set<std::uint32_t> premultiplied_;    // materials
+  std::map<std::int32_t, bool> translucent_; // by image: whether its alpha is not 1 everywhere
 };
 
 } // namespace vitrail::tool

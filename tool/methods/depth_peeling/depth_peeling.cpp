@@ -41,6 +41,7 @@ SurfacePipelines makePeel(const MethodHost& host, VkDescriptorSetLayout set) {
     info.fragmentShader = shaders::depth_peeling_frag;
     info.colors = {{PictureImages::kColorFormat, {}}, {PictureImages::kColorFormat, {}}, {kTakenFormat, {}}};
     info.depthFormat = kLayerDepthFormat;
+    info.depthTest = VK_COMPARE_OP_GREATER; // of surfaces at one depth the first remains, the others' turns come later
     info.depthWrite = true;
   };
   return {host.surfaces,

@@ -18,7 +18,7 @@ layout(location = 2) out uvec2 outTaken;
 bool remains(uvec2 mine, ivec2 pixel) {
   uvec2 taken = imageLoad(takenImage, pixel).xy;
   bool after = mine.x < taken.x || (mine.x == taken.x && mine.y > taken.y);
-  return after && gl_FragCoord.z > texelFetch(opaqueDepth, pixel, 0).r;
+  return after && gl_FragCoord.z >= texelFetch(opaqueDepth, pixel, 0).r;
 }
 
 void main() {

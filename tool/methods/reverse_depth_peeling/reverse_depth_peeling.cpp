@@ -43,7 +43,7 @@ SurfacePipelines makeFind(const MethodHost& host, VkDescriptorSetLayout set) {
   };
   return {host.surfaces,
           host.surfaces.scene().transparentDraws(),
-          {.set = set, .name = "reverse-depth-peeling find"},
+          {.set = set, .constantBytes = sizeof(std::uint32_t), .name = "reverse-depth-peeling find"},
           describe};
 }
 
@@ -56,7 +56,8 @@ SurfacePipelines makeBlend(const MethodHost& host, const MethodOptions& options,
     info.depthFormat = kReverseDepthFormat;
     info.depthTest = VK_COMPARE_OP_EQUAL;
   };
-  return makeBlendedSurfaces(host, options, {.set = set, .name = "reverse-depth-peeling"}, adjust);
+  return makeBlendedSurfaces(
+      host, options, {.set = set, .constantBytes = sizeof(std::uint32_t), .name = "reverse-depth-peeling"}, adjust);
 }
 
 class ReverseDepthPeeling final : public Method {
@@ -72,6 +73,7 @@ class ReverseDepthPeeling final : public Method {
  private:
   void find(Frame& frame, UsedImage& last, UsedImage& found, VkDescriptorSet lastSet);
   void blend(Frame& frame, UsedImage& found, VkDescriptorSet lastSet);
+  void drawSurfaces(Frame& frame, const SurfacePipelines& pipelines, VkDescriptorSet lastSet) const;
 
   Gpu& gpu_;
   DepthComplexity complexity_;
@@ -135,7 +137,7 @@ void ReverseDepthPeeling::find(Frame& frame, UsedImage& last, UsedImage& found, 
   Scope scope = frame.images().wholeScope();
   scope.depth = {.image = &found, .depth = AspectUse::Write, .clear = VkClearDepthStencilValue{1.0F, 0}};
   cmdBeginScope(frame.commands(), scope);
-  frame.drawSurfaces(find_, lastSet);
+  drawSurfaces(frame, find_, lastSet);
   vkCmdEndRendering(frame.commands());
 }
 
@@ -144,8 +146,15 @@ void ReverseDepthPeeling::blend(Frame& frame, UsedImage& found, VkDescriptorSet 
   scope.colors.push_back({.image = &frame.images().color()});
   scope.depth = {.image = &found, .depth = AspectUse::Test};
   cmdBeginScope(frame.commands(), scope);
-  frame.drawSurfaces(blend_, lastSet);
+  drawSurfaces(frame, blend_, lastSet);
   vkCmdEndRendering(frame.commands());
+}
+
+// The first pass begins at the opaque scene, and a surface in its very plane is seen.
+void ReverseDepthPeeling::drawSurfaces(Frame& frame, const SurfacePipelines& pipelines, VkDescriptorSet lastSet) const {
+  const std::uint32_t first = lastSet == opaqueSet_.set() ? 1 : 0;
+  vkCmdPushConstants(frame.commands(), pipelines.layout(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(first), &first);
+  frame.drawSurfaces(pipelines, lastSet);
 }
 
 FrameStats ReverseDepthPeeling::stats() const {

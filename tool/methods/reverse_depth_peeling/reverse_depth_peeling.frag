@@ -8,6 +8,8 @@ layout(early_fragment_tests) in;
 
 layout(set = 2, binding = 0) uniform texture2D lastDepth;
 
+layout(push_constant) uniform PassBlock { uint first; }; // 1: the last depth is the opaque scene's
+
 #ifdef VITRAIL_TRANSMISSION
 layout(location = 0, index = 0) out vec4 outColor;
 layout(location = 0, index = 1) out vec4 outThrough;
@@ -18,7 +20,8 @@ layout(location = 0) out vec4 outColor;
 void main() {
   SurfaceLight layer = lightOf(shadeSurface());
   // Where nothing was found the depth is that of the near plane, and a surface there is in the picture.
-  if (gl_FragCoord.z <= texelFetch(lastDepth, ivec2(gl_FragCoord.xy), 0).r) discard;
+  float last = texelFetch(lastDepth, ivec2(gl_FragCoord.xy), 0).r;
+  if (first != 0u ? gl_FragCoord.z < last : gl_FragCoord.z <= last) discard;
   outColor = vec4(layer.color, 1.0 - layer.transmittance.a);
 #ifdef VITRAIL_TRANSMISSION
   outThrough = layer.transmittance;

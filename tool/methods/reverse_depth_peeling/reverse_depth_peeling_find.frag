@@ -7,7 +7,10 @@
 
 layout(set = 2, binding = 0) uniform texture2D lastDepth;
 
+layout(push_constant) uniform PassBlock { uint first; }; // 1: the last depth is the opaque scene's
+
 void main() {
   if (has(FEATURE_MASK)) shadeSurface();
-  if (gl_FragCoord.z <= texelFetch(lastDepth, ivec2(gl_FragCoord.xy), 0).r) discard;
+  float last = texelFetch(lastDepth, ivec2(gl_FragCoord.xy), 0).r;
+  if (first != 0u ? gl_FragCoord.z < last : gl_FragCoord.z <= last) discard;
 }

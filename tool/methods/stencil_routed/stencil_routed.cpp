@@ -16,7 +16,8 @@
 //
 // What it gets wrong: a stencil counts to 255, so more than 254 surfaces in a pixel are refused. Each layer is kept in
 // 16-bit floats. Where samples are drawn by themselves the moved scene may be rounded otherwise, so a pixel whose
-// middle is as good as on an edge may lose or repeat a fragment: such pictures are reported as not exact.
+// middle is as good as on an edge may lose or repeat a fragment, and a slanting decal in the very plane of an opaque
+// surface is lost in places: such pictures are reported as not exact.
 #include <algorithm>
 #include <array>
 #include <memory>

@@ -58,7 +58,6 @@ struct Draws {
   const char* name;
   std::span<const std::uint32_t> shader;
   std::vector<ColorOutput> colors;
-  VkCompareOp test = VK_COMPARE_OP_GREATER;
   bool depthWrite = false;
 };
 
@@ -71,7 +70,6 @@ SurfacePipelines makeSurfaces(const MethodHost& host, std::uint32_t samples, con
     info.samples = flagOf(samples);
     info.colors = draws.colors;
     info.depthFormat = PictureImages::depthFormat(false);
-    info.depthTest = draws.test;
     info.depthWrite = draws.depthWrite;
   };
   return {host.surfaces, host.surfaces.scene().transparentDraws(), program, describe};
@@ -127,8 +125,7 @@ Stochastic::Stochastic(const MethodHost& host, const MethodOptions& options)
       light_(makeSurfaces(host, samples_,
                           {.name = "stochastic light",
                            .shader = shaders::stochastic_light_frag,
-                           .colors = planes_.outputs(kLightPlane, 1),
-                           .test = VK_COMPARE_OP_GREATER_OR_EQUAL})),
+                           .colors = planes_.outputs(kLightPlane, 1)})),
       composite_(gpu_, {.one = shaders::stochastic_composite_comp,
                         .several = shaders::stochastic_composite_samples_comp,
                         .planes = 2,

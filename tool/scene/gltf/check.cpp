@@ -134,9 +134,44 @@ constexpr std::array pbrFields{numbers("baseColorFactor", 4), object("baseColorT
 constexpr std::array emissiveStrengthFields{Field{"emissiveStrength", Kind::Number}};
 constexpr std::array transmissionFields{Field{"transmissionFactor", Kind::Number},
                                         object("transmissionTexture", textureInfoFields)};
+constexpr std::array volumeFields{Field{"thicknessFactor", Kind::Number}, object("thicknessTexture", textureInfoFields),
+                                  Field{"attenuationDistance", Kind::Number}, numbers("attenuationColor", 3)};
+constexpr std::array iorFields{Field{"ior", Kind::Number}};
+constexpr std::array specularFields{Field{"specularFactor", Kind::Number}, object("specularTexture", textureInfoFields),
+                                    numbers("specularColorFactor", 3),
+                                    object("specularColorTexture", textureInfoFields)};
+constexpr std::array specularGlossinessFields{numbers("diffuseFactor", 4), object("diffuseTexture", textureInfoFields),
+                                              numbers("specularFactor", 3), Field{"glossinessFactor", Kind::Number},
+                                              object("specularGlossinessTexture", textureInfoFields)};
+constexpr std::array clearcoatFields{
+    Field{"clearcoatFactor", Kind::Number}, object("clearcoatTexture", textureInfoFields),
+    Field{"clearcoatRoughnessFactor", Kind::Number}, object("clearcoatRoughnessTexture", textureInfoFields)};
+constexpr std::array sheenFields{numbers("sheenColorFactor", 3), object("sheenColorTexture", textureInfoFields),
+                                 Field{"sheenRoughnessFactor", Kind::Number},
+                                 object("sheenRoughnessTexture", textureInfoFields)};
+constexpr std::array anisotropyFields{Field{"anisotropyStrength", Kind::Number},
+                                      Field{"anisotropyRotation", Kind::Number},
+                                      object("anisotropyTexture", textureInfoFields)};
+constexpr std::array iridescenceFields{Field{"iridescenceFactor", Kind::Number},
+                                       object("iridescenceTexture", textureInfoFields),
+                                       Field{"iridescenceIor", Kind::Number},
+                                       Field{"iridescenceThicknessMinimum", Kind::Number},
+                                       Field{"iridescenceThicknessMaximum", Kind::Number},
+                                       object("iridescenceThicknessTexture", textureInfoFields)};
+constexpr std::array diffuseTransmissionFields{Field{"diffuseTransmissionFactor", Kind::Number},
+                                               numbers("diffuseTransmissionColorFactor", 3)};
 constexpr std::array materialExtensionFields{object("KHR_materials_unlit", {}),
                                              object("KHR_materials_emissive_strength", emissiveStrengthFields),
-                                             object("KHR_materials_transmission", transmissionFields)};
+                                             object("KHR_materials_transmission", transmissionFields),
+                                             object("KHR_materials_volume", volumeFields),
+                                             object("KHR_materials_ior", iorFields),
+                                             object("KHR_materials_specular", specularFields),
+                                             object("KHR_materials_pbrSpecularGlossiness", specularGlossinessFields),
+                                             object("KHR_materials_clearcoat", clearcoatFields),
+                                             object("KHR_materials_sheen", sheenFields),
+                                             object("KHR_materials_anisotropy", anisotropyFields),
+                                             object("KHR_materials_iridescence", iridescenceFields),
+                                             object("KHR_materials_diffuse_transmission", diffuseTransmissionFields)};
 constexpr std::array materialFields{nameField,
                                     object("pbrMetallicRoughness", pbrFields),
                                     object("normalTexture", textureInfoFields),

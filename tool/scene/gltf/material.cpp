@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include "../image_decode.h"
 #include "../load.h"
 #include "../message.h"
+#include "material_extensions.h"
 #include "uri.h"
 
 namespace vitrail::tool {
@@ -71,19 +71,30 @@ AlphaMode alphaModeOf(const std::string& text, const std::string& where) {
   throw LoadError(fmt::format("{}: alphaMode is \"{}\", none of OPAQUE, MASK and BLEND", where, oneLine(text)));
 }
 
-// Renames the sets of texture coordinates that the slots use to 0 and 1.
-void renameTexCoordSets(GltfMaterial& result, const std::string& where) {
+// Renames the sets of texture coordinates that the slots use to 0 and 1. Those of further sets are left out.
+void renameTexCoordSets(GltfMaterial& result, const std::string& where, Scene& scene) {
   Material& material = result.material;
-  const std::array slots{&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
-                         &material.occlusionTexture, &material.emissiveTexture,          &material.transmissionTexture};
+  const std::array slots{
+      &material.baseColorTexture,           &material.metallicRoughnessTexture,  &material.normalTexture,
+      &material.occlusionTexture,           &material.emissiveTexture,           &material.transmissionTexture,
+      &material.thicknessTexture,           &material.specularTexture,           &material.specularColorTexture,
+      &material.clearcoatTexture,           &material.clearcoatRoughnessTexture, &material.sheenColorTexture,
+      &material.sheenRoughnessTexture,      &material.anisotropyTexture,         &material.iridescenceTexture,
+      &material.iridescenceThicknessTexture};
   std::vector<std::uint32_t> sets;
-  for (const TextureSlot* slot : slots)
-    if (slot->image >= 0 && std::ranges::find(sets, slot->texCoord) == sets.end()) sets.push_back(slot->texCoord);
+  for (TextureSlot* slot : slots) {
+    if (slot->image < 0 || std::ranges::find(sets, slot->texCoord) != sets.end()) continue;
+    if (sets.size() < 2) {
+      sets.push_back(slot->texCoord);
+      continue;
+    }
+    warn(scene,
+         fmt::format("{}: a texture with TEXCOORD_{} is left out: at most 2 sets of texture coordinates can be drawn",
+                     where, slot->texCoord));
+    slot->image = -1;
+  }
   std::ranges::sort(sets);
   if (sets.empty() || sets.back() < 2) return;
-  if (sets.size() > 2)
-    throw LoadError(
-        fmt::format("{}: uses {} sets of texture coordinates, but at most 2 can be drawn", where, sets.size()));
   for (std::size_t i = 0; i < sets.size(); ++i) result.texCoordSets[i] = sets[i];
   for (TextureSlot* slot : slots) slot->texCoord = sets.size() == 2 && slot->texCoord == sets[1] ? 1 : 0;
 }
@@ -200,14 +211,6 @@ TextureSlot GltfMaterialReader::slot(const TextureInfo& info, const std::string&
   return slot;
 }
 
-void GltfMaterialReader::readTransmission(Material& material, const tinygltf::Value& extension,
-                                          const std::string& where) {
-  if (extension.Has("transmissionFactor"))
-    material.transmission = clampedFactor(extension.Get("transmissionFactor").GetNumberAsDouble());
-  if (extension.Has("transmissionTexture"))
-    material.transmissionTexture = slot(textureInfo(extension.Get("transmissionTexture")), where);
-}
-
 GltfMaterial GltfMaterialReader::read(std::size_t index) {
   const tinygltf::Material& source = document_.model.materials[index];
   const std::string where = objectName("material", index, source.name);
@@ -231,18 +234,10 @@ GltfMaterial GltfMaterialReader::read(std::size_t index) {
   material.occlusionTexture = slot(source.occlusionTexture, where);
   material.occlusionStrength = clampedFactor(source.occlusionTexture.strength);
   material.emissiveTexture = slot(source.emissiveTexture, where);
-  double strength = 1.0;
-  const auto emissive = source.extensions.find("KHR_materials_emissive_strength");
-  if (emissive != source.extensions.end() && emissive->second.Has("emissiveStrength"))
-    strength = std::max(emissive->second.Get("emissiveStrength").GetNumberAsDouble(), 0.0);
-  for (int c = 0; c < 3; ++c)
-    // The product of two numbers that a float holds may be one that it does not.
-    material.emissive[c] =
-        static_cast<float>(std::min(clampedFactor(source.emissiveFactor[static_cast<std::size_t>(c)]) * strength,
-                                    static_cast<double>(std::numeric_limits<float>::max())));
-  const auto transmission = source.extensions.find("KHR_materials_transmission");
-  if (transmission != source.extensions.end()) readTransmission(material, transmission->second, where);
-  renameTexCoordSets(result, where);
+  for (int c = 0; c < 3; ++c) material.emissive[c] = clampedFactor(source.emissiveFactor[static_cast<std::size_t>(c)]);
+  const auto texture = [&](const tinygltf::Value& info) { return slot(textureInfo(info), where); };
+  readMaterialExtensions(source, where, texture, material, scene_);
+  renameTexCoordSets(result, where, scene_);
   return result;
 }
 

@@ -30,7 +30,6 @@ class GltfMaterialReader {
  private:
   template <typename TextureInfo>
   TextureSlot slot(const TextureInfo& info, const std::string& where);
-  void readTransmission(Material& material, const tinygltf::Value& extension, const std::string& where);
   Sampler sampler(std::size_t index) const;
   // What became of one image of the file.
   struct DecodedImage {

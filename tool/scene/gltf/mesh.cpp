@@ -273,9 +273,10 @@ bool isPosed(const tinygltf::Primitive& primitive, const GltfPose& pose) {
 void finish(Mesh& mesh, const Material& material) {
   dropUnusedVertices(mesh);
   if (mesh.primitive != Primitive::Triangles) return;
-  if (!mesh.tangents.empty() || material.normalTexture.image < 0) return;
+  const bool mapped = material.normalTexture.image >= 0;
+  if (!mesh.tangents.empty() || (!mapped && material.anisotropy <= 0.0F)) return;
   if (mesh.normals.empty()) makeFlatNormals(mesh);
-  makeTangents(mesh, material.normalTexture);
+  makeTangents(mesh, mapped ? material.normalTexture : material.anisotropyTexture);
 }
 
 } // namespace
