@@ -8,7 +8,8 @@
 //   VitrailList list = vitrailOpenList(pixel);
 //   VitrailLayer layer;
 //   while (vitrailNextLayer(list, layer)) {
-//     ... layer.color, layer.depth, layer.blend, layer.coverage, layer.word
+//     ... layer.color, layer.depth, layer.blend, layer.coverage, layer.word; or vitrailPairOf(layer) (node.glsl):
+//     color and transmittance, of what it does to the light d behind it: color + transmittance * d
 //   }
 //   if (vitrailListWasCut(list)) ... // there is more
 //

@@ -50,15 +50,15 @@ std::vector<std::uint32_t> usedMaterials(const Scene& scene) {
   return {used.begin(), used.end()};
 }
 
-// Uploads structures as one uniform buffer in which each starts at a multiple of kUniformStride.
+// Uploads structures as one uniform buffer in which each starts at a multiple of its stride.
 template <typename Data>
 GpuBuffer uploadUniforms(Gpu& gpu, Uploader& uploader, const std::vector<Data>& data, const char* name) {
-  static_assert(sizeof(Data) <= kUniformStride);
-  checkCount(data.size(), std::numeric_limits<std::uint32_t>::max() / kUniformStride, name);
-  std::vector<std::byte> bytes(data.size() * kUniformStride);
-  for (std::size_t i = 0; i < data.size(); ++i) std::memcpy(&bytes[i * kUniformStride], &data[i], sizeof(Data));
+  constexpr std::uint32_t stride = kUniformStride<Data>;
+  checkCount(data.size(), std::numeric_limits<std::uint32_t>::max() / stride, name);
+  std::vector<std::byte> bytes(data.size() * stride);
+  for (std::size_t i = 0; i < data.size(); ++i) std::memcpy(&bytes[i * stride], &data[i], sizeof(Data));
   // One at least, so that a scene without any has something to bind.
-  GpuBuffer buffer(gpu, std::max<std::size_t>(bytes.size(), kUniformStride),
+  GpuBuffer buffer(gpu, std::max<std::size_t>(bytes.size(), stride),
                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryKind::Device, name);
   uploader.toBuffer(bytes, buffer, 0, kShaderRead);
   return buffer;
@@ -67,7 +67,7 @@ GpuBuffer uploadUniforms(Gpu& gpu, Uploader& uploader, const std::vector<Data>& 
 } // namespace
 
 GpuScene::GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released)
-    : gpu_(gpu), order_(order), origin_(farMiddle(scene)) {
+    : gpu_(gpu), order_(order), solids_(scene), opacity_(opacity.value_or(1.0F)), origin_(farMiddle(scene)) {
   Uploader uploader(gpu);
   const std::vector<MeshRange> ranges = placeMeshes(scene, opacity.has_value());
   uploadMaterials(uploader, scene, opacity);
@@ -185,12 +185,13 @@ GpuDraw GpuScene::describe(const Scene& scene, const DrawGroup& group, const Mes
   const Mesh& mesh = scene.meshes[group.mesh];
   GpuDraw draw;
   draw.mesh = group.mesh;
-  draw.materialOffset = group.material * kUniformStride;
+  draw.materialOffset = group.material * kUniformStride<shaders::MaterialData>;
   draw.firstIndex = static_cast<std::uint32_t>(transparent ? range.firstTransparentIndex : range.firstOpaqueIndex);
   draw.indexCount = static_cast<std::uint32_t>(mesh.indices.size());
   draw.firstInstance = static_cast<std::uint32_t>(sources_.size());
   draw.instanceCount = static_cast<std::uint32_t>(group.draws.size());
   draw.features = featuresOf(scene, material, mesh);
+  if (solids_.of(group.mesh, group.material) != Facing::Open) draw.features |= shaders::FEATURE_SOLID;
   draw.textures = textures_->set(group.material);
   // A mirror turns the triangles round, and glTF means the side that was outside before.
   draw.frontFace = group.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;

@@ -1,5 +1,6 @@
 #include "material_data.h"
 
+#include "../scene/volume.h"
 #include "texture.h"
 
 namespace vitrail::tool {
@@ -17,6 +18,7 @@ shaders::MaterialData makeMaterialData(const Material& material, std::optional<f
   shaders::MaterialData data{};
   data.baseColor = material.baseColor;
   data.emissive = glm::vec4(material.emissive, 0.0F);
+  data.attenuation = glm::vec4(material.thickness * absorption(material), 0.0F);
   data.metallic = material.metallic;
   data.roughness = material.roughness;
   data.normalScale = material.normalScale;
@@ -31,6 +33,7 @@ shaders::MaterialData makeMaterialData(const Material& material, std::optional<f
   data.slots[shaders::SLOT_OCCLUSION] = makeSlotData(material.occlusionTexture);
   data.slots[shaders::SLOT_EMISSIVE] = makeSlotData(material.emissiveTexture);
   data.slots[shaders::SLOT_TRANSMISSION] = makeSlotData(material.transmissionTexture);
+  data.slots[shaders::SLOT_THICKNESS] = makeSlotData(material.thicknessTexture);
   return data;
 }
 
@@ -44,6 +47,9 @@ std::uint32_t featuresOf(const Scene& scene, const Material& material, const Mes
   const bool transmissive = material.transmission > 0.0F && !material.unlit;
   if (transmissive) features |= shaders::FEATURE_TRANSMISSION;
   if (!transmissive) features &= ~(1U << shaders::SLOT_TRANSMISSION);
+  const bool absorbs = absorption(material) != glm::vec3(0.0F);
+  if (absorbs) features |= shaders::FEATURE_VOLUME;
+  if (!absorbs) features &= ~(1U << shaders::SLOT_THICKNESS);
   if (!transmissive && material.blend == BlendMode::Additive) features |= shaders::FEATURE_ADDITIVE;
   return features;
 }

@@ -14,6 +14,7 @@ layout(set = 1, binding = 2) uniform sampler2D normalTexture;
 layout(set = 1, binding = 3) uniform sampler2D occlusionTexture;
 layout(set = 1, binding = 4) uniform sampler2D emissiveTexture;
 layout(set = 1, binding = 5) uniform sampler2D transmissionTexture;
+layout(set = 1, binding = 6) uniform sampler2D thicknessTexture;
 
 // Where the surface is shaded: at the middle of the pixel, unless the including shader says otherwise.
 #ifndef SURFACE_IN
@@ -102,6 +103,15 @@ vec3 lit(vec3 base, float metallic, float scattered, float roughness, float occl
   return direct + occlusion * (hemisphere(n) * diffuse + hemisphere(reflected) * ambientFresnel);
 }
 
+// Whether the volume behind the surface is taken to be as thick as the file says, and to tint what passes through the
+// surface. A method that follows light through what surfaces enclose defines SURFACE_TRUE_PATH.
+bool thickAsStated() {
+#ifdef SURFACE_TRUE_PATH
+  if (has(FEATURE_SOLID)) return false;
+#endif
+  return has(FEATURE_VOLUME) && gl_FrontFacing;
+}
+
 // A surface at one pixel, as docs/shading.md states it.
 struct Surface {
   vec3 color;  // linear
@@ -131,6 +141,9 @@ Surface shadeSurface() {
     transmission *= texture(transmissionTexture, inTexCoords[SLOT_TRANSMISSION]).r;
   }
 
+  float thickness = 1.0;
+  if (hasTexture(SLOT_THICKNESS)) thickness = texture(thicknessTexture, inTexCoords[SLOT_THICKNESS]).g;
+
   vec3 plane = planeNormal();
   if (has(FEATURE_MASK) && base.a < material.alphaCutoff) discard;
   float alpha = material.opacity * mix(1.0, base.a, material.alphaFromBase);
@@ -143,7 +156,9 @@ Surface shadeSurface() {
   float occlusion = 1.0 + material.occlusionStrength * (occlusionSample - 1.0);
   transmission = clamp(transmission, 0.0, 1.0);
   vec3 color = lit(base.rgb, metallic, 1.0 - transmission, roughness, occlusion, n, v) + emissive;
-  return Surface(color, alpha, base.rgb, transmission * (1.0 - metallic));
+  vec3 tint = base.rgb;
+  if (thickAsStated()) tint *= exp(-material.attenuation.rgb * (thickness * abs(inTangent.w)));
+  return Surface(color, alpha, tint, transmission * (1.0 - metallic));
 }
 
 // The two fragments of a transmissive surface, the first in front of the second: what it reflects, premultiplied, and

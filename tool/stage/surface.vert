@@ -24,6 +24,9 @@ layout(location = 1) out vec3 outNormal;
 layout(location = 2) out vec4 outTangent;
 layout(location = 3) out vec4 outColor;
 layout(location = 4) out vec2 outTexCoords[SLOT_COUNT];
+#ifdef SURFACE_OBJECT
+layout(location = 15) flat out uint outObject; // the number of the instance
+#endif
 
 // Both passes must give one vertex the same bits, or transparent decals on opaque surfaces would flicker.
 invariant gl_Position;
@@ -62,6 +65,11 @@ void main() {
   outNormal = mirrored * (fromOctahedral(inNormal) * cofactors);
   vec3 tangent = fromOctahedral(vec2(float(inTangent.x) / 32767.0, float(inTangent.y >> 1) / 16383.0));
   outTangent = vec4(tangent * rows, (inTangent.y & 1) != 0 ? -mirrored : mirrored);
+  // Beside the sign w then says how much longer things become: no output more for the few that ask.
+  if ((kFeatures & FEATURE_VOLUME) != 0u) outTangent.w *= size * pow(abs(dot(rows[0], cofactors[0])), 1.0 / 3.0);
   outColor = inColor;
+#ifdef SURFACE_OBJECT
+  outObject = uint(gl_InstanceIndex);
+#endif
   for (uint slot = 0u; slot < SLOT_COUNT; ++slot) outTexCoords[slot] = slotCoordinates(slot);
 }

@@ -23,15 +23,18 @@ const uint SLOT_NORMAL = 2u;
 const uint SLOT_OCCLUSION = 3u;
 const uint SLOT_EMISSIVE = 4u;
 const uint SLOT_TRANSMISSION = 5u;
-const uint SLOT_COUNT = 6u;
+const uint SLOT_THICKNESS = 6u;
+const uint SLOT_COUNT = 7u;
 
 // What a surface's pipeline is specialized for: bit i is slot i's texture, and the rest below.
-const uint FEATURE_UNLIT = 64u;
-const uint FEATURE_MASK = 128u;         // fragments below the cutoff are discarded
-const uint FEATURE_VERTEX_COLOR = 256u; // without it colours are exact: interpolating a constant rounds
-const uint FEATURE_TRANSMISSION = 512u; // light passes through, tinted
-const uint FEATURE_ADDITIVE = 1024u;    // adds its light to what is behind it
-const uint FEATURE_FLAT = 2048u;        // there are no vertex normals: each triangle has that of its plane
+const uint FEATURE_UNLIT = 0x10000u;
+const uint FEATURE_MASK = 0x20000u;         // fragments below the cutoff are discarded
+const uint FEATURE_VERTEX_COLOR = 0x40000u; // without it colours are exact: interpolating a constant rounds
+const uint FEATURE_TRANSMISSION = 0x80000u; // light passes through, tinted
+const uint FEATURE_ADDITIVE = 0x100000u;    // adds its light to what is behind it
+const uint FEATURE_FLAT = 0x10000000u;      // there are no vertex normals: each triangle has that of its plane
+const uint FEATURE_VOLUME = 0x20000000u;    // there is something behind it that absorbs light
+const uint FEATURE_SOLID = 0x40000000u;     // and the surface encloses it
 
 // What all draws of a frame share (std140).
 struct FrameData {
@@ -52,7 +55,8 @@ struct SlotData {
 // One material (std140).
 struct MaterialData {
   vec4 baseColor;
-  vec4 emissive; // rgb
+  vec4 emissive;    // rgb
+  vec4 attenuation; // rgb: absorption times thickness, in the mesh's lengths
   float metallic;
   float roughness;
   float normalScale;
@@ -67,7 +71,7 @@ struct MaterialData {
 #ifdef __cplusplus
 static_assert(sizeof(FrameData) == 192);
 static_assert(sizeof(SlotData) == 32);
-static_assert(sizeof(MaterialData) == 256);
+static_assert(sizeof(MaterialData) == 304);
 #endif
 
 VITRAIL_SHARED_END

@@ -23,6 +23,7 @@ std::array<const TextureSlot*, shaders::SLOT_COUNT> slotsOf(const Material& mate
   slots[shaders::SLOT_OCCLUSION] = &material.occlusionTexture;
   slots[shaders::SLOT_EMISSIVE] = &material.emissiveTexture;
   slots[shaders::SLOT_TRANSMISSION] = &material.transmissionTexture;
+  slots[shaders::SLOT_THICKNESS] = &material.thicknessTexture;
   return slots;
 }
 

@@ -7,21 +7,40 @@
 #endif
 #include "vitrail/collect.glsl"
 
+#ifdef COLLECT_MEDIA // the resolve follows light through objects
+#define SURFACE_TRUE_PATH
+#include "media_shared.h"
+layout(location = 15) flat in uint inObject;
+#endif
 #include "stage/surface.glsl"
 
 // Whether depths follow from gl_FragCoord.w: with a perspective camera.
 layout(constant_id = 1) const bool kDepthFromW = false;
 
-void collect(vec4 color, uint blend) {
+void collect(vec4 color, uint blend, uint word) {
   float depth = kDepthFromW ? fma(gl_FragCoord.w, frame.depth.y, frame.depth.x) : gl_FragCoord.z;
-  vitrailCollect(color, blend, depth);
+  vitrailCollect(color, blend, depth, word);
+}
+void collect(vec4 color, uint blend) { collect(color, blend, 0u); }
+
+// The filter of a transmissive surface. Where light enters or leaves an object it is stored whatever it does: the
+// tint's share is in its colour, so that its alpha is 1.
+void collectFilter(vec4 through) {
+#ifdef COLLECT_MEDIA
+  if (has(FEATURE_SOLID)) {
+    uint word = MEDIA_FIRST_OBJECT * (inObject + 1u) + (gl_FrontFacing ? MEDIA_FRONT : 0u);
+    collect(vec4(mix(vec3(1.0), through.rgb, through.a), 1.0), VITRAIL_MULTIPLY, word);
+    return;
+  }
+#endif
+  collect(through, VITRAIL_MULTIPLY);
 }
 
 void main() {
   Surface surface = shadeSurface();
   if (has(FEATURE_TRANSMISSION)) {
     collect(reflectionOf(surface), VITRAIL_PREMULTIPLIED);
-    collect(filterOf(surface), VITRAIL_MULTIPLY);
+    collectFilter(filterOf(surface));
   } else {
     collect(vec4(surface.color, surface.alpha), has(FEATURE_ADDITIVE) ? VITRAIL_ADDITIVE : VITRAIL_OVER);
   }

@@ -21,10 +21,16 @@
 #include "../../stage/picture_images.h"
 #include "../method.h"
 #include "../methods.h"
+#include "media.h"
 #include "shaders/collect.frag.h"
 #include "shaders/collect_address.frag.h"
 #include "shaders/collect_coverage.frag.h"
 #include "shaders/collect_coverage_address.frag.h"
+#include "shaders/collect_media.frag.h"
+#include "shaders/collect_media_address.frag.h"
+#include "shaders/collect_media_coverage.frag.h"
+#include "shaders/collect_media_coverage_address.frag.h"
+#include "shaders/surface_object.vert.h"
 
 namespace vitrail::tool {
 
@@ -72,6 +78,17 @@ std::vector<VitrailBounds> boxesOf(const Surfaces& surfaces) {
   return result;
 }
 
+std::span<const std::uint32_t> collectCode(bool media, bool coverage, bool address) {
+  if (media && coverage && address) return shaders::collect_media_coverage_address_frag;
+  if (media && coverage) return shaders::collect_media_coverage_frag;
+  if (media && address) return shaders::collect_media_address_frag;
+  if (media) return shaders::collect_media_frag;
+  if (coverage && address) return shaders::collect_coverage_address_frag;
+  if (coverage) return shaders::collect_coverage_frag;
+  if (address) return shaders::collect_address_frag;
+  return shaders::collect_frag;
+}
+
 bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
   return a.extent.width == b.extent.width && a.extent.height == b.extent.height && a.color == b.color &&
          a.opaque == b.opaque && a.depth == b.depth && a.memoryBudget == b.memoryBudget && a.surfaces == b.surfaces;
@@ -97,6 +114,7 @@ class LinkedList final : public Method {
   bool createTarget(const VitrailVkTargetDesc& desc);
   bool createWholeTarget(std::uint64_t nodeCapacity);
   void countMemory();
+  std::uint64_t wordsOf(std::uint64_t bytes) const;
   void planTiles(std::span<const VitrailBounds> bounds);
   void drawTiles(Frame& frame);
   void drawArea(Frame& frame, const VkRect2D& area);
@@ -118,7 +136,8 @@ class LinkedList final : public Method {
   ImageNeeds needs_;
   std::string reason_; // what the library last logged
   vulkan::Context context_;
-  PipelineKind pipelines_; // of surfaces_
+  std::optional<Media> media_; // where objects absorb light: what resolves the lists then
+  PipelineKind pipelines_;     // of surfaces_
   std::optional<SurfacePipelines> surfaces_;
   vulkan::Target target_;
   std::uint64_t frame_ = 0;    // of the target: rises with every area
@@ -137,6 +156,10 @@ class LinkedList final : public Method {
 LinkedList::LinkedList(const MethodHost& host, const MethodOptions& options)
     : gpu_(host.gpu), source_(host.surfaces), options_(options) {
   makeContext();
+  // With a bound on the layers only the nearest are drawn as they are: then objects are as thick as their files say.
+  if (source_.scene().solids().any() && options_.maxLayers == 0) {
+    media_.emplace(host, context_.descriptorSetLayout(), options_.samples);
+  }
   chooseResolve();
 }
 
@@ -156,6 +179,12 @@ void LinkedList::makeContext() {
 
 void LinkedList::chooseResolve() {
   const GpuFeatures& features = gpu_.features();
+  if (media_) { // which resolves by compute, a pixel at a time, whatever was asked for: there is no other way
+    options_.resolve = VITRAIL_RESOLVE_COMPUTE;
+    options_.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
+    needs_.depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    return;
+  }
   needs_.perSample = options_.samples > 1 && options_.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
   if (needs_.perSample && !features.sampleRateShading) {
     throw GpuError(fmt::format("{} does not shade samples one by one: use --msaa-resolve per-pixel",
@@ -190,10 +219,8 @@ void LinkedList::makeSurfaces() {
   pipelines_ = kind;
   const VitrailVkSpecialization specialization = context_.collectSpecialization(desc);
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
-    if (coverage && address) info.fragmentShader = shaders::collect_coverage_address_frag;
-    if (coverage && !address) info.fragmentShader = shaders::collect_coverage_frag;
-    if (!coverage && address) info.fragmentShader = shaders::collect_address_frag;
-    if (!coverage && !address) info.fragmentShader = shaders::collect_frag;
+    info.fragmentShader = collectCode(media_.has_value(), coverage, address);
+    if (media_) info.vertexShader = shaders::surface_object_vert;
     for (std::size_t i = 0; i < specialization.count; ++i) {
       info.constants.emplace_back(specialization.entries[i].constantID, specialization.data[i]);
     }
@@ -213,7 +240,8 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
   desc.samples = flagOf(options_.samples);
   desc.nodeFormat = options_.nodes;
   desc.depthOrder = VITRAIL_DEPTH_NEAREST_IS_ONE;
-  desc.resolve = options_.resolve;
+  desc.resolve = media_ ? VITRAIL_RESOLVE_HOST : options_.resolve;
+  desc.userWords = media_ ? VK_TRUE : VK_FALSE;
   desc.msaaResolve = options_.msaaResolve;
   desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
   desc.maxLayers = options_.maxLayers;
@@ -229,9 +257,11 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
 }
 
 void LinkedList::setTarget(const MethodTarget& target) {
+  if (media_) media_->setView(source_.view());
   if (wanted_.color != VK_NULL_HANDLE && sameTarget(target, wanted_)) return makeSurfaces();
   releaseTarget();
   wanted_ = target;
+  if (media_) media_->setTarget(target);
   makeSurfaces();
   expected_ = 0;
   budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
@@ -259,10 +289,12 @@ bool LinkedList::createTarget(const VitrailVkTargetDesc& desc) {
   target_ = vulkan::Target();       // first: the old pool and the new one need not fit together
   gpu_.memoryFreed(std::exchange(counted_, 0));
   VitrailVkTargetDesc full = desc;
-  full.views.count = 1;
-  full.views.color = &wanted_.color;
-  if (options_.samples > 1 && !needs_.perSample) full.views.opaque = &wanted_.opaque;
-  if (needs_.depthUsage != 0) full.views.depth = &wanted_.depth;
+  if (!media_) {
+    full.views.count = 1;
+    full.views.color = &wanted_.color;
+    if (options_.samples > 1 && !needs_.perSample) full.views.opaque = &wanted_.opaque;
+    if (needs_.depthUsage != 0) full.views.depth = &wanted_.depth;
+  }
   const VkResult result = vulkan::Target::create(context_, full, target_);
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) return false; // the reason stays, in case that it ends the program
   check(result, "vitrailVkCreateTarget");
@@ -333,10 +365,18 @@ void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
   } else {
     images.cmdToComputeResolve(commands);
     target_.resolve(commands);
+    if (media_) media_->cmdResolve(commands, target_.descriptorSet(), area.extent);
   }
   frame.endPass("resolve");
   target_.end(commands);
   frame.endPass("statistics");
+}
+
+// What words take at most of so many bytes of nodes with words: plans of tiles know nodes alone.
+std::uint64_t LinkedList::wordsOf(std::uint64_t bytes) const {
+  constexpr std::uint64_t kNodes = 1024;
+  const std::uint64_t word = kNodes * sizeof(std::uint32_t);
+  return bytes / (vitrailNodePoolSize(options_.nodes, kNodes) + word) * word;
 }
 
 void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
@@ -356,7 +396,7 @@ void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
   desc.expectedFragments = expected_;
   // The device may have less memory left than it says that it can give: then less is tried.
   for (;;) {
-    desc.memoryBudget = budget_;
+    desc.memoryBudget = media_ ? budget_ - wordsOf(budget_) : budget_;
     check(resultOf(TilePlan::create(desc, plan_)), "vitrailCreateTilePlan");
     VitrailVkTargetDesc target = targetDesc();
     vitrailVkTilePlanTarget(plan_.handle(), &target);

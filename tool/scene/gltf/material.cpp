@@ -75,7 +75,8 @@ AlphaMode alphaModeOf(const std::string& text, const std::string& where) {
 void renameTexCoordSets(GltfMaterial& result, const std::string& where) {
   Material& material = result.material;
   const std::array slots{&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
-                         &material.occlusionTexture, &material.emissiveTexture,          &material.transmissionTexture};
+                         &material.occlusionTexture, &material.emissiveTexture,          &material.transmissionTexture,
+                         &material.thicknessTexture};
   std::vector<std::uint32_t> sets;
   for (const TextureSlot* slot : slots)
     if (slot->image >= 0 && std::ranges::find(sets, slot->texCoord) == sets.end()) sets.push_back(slot->texCoord);
@@ -180,6 +181,21 @@ void GltfMaterialReader::readTransmission(Material& material, const tinygltf::Va
     material.transmissionTexture = slot(textureInfo(extension.Get("transmissionTexture")), where);
 }
 
+// What is behind a surface that lets nothing through is not seen, so it is not read.
+void GltfMaterialReader::readVolume(Material& material, const tinygltf::Value& extension, const std::string& where) {
+  if (!(material.transmission > 0.0F)) return;
+  const auto number = [&](const char* key) {
+    return extension.Has(key) ? static_cast<float>(std::max(extension.Get(key).GetNumberAsDouble(), 0.0)) : 0.0F;
+  };
+  material.thickness = number("thicknessFactor");
+  material.attenuationDistance = number("attenuationDistance");
+  if (extension.Has("thicknessTexture"))
+    material.thicknessTexture = slot(textureInfo(extension.Get("thicknessTexture")), where);
+  if (!extension.Has("attenuationColor")) return;
+  const tinygltf::Value& color = extension.Get("attenuationColor");
+  for (int c = 0; c < 3; ++c) material.attenuationColor[c] = clampedFactor(color.Get(c).GetNumberAsDouble());
+}
+
 GltfMaterial GltfMaterialReader::read(std::size_t index) {
   const tinygltf::Material& source = document_.model.materials[index];
   const std::string where = objectName("material", index, source.name);
@@ -214,6 +230,8 @@ GltfMaterial GltfMaterialReader::read(std::size_t index) {
                                     static_cast<double>(std::numeric_limits<float>::max())));
   const auto transmission = source.extensions.find("KHR_materials_transmission");
   if (transmission != source.extensions.end()) readTransmission(material, transmission->second, where);
+  const auto volume = source.extensions.find("KHR_materials_volume");
+  if (volume != source.extensions.end()) readVolume(material, volume->second, where);
   renameTexCoordSets(result, where);
   return result;
 }

@@ -30,6 +30,7 @@ class GltfMaterialReader {
   template <typename TextureInfo>
   TextureSlot slot(const TextureInfo& info, const std::string& where);
   void readTransmission(Material& material, const tinygltf::Value& extension, const std::string& where);
+  void readVolume(Material& material, const tinygltf::Value& extension, const std::string& where);
   Sampler sampler(std::size_t index) const;
   std::int32_t image(std::size_t index);
 
