@@ -39,6 +39,12 @@
 #include "sort.glsl"
 #include "target.glsl"
 
+// Whether the frame has fragments that found no node: lists lack them.
+bool vitrailListsLackFragments() {
+  return vitrailControl.requested > vitrailParameters.capacity ||
+         (vitrailControl.misfits | vitrailControl.misfitNodes) != 0u;
+}
+
 struct VitrailList {
   VitrailLayout nodes;
   uint head; // where every walk begins

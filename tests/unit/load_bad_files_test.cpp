@@ -104,6 +104,8 @@ const std::map<std::string, std::string>& expectedMessages() {
       {"material_range.gltf", "mesh 0: primitives[0].material is 0, but materials has 0 elements"},
       {"material_texture_range.gltf",
        "material 0: pbrMetallicRoughness.baseColorTexture.index is 1, but textures has 1 element"},
+      {"material_volume_color.gltf",
+       "material 0: extensions.KHR_materials_volume.attenuationColor has 2 numbers where 3 belong"},
       {"material_transmission_range.gltf",
        "material 0: extensions.KHR_materials_transmission.transmissionTexture.index is 1, but textures has 1 element"},
       {"mesh_mode.gltf", "mesh 0 primitive 0: mode is 7, which is none"},

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "../scene/volume.h"
 #include "method.h"
 
 namespace vitrail::tool {
@@ -190,6 +191,16 @@ void checkMethodOptions(const MethodOptions& options) {
   }
   checkTaken(options);
   checkStored(options);
+}
+
+std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions& options) {
+  const bool absorbs = std::ranges::any_of(
+      scene.draws, [&](const Draw& draw) { return absorption(scene.materials[draw.material]) != glm::vec3(0.0F); });
+  const MethodOptions defaults;
+  if (!absorbs || (options.name == defaults.name && options.maxLayers == 0)) return {};
+  return {options.name == defaults.name
+              ? "volumes are attenuated by the file's thickness, not by the true path: leave --layers out"
+              : "volumes are attenuated by the file's thickness, not by the true path: use --method linked-list"};
 }
 
 void checkPictureOptions(std::string_view method, bool memoryBudget) {

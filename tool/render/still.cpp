@@ -21,6 +21,7 @@ constexpr int kMaxAttempts = 3;
 
 struct StillRenderer::Impl {
   MethodOptions options;
+  std::vector<std::string> warnings; // of the method
   Submitter submitter;
   Stage stage;                    // the method's target holds views of its images
   std::unique_ptr<Method> method; // draws on it
@@ -36,6 +37,7 @@ struct StillRenderer::Impl {
 
 StillRenderer::Impl::Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, const MethodOptions& chosen)
     : options(chosen),
+      warnings(methodWarnings(scene, chosen)),
       submitter(gpu),
       stage(gpu, scene, info),
       method(makeMethod({gpu, stage.surfaces(), scene}, chosen)),
@@ -100,6 +102,7 @@ FrameReport StillRenderer::Impl::drawUntilComplete(const RenderOptions& picture,
 FrameReport StillRenderer::Impl::report(const RenderOptions& picture, const FrameStats& stats) {
   FrameReport report;
   static_cast<FrameStats&>(report) = stats;
+  report.warnings = warnings;
   report.device = stage.gpu().properties().deviceName;
   report.api = "Vulkan 1.3";
   report.method = options.name;

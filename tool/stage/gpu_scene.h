@@ -20,7 +20,7 @@ namespace vitrail::tool {
 // The largest alignment of a uniform buffer's offset that a device may ask for.
 constexpr std::uint32_t kUniformAlignment = 256;
 template <typename Data>
-constexpr std::uint32_t kUniformStride = (sizeof(Data) + kUniformAlignment - 1) / kUniformAlignment * kUniformAlignment;
+constexpr std::uint32_t kUniformStride = (sizeof(Data) + kUniformAlignment - 1) / kUniformAlignment* kUniformAlignment;
 
 // Some instances of one mesh with one material: one indexed draw.
 struct GpuDraw {

@@ -23,24 +23,29 @@ void collect(vec4 color, uint blend, uint word) {
 }
 void collect(vec4 color, uint blend) { collect(color, blend, 0u); }
 
-// The filter of a transmissive surface. Where light enters or leaves an object it is stored whatever it does: the
-// tint's share is in its colour, so that its alpha is 1.
-void collectFilter(vec4 through) {
 #ifdef COLLECT_MEDIA
-  if (has(FEATURE_SOLID)) {
-    uint word = MEDIA_FIRST_OBJECT * (inObject + 1u) + (gl_FrontFacing ? MEDIA_FRONT : 0u);
-    collect(vec4(mix(vec3(1.0), through.rgb, through.a), 1.0), VITRAIL_MULTIPLY, word);
-    return;
-  }
-#endif
-  collect(through, VITRAIL_MULTIPLY);
+// A surface that encloses a volume: both fragments say of which object they are. The filter is stored whatever it does:
+// the tint's share is in its colour, so that its alpha is 1.
+void collectSolid(Surface surface) {
+  uint object = MEDIA_OBJECT * (inObject + 1u);
+  vec4 through = filterOf(surface);
+  collect(reflectionOf(surface), VITRAIL_PREMULTIPLIED, object);
+  collect(vec4(mix(vec3(1.0), through.rgb, through.a), 1.0), VITRAIL_MULTIPLY,
+          object | MEDIA_SURFACE | (gl_FrontFacing ? MEDIA_FRONT : 0u));
 }
+#endif
 
 void main() {
   Surface surface = shadeSurface();
+#ifdef COLLECT_MEDIA
+  if (has(FEATURE_SOLID)) {
+    collectSolid(surface);
+    return;
+  }
+#endif
   if (has(FEATURE_TRANSMISSION)) {
     collect(reflectionOf(surface), VITRAIL_PREMULTIPLIED);
-    collectFilter(filterOf(surface));
+    collect(filterOf(surface), VITRAIL_MULTIPLY);
   } else {
     collect(vec4(surface.color, surface.alpha), has(FEATURE_ADDITIVE) ? VITRAIL_ADDITIVE : VITRAIL_OVER);
   }

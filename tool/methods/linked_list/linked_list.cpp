@@ -117,6 +117,7 @@ class LinkedList final : public Method {
   std::uint64_t wordsOf(std::uint64_t bytes) const;
   void planTiles(std::span<const VitrailBounds> bounds);
   void drawTiles(Frame& frame);
+  void drawCollecting(Frame& frame);
   void drawArea(Frame& frame, const VkRect2D& area);
   VitrailStats readStats() const;
   bool grow(std::uint64_t fragments);
@@ -139,6 +140,7 @@ class LinkedList final : public Method {
   std::optional<Media> media_; // where objects absorb light: what resolves the lists then
   PipelineKind pipelines_;     // of surfaces_
   std::optional<SurfacePipelines> surfaces_;
+  std::optional<SurfacePipelines> untested_; // the same without a depth test, where media_ asks for them
   vulkan::Target target_;
   std::uint64_t frame_ = 0;    // of the target: rises with every area
   TilePlan plan_;              // where inTiles_
@@ -214,8 +216,9 @@ void LinkedList::makeSurfaces() {
   // depths are compared with those of the depth image.
   const bool isCpu = gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   const bool spares = !isCpu || kind.listBuild == VITRAIL_LIST_BUILD_COMPUTE;
-  kind.depthFromW = spares && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
-  if (surfaces_ && kind == pipelines_) return;
+  kind.depthFromW = spares && !media_ && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
+  const bool wantsUntested = media_ && media_->anyNear();
+  if (surfaces_ && kind == pipelines_ && (untested_ || !wantsUntested)) return;
   pipelines_ = kind;
   const VitrailVkSpecialization specialization = context_.collectSpecialization(desc);
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
@@ -231,6 +234,13 @@ void LinkedList::makeSurfaces() {
   };
   const SurfaceProgram program{.set = context_.descriptorSetLayout(), .name = "collect"};
   surfaces_.emplace(source_, source_.scene().transparentDraws(), program, describe);
+  untested_.reset();
+  if (!wantsUntested) return;
+  const auto describeUntested = [&](std::uint32_t features, GraphicsPipelineInfo& info) {
+    describe(features, info);
+    info.depthTest = VK_COMPARE_OP_ALWAYS;
+  };
+  untested_.emplace(source_, source_.scene().transparentDraws(), program, describeUntested);
 }
 
 // All but the memory and the images.
@@ -347,13 +357,20 @@ void LinkedList::drawTiles(Frame& frame) {
   }
 }
 
+void LinkedList::drawCollecting(Frame& frame) {
+  if (!media_ || !media_->anyNear()) return frame.drawSurfaces(*surfaces_, target_.descriptorSet());
+  const std::vector<SurfaceRun>& runs = source_.transparentRuns();
+  frame.drawSurfaces(*surfaces_, target_.descriptorSet(), media_->part(runs, false));
+  frame.drawSurfaces(*untested_, target_.descriptorSet(), media_->part(runs, true));
+}
+
 void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
   VkCommandBuffer commands = frame.commands();
   PictureImages& images = frame.images();
   target_.begin(commands, {nullptr, ++frame_, area});
   frame.endPass("clear");
   cmdBeginScope(commands, images.transparentScope(area));
-  frame.drawSurfaces(*surfaces_, target_.descriptorSet());
+  drawCollecting(frame);
   vkCmdEndRendering(commands);
   if (pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE) frame.endPass("collect");
   target_.collected(commands);

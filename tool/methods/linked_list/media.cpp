@@ -55,8 +55,8 @@ bool meets(const Bounds& box, const glm::dmat4& toBox, const std::array<glm::dve
 Media::Media(const MethodHost& host, VkDescriptorSetLayout lists, std::uint32_t samples)
     : gpu_(host.gpu),
       samples_(samples),
-      objects_(gpu_, host.surfaces.scene().instanceCount() * sizeof(shaders::MediaObject), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-               MemoryKind::Upload, "objects that absorb"),
+      objects_(gpu_, host.surfaces.scene().instanceCount() * sizeof(shaders::MediaObject),
+               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryKind::Upload, "objects that absorb"),
       set_(gpu_,
            {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT},
             {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT},
@@ -66,6 +66,7 @@ Media::Media(const MethodHost& host, VkDescriptorSetLayout lists, std::uint32_t 
       layout_(makePipelineLayout(gpu_, {lists, set_.layout()},
                                  {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(shaders::MediaView)}, "media resolve")) {
   const GpuScene& drawn = host.surfaces.scene();
+  near_.resize(drawn.instanceCount());
   const Scene& scene = host.scene;
   auto* table = static_cast<shaders::MediaObject*>(objects_.mapped());
   std::fill_n(table, drawn.instanceCount(), shaders::MediaObject{});
@@ -84,8 +85,9 @@ Media::Media(const MethodHost& host, VkDescriptorSetLayout lists, std::uint32_t 
     }
   }
   const bool coverage = samples_ > 1 && gpu_.features().postDepthCoverage;
-  pipeline_ = makeComputePipeline(gpu_, layout_.get(), resolveCode(samples_ > 1, gpu_.features().poolByAddress),
-                                  "media resolve", {{0, samples_}, {1, samples_ > 1 && !coverage ? VK_TRUE : VK_FALSE}});
+  pipeline_ =
+      makeComputePipeline(gpu_, layout_.get(), resolveCode(samples_ > 1, gpu_.features().poolByAddress),
+                          "media resolve", {{0, samples_}, {1, samples_ > 1 && !coverage ? VK_TRUE : VK_FALSE}});
   set_.writeBuffer(0, objects_.get(), objects_.size());
 }
 
@@ -102,12 +104,31 @@ void Media::setView(const shaders::FrameData& view) {
   for (const Placed& placed : placed_) {
     const bool isNear = placed.flat || meets(placed.box, placed.toBox, corners);
     anyNear = anyNear || isNear;
+    near_[placed.object] = isNear;
     float& flags = table[placed.object].absorption.w;
     const std::uint32_t inward = static_cast<std::uint32_t>(flags) & shaders::MEDIA_INWARD;
     flags = static_cast<float>(inward | (isNear ? shaders::MEDIA_NEAR : 0U));
   }
   view_.ray = view.ray;
   view_.depth = glm::vec4(view.depth.x, view.depth.y, view.eye.w, anyNear ? 1.0F : 0.0F);
+}
+
+std::vector<SurfaceRun> Media::part(std::span<const SurfaceRun> runs, bool near) const {
+  std::vector<SurfaceRun> result;
+  for (const SurfaceRun& run : runs) {
+    const std::uint32_t end = run.firstInstance + run.instanceCount;
+    for (std::uint32_t first = run.firstInstance; first < end;) {
+      std::uint32_t next = first + 1;
+      while (next < end && near_[next] == near_[first]) ++next;
+      if (near_[first] == near) {
+        result.push_back(run);
+        result.back().firstInstance = first;
+        result.back().instanceCount = next - first;
+      }
+      first = next;
+    }
+  }
+  return result;
 }
 
 void Media::cmdResolve(VkCommandBuffer commands, VkDescriptorSet lists, VkExtent2D area) const {

@@ -2,6 +2,10 @@
 // have such objects (media_resolve.comp).
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <vector>
+
 #include "../../gpu/descriptors.h"
 #include "../../gpu/pipeline.h"
 #include "../../gpu/resources.h"
@@ -21,6 +25,12 @@ class Media {
   // How the surfaces are seen now. No frame is pending.
   void setView(const shaders::FrameData& view);
 
+  // Whether rays may begin inside of an object, seen so. Surfaces of such objects are drawn whatever opaque surfaces
+  // are before them.
+  bool anyNear() const { return view_.depth.w > 0.5F; }
+  // What of `runs` those surfaces are, or what else there is.
+  std::vector<SurfaceRun> part(std::span<const SurfaceRun> runs, bool near) const;
+
   // Draws the lists of an area that the library has sorted, over the opaque picture. Images and lists are there for
   // compute shaders. Outside a rendering scope.
   void cmdResolve(VkCommandBuffer commands, VkDescriptorSet lists, VkExtent2D area) const;
@@ -38,6 +48,7 @@ class Media {
   std::uint32_t samples_;
   GpuBuffer objects_; // shaders::MediaObject, one an instance
   std::vector<Placed> placed_;
+  std::vector<bool> near_; // by instance
   SingleSet set_;
   Unique<VkPipelineLayout> layout_;
   Unique<VkPipeline> pipeline_;

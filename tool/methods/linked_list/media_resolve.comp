@@ -55,7 +55,7 @@ float distanceOf(float depth, float stretch) {
   return viewDepth * stretch;
 }
 
-MediaObject objectOf(uint word) { return objects[word / 2u - 1u]; }
+MediaObject objectOf(uint word) { return objects[word / MEDIA_OBJECT - 1u]; }
 bool has(MediaObject object, uint what) { return (uint(object.absorption.w) & what) != 0u; }
 bool enters(uint word, MediaObject object) { return ((word & MEDIA_FRONT) != 0u) != has(object, MEDIA_INWARD); }
 
@@ -77,59 +77,45 @@ void follow(inout Light light, float to) {
   light.at = to;
 }
 
-// The samples that a layer is seen at.
+// The samples where a layer is not behind an opaque surface.
 uint samplesOf(VitrailLayer layer, VitrailList list, ivec2 pixel) {
   uint samples = layer.coverage;
-#if MEDIA_SAMPLES > 1
-  if (!kTestDepth) return samples;
+  bool untested = kTestDepth || (layer.word >= MEDIA_OBJECT && has(objectOf(layer.word), MEDIA_NEAR));
+  if (!untested) return samples;
   for (int s = 0; s < MEDIA_SAMPLES; ++s) {
     if (s >= int(kSamples)) break;
     uint behind = vitrailDepthOrder(opaqueDepth(pixel, s), list.nodes);
     if (vitrailDepthOrder(layer.depth, list.nodes) > behind) samples &= ~(1u << s);
   }
-#endif
   return samples;
 }
 
-// How often the next object after `last` encloses the point where the ray of a sample begins: as many times as the ray
-// leaves it more often than it enters. Where an opaque surface ends the ray, what is behind that is not known; then the
-// ray has begun inside if it first comes to the inner side of a surface, unless another one touches it there.
-int timesInside(ivec2 pixel, int s, float stretch, uint last, out uint found) {
+// How often the ray of a sample begins inside of the next object after the one whose word is `last`.
+int timesInside(ivec2 pixel, int s, uint last, out uint found) {
   found = 0xffffffffu;
   int balance = 0;
-  float firstExit = -1.0; // where the first surface shows its inner side
-  uint surfaces = 0u;
   VitrailList list = vitrailOpenList(pixel);
   VitrailLayer layer;
   while (vitrailNextLayer(list, layer)) {
-    uint object = layer.word & ~MEDIA_FRONT;
-    if (object <= last || object > found || (samplesOf(layer, list, pixel) & (1u << s)) == 0u) continue;
+    uint object = layer.word & ~(MEDIA_OBJECT - 1u);
+    bool counts = (layer.word & MEDIA_SURFACE) != 0u && (layer.coverage & (1u << s)) != 0u;
+    if (!counts || object <= last || object > found) continue;
     MediaObject medium = objectOf(object);
     if (!has(medium, MEDIA_NEAR)) continue;
-    if (object < found) {
-      found = object;
-      balance = 0;
-      surfaces = 0u;
-      firstExit = -1.0;
-    }
-    bool entering = enters(layer.word, medium);
-    float at = distanceOf(layer.depth, stretch);
-    balance += entering ? -1 : 1;
-    if (surfaces == 0u && !entering) firstExit = at;
-    if (surfaces == 1u && entering && at - firstExit < 0.001 * at) firstExit = -1.0;
-    ++surfaces;
+    if (object < found) balance = 0;
+    found = object;
+    balance += enters(layer.word, medium) ? -1 : 1;
   }
-  bool ends = opaqueDepth(pixel, s) > 0.0;
-  return max(balance, ends && firstExit >= 0.0 ? 1 : 0);
+  return balance;
 }
 
 // Light at the near plane, in what encloses it there.
 Light begin(ivec2 pixel, int s, float stretch) {
   Light light = Light(vec3(0.0), vec4(1.0), vec3(0.0), vec3(0.0), distanceOf(1.0, stretch));
-  uint last = view.depth.w > 0.5 ? MEDIA_FIRST_OBJECT - 1u : 0xffffffffu;
+  uint last = view.depth.w > 0.5 ? 0u : 0xffffffffu;
   while (last != 0xffffffffu) {
     uint object;
-    int times = timesInside(pixel, s, stretch, last, object);
+    int times = timesInside(pixel, s, last, object);
     for (; times > 0; --times) add(light, objectOf(object).absorption.rgb);
     last = object;
   }
@@ -141,7 +127,7 @@ void put(inout Light light, VitrailLayer layer, float at) {
   VitrailPair pair = vitrailPairOf(layer);
   light.color += light.transmittance.rgb * pair.color;
   light.transmittance *= pair.transmittance;
-  if (layer.word < MEDIA_FIRST_OBJECT) return;
+  if ((layer.word & MEDIA_SURFACE) == 0u) return;
   MediaObject object = objectOf(layer.word);
   add(light, enters(layer.word, object) ? object.absorption.rgb : -object.absorption.rgb);
 }
@@ -184,6 +170,7 @@ void resolve(ivec2 pixel) {
 }
 
 void main() {
+  if (vitrailListsLackFragments()) return; // the picture is drawn again
   uvec2 local = gl_GlobalInvocationID.xy;
   if (local.x >= vitrailParameters.width || local.y >= vitrailParameters.height) return;
   resolve(ivec2(local + uvec2(vitrailParameters.x, vitrailParameters.y)));

@@ -13,17 +13,20 @@ using glm::vec4;
 
 VITRAIL_SHARED_BEGIN
 
-// The word of a fragment where light enters or leaves an object: 0 for other fragments, else the object's number plus 1
-// in the upper 31 bits, and in the lowest whether the surface shows its front.
-const uint MEDIA_FRONT = 1u;
-const uint MEDIA_FIRST_OBJECT = 2u; // the least such word
+// The word of a fragment of an object that encloses a volume: MEDIA_OBJECT times its number plus 1, and these bits. 0
+// for other fragments.
+const uint MEDIA_FRONT = 1u;   // the surface shows its front
+const uint MEDIA_SURFACE = 2u; // here light enters or leaves: one fragment of each surface
+const uint MEDIA_OBJECT = 4u;
 
 // What an object does to light (std430).
 struct MediaObject {
   vec4 absorption; // rgb, per unit of length; w: MEDIA_INWARD, MEDIA_NEAR, as a number
 };
 const uint MEDIA_INWARD = 1u; // its surfaces show their fronts to its inside
-const uint MEDIA_NEAR = 2u;   // it may reach in front of the near plane: rays may begin inside of it
+// Rays may begin inside of it. All its surfaces are on the lists, those behind opaque ones too: as many more as a ray
+// leaves than it enters, so many times it has begun inside.
+const uint MEDIA_NEAR = 2u;
 
 // How rays go through a picture (push constants).
 struct MediaView {

@@ -112,10 +112,9 @@ constexpr std::array transmissionFields{Field{"transmissionFactor", Kind::Number
                                         object("transmissionTexture", textureInfoFields)};
 constexpr std::array volumeFields{Field{"thicknessFactor", Kind::Number}, object("thicknessTexture", textureInfoFields),
                                   Field{"attenuationDistance", Kind::Number}, numbers("attenuationColor", 3)};
-constexpr std::array materialExtensionFields{object("KHR_materials_unlit", {}),
-                                             object("KHR_materials_emissive_strength", emissiveStrengthFields),
-                                             object("KHR_materials_transmission", transmissionFields),
-                                             object("KHR_materials_volume", volumeFields)};
+constexpr std::array materialExtensionFields{
+    object("KHR_materials_unlit", {}), object("KHR_materials_emissive_strength", emissiveStrengthFields),
+    object("KHR_materials_transmission", transmissionFields), object("KHR_materials_volume", volumeFields)};
 constexpr std::array materialFields{nameField,
                                     object("pbrMetallicRoughness", pbrFields),
                                     object("normalTexture", textureInfoFields),
@@ -167,8 +166,8 @@ constexpr std::array<Section, 12> sections{{{"accessors", "accessor", accessorFi
                                             {"textures", "texture", textureFields}}};
 
 constexpr std::array<std::string_view, 6> implementedExtensions{
-    "KHR_materials_emissive_strength", "KHR_materials_transmission", "KHR_materials_unlit",
-    "KHR_materials_volume",            "KHR_mesh_quantization",      "KHR_texture_transform"};
+    "KHR_materials_emissive_strength", "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_volume",
+    "KHR_mesh_quantization",           "KHR_texture_transform"};
 
 // Applies the tables to one document. `where` names the object that is looked at, `path` the property inside it.
 class Checker {
