@@ -84,11 +84,14 @@ Media::Media(const MethodHost& host, VkDescriptorSetLayout lists, std::uint32_t 
       placed_.push_back({i, flat ? glm::dmat4(1.0) : glm::inverse(place), flat, box});
     }
   }
-  const bool coverage = samples_ > 1 && gpu_.features().postDepthCoverage;
-  pipeline_ =
-      makeComputePipeline(gpu_, layout_.get(), resolveCode(samples_ > 1, gpu_.features().poolByAddress),
-                          "media resolve", {{0, samples_}, {1, samples_ > 1 && !coverage ? VK_TRUE : VK_FALSE}});
   set_.writeBuffer(0, objects_.get(), objects_.size());
+}
+
+Unique<VkPipeline> Media::makePipeline(bool anyNear) {
+  const bool tested = samples_ == 1 || gpu_.features().postDepthCoverage;
+  return makeComputePipeline(gpu_, layout_.get(), resolveCode(samples_ > 1, gpu_.features().poolByAddress),
+                             "media resolve",
+                             {{0, samples_}, {1, tested ? VK_FALSE : VK_TRUE}, {2, anyNear ? VK_TRUE : VK_FALSE}});
 }
 
 void Media::setTarget(const MethodTarget& target) {
@@ -100,17 +103,19 @@ void Media::setTarget(const MethodTarget& target) {
 void Media::setView(const shaders::FrameData& view) {
   const std::array<glm::dvec3, 4> corners = nearCorners(view);
   auto* table = static_cast<shaders::MediaObject*>(objects_.mapped());
-  bool anyNear = false;
+  anyNear_ = false;
   for (const Placed& placed : placed_) {
     const bool isNear = placed.flat || meets(placed.box, placed.toBox, corners);
-    anyNear = anyNear || isNear;
+    anyNear_ = anyNear_ || isNear;
     near_[placed.object] = isNear;
     float& flags = table[placed.object].absorption.w;
     const std::uint32_t inward = static_cast<std::uint32_t>(flags) & shaders::MEDIA_INWARD;
     flags = static_cast<float>(inward | (isNear ? shaders::MEDIA_NEAR : 0U));
   }
   view_.ray = view.ray;
-  view_.depth = glm::vec4(view.depth.x, view.depth.y, view.eye.w, anyNear ? 1.0F : 0.0F);
+  view_.depth = glm::vec4(view.depth.x, view.depth.y, view.eye.w, 0.0F);
+  Unique<VkPipeline>& pipeline = pipelines_.at(anyNear_ ? 1 : 0);
+  if (!pipeline) pipeline = makePipeline(anyNear_);
 }
 
 std::vector<SurfaceRun> Media::part(std::span<const SurfaceRun> runs, bool near) const {
@@ -136,7 +141,7 @@ void Media::cmdResolve(VkCommandBuffer commands, VkDescriptorSet lists, VkExtent
   const auto groups = [](std::uint32_t pixels) {
     return (pixels + shaders::PIXEL_GROUP_SIDE - 1) / shaders::PIXEL_GROUP_SIDE;
   };
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipelines_.at(anyNear_ ? 1 : 0).get());
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0,
                           static_cast<std::uint32_t>(sets.size()), sets.data(), 0, nullptr);
   vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(view_), &view_);

@@ -2,6 +2,7 @@
 // have such objects (media_resolve.comp).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -27,7 +28,7 @@ class Media {
 
   // Whether rays may begin inside of an object, seen so. Surfaces of such objects are drawn whatever opaque surfaces
   // are before them.
-  bool anyNear() const { return view_.depth.w > 0.5F; }
+  bool anyNear() const { return anyNear_; }
   // What of `runs` those surfaces are, or what else there is.
   std::vector<SurfaceRun> part(std::span<const SurfaceRun> runs, bool near) const;
 
@@ -44,14 +45,17 @@ class Media {
     Bounds box;
   };
 
+  Unique<VkPipeline> makePipeline(bool anyNear);
+
   Gpu& gpu_;
   std::uint32_t samples_;
   GpuBuffer objects_; // shaders::MediaObject, one an instance
   std::vector<Placed> placed_;
   std::vector<bool> near_; // by instance
+  bool anyNear_ = false;
   SingleSet set_;
   Unique<VkPipelineLayout> layout_;
-  Unique<VkPipeline> pipeline_;
+  std::array<Unique<VkPipeline>, 2> pipelines_; // for views without such objects and with them, once there are any
   shaders::MediaView view_{};
 };
 

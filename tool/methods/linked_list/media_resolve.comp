@@ -21,6 +21,7 @@ layout(local_size_x = PIXEL_GROUP_SIDE, local_size_y = PIXEL_GROUP_SIDE) in;
 
 layout(constant_id = 0) const uint kSamples = 1u;
 layout(constant_id = 1) const bool kTestDepth = false; // coverage has not passed the depth test
+layout(constant_id = 2) const bool kAnyNear = false;   // some object has MEDIA_NEAR
 
 layout(set = 1, binding = 0, std430) readonly buffer ObjectsBlock { MediaObject objects[]; };
 layout(set = 1, binding = 1, rgba16f) uniform image2D colorImage;
@@ -80,7 +81,7 @@ void follow(inout Light light, float to) {
 // The samples where a layer is not behind an opaque surface.
 uint samplesOf(VitrailLayer layer, VitrailList list, ivec2 pixel) {
   uint samples = layer.coverage;
-  bool untested = kTestDepth || (layer.word >= MEDIA_OBJECT && has(objectOf(layer.word), MEDIA_NEAR));
+  bool untested = kTestDepth || (kAnyNear && layer.word >= MEDIA_OBJECT && has(objectOf(layer.word), MEDIA_NEAR));
   if (!untested) return samples;
   for (int s = 0; s < MEDIA_SAMPLES; ++s) {
     if (s >= int(kSamples)) break;
@@ -112,7 +113,7 @@ int timesInside(ivec2 pixel, int s, uint last, out uint found) {
 // Light at the near plane, in what encloses it there.
 Light begin(ivec2 pixel, int s, float stretch) {
   Light light = Light(vec3(0.0), vec4(1.0), vec3(0.0), vec3(0.0), distanceOf(1.0, stretch));
-  uint last = view.depth.w > 0.5 ? 0u : 0xffffffffu;
+  uint last = kAnyNear ? 0u : 0xffffffffu;
   while (last != 0xffffffffu) {
     uint object;
     int times = timesInside(pixel, s, last, object);

@@ -31,7 +31,7 @@ const uint MEDIA_NEAR = 2u;
 // How rays go through a picture (push constants).
 struct MediaView {
   vec4 ray;   // FrameData::ray
-  vec4 depth; // xy: FrameData::depth.xy; z: 1 if orthographic; w: 1 if any object has MEDIA_NEAR
+  vec4 depth; // xy: FrameData::depth.xy; z: 1 if orthographic
 };
 
 #ifdef __cplusplus
