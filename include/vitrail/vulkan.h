@@ -335,7 +335,7 @@ typedef struct VitrailVkResolveInfo {
  * writes to views.opaque and views.depth are visible to (FRAGMENT_SHADER, SHADER_READ).
  *
  * VITRAIL_RESOLVE_HOST: records nothing, and says that the host's own pass over the lists is recorded, which comes
- * after vitrailVkCmdCollected() and before vitrailVkCmdEnd(). A frame without this call does not count as exact. */
+ * after vitrailVkCmdCollected() and before vitrailVkCmdEnd(). A frame without this call does not count as complete. */
 VITRAIL_API void vitrailVkCmdResolve(VkCommandBuffer commandBuffer, VitrailVkTarget target,
                                      const VitrailVkResolveInfo* info);
 

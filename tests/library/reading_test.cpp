@@ -156,7 +156,7 @@ TEST_P(ReadingTest, TheHostResolvesListsThatLieSorted) {
             const ListsRead read =
                 makeHost(desc)->drawAndRead(ordered(points, Order::Shuffled), area, ReadBy::Shader, afterResolve);
             expectLists(read, desc, points, area);
-            EXPECT_EQ(read.frame.stats.exact, 1U);
+            EXPECT_EQ(read.frame.stats.complete, 1U);
             EXPECT_EQ(read.frame.stats.layersMax, expectedFrame(desc, points).layersMax);
             EXPECT_EQ(read.frame.stats.coveredPixels, expectedFrame(desc, points).coveredPixels);
           }
@@ -176,7 +176,7 @@ TEST_P(ReadingTest, TheHostMayCopyAndOverflow) {
   expectLists(makeHost(desc)->drawAndRead(points, area, ReadBy::Copy, false), desc, points, area);
   desc.capacity /= 2;
   const ListsRead read = makeHost(desc)->drawAndRead(points, area, ReadBy::Shader, false);
-  EXPECT_EQ(read.frame.stats.exact, 0U);
+  EXPECT_EQ(read.frame.stats.complete, 0U);
   EXPECT_GT(read.frame.stats.fragmentsMissing, 0U);
   std::size_t layers = 0;
   for (const auto& list : read.pixels) layers += list ? list->size() : 0;

@@ -94,7 +94,7 @@ class VolumeTest : public GpuTest {
 
   std::vector<MethodOptions> ways() {
     std::vector<MethodOptions> ways(2);
-    ways[1].nodes = VITRAIL_NODE_HDR;
+    ways[1].nodes = VITRAIL_NODE_STANDARD;
     ways[1].listBuild = VITRAIL_LIST_BUILD_COMPUTE;
     if ((gpu().features().sampleCounts & 4U) != 0) ways.emplace_back().samples = 4;
     return ways;
@@ -113,10 +113,10 @@ class VolumeTest : public GpuTest {
       const glm::vec3 white(1.0F);
       const std::array<int, 3> dark =
           middle(renderOnce(gpu(), make(black), pictureOf(view, black), {}, DrawOrder::Forward, method).picture);
-      const bool usual = method.samples == 1 && method.nodes == VITRAIL_NODE_STANDARD;
+      const bool usual = method.samples == 1 && method.nodes == MethodOptions().nodes;
       for (const DrawOrder order : usual ? std::span(kOrders) : std::span(kOrders).first(1)) {
         const RenderResult result = renderOnce(gpu(), make(white), pictureOf(view, white), {}, order, method);
-        EXPECT_TRUE(result.report.exact);
+        EXPECT_TRUE(result.report.complete);
         const std::array<int, 3> light = middle(result.picture);
         for (std::size_t c = 0; c < 3; ++c) {
           const double expected = decodeSrgb(dark[c] / 255.0) + share[static_cast<int>(c)];
@@ -156,7 +156,7 @@ class VolumeTest : public GpuTest {
       EXPECT_LE(comparison.edgeShare, edgeShare) << comparison;
       EXPECT_LE(comparison.edgeOver, 0.1 * edgeShare) << comparison;
     }
-    EXPECT_TRUE(result.report.exact);
+    EXPECT_TRUE(result.report.complete);
   }
 };
 

@@ -115,7 +115,7 @@ void Media::setView(const shaders::FrameData& view) {
   view_.ray = view.ray;
   view_.depth = glm::vec4(view.depth.x, view.depth.y, view.eye.w, 0.0F);
   Unique<VkPipeline>& pipeline = pipelines_.at(anyNear_ ? 1 : 0);
-  if (!pipeline) pipeline = makePipeline(anyNear_);
+  if (pipeline.get() == VK_NULL_HANDLE) pipeline = makePipeline(anyNear_);
 }
 
 std::vector<SurfaceRun> Media::part(std::span<const SurfaceRun> runs, bool near) const {
