@@ -194,10 +194,8 @@ void checkMethodOptions(const MethodOptions& options) {
 }
 
 std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions& options) {
-  const bool absorbs = std::ranges::any_of(
-      scene.draws, [&](const Draw& draw) { return absorption(scene.materials[draw.material]) != glm::vec3(0.0F); });
   const MethodOptions defaults;
-  if (!absorbs || (options.name == defaults.name && options.maxLayers == 0)) return {};
+  if ((options.name == defaults.name && options.maxLayers == 0) || !Solids(scene).any()) return {};
   return {options.name == defaults.name
               ? "volumes are attenuated by the file's thickness, not by the true path: leave --layers out"
               : "volumes are attenuated by the file's thickness, not by the true path: use --method linked-list"};

@@ -82,7 +82,8 @@ Facing facingOf(const Mesh& mesh) {
   return volume > 0.0 ? Facing::Outward : Facing::Inward;
 }
 
-Solids::Solids(const Scene& scene) : absorbing_(scene.materials.size()), meshes_(scene.meshes.size(), Facing::Open) {
+Solids::Solids(const Scene& scene)
+    : absorbing_(scene.materials.size()), meshes_(scene.meshes.size(), Facing::Open), boxes_(scene.meshes.size()) {
   std::vector<bool> known(scene.meshes.size());
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& material = scene.materials[i];
@@ -90,9 +91,12 @@ Solids::Solids(const Scene& scene) : absorbing_(scene.materials.size()), meshes_
   }
   for (const Draw& draw : scene.draws) {
     if (!absorbing_[draw.material]) continue;
-    if (!known[draw.mesh]) meshes_[draw.mesh] = facingOf(scene.meshes[draw.mesh]);
+    if (known[draw.mesh]) continue;
     known[draw.mesh] = true;
-    any_ = any_ || meshes_[draw.mesh] != Facing::Open;
+    meshes_[draw.mesh] = facingOf(scene.meshes[draw.mesh]);
+    if (meshes_[draw.mesh] == Facing::Open) continue;
+    boxes_[draw.mesh] = boundsOf(scene.meshes[draw.mesh]);
+    any_ = true;
   }
 }
 

@@ -36,10 +36,13 @@ class Solids {
     return any_ && absorbing_[material] ? meshes_[mesh] : Facing::Open;
   }
   bool any() const { return any_; }
+  // The box around such a mesh, in its own space: it is known here when the mesh itself is let go of.
+  const Bounds& boxOf(std::uint32_t mesh) const { return boxes_[mesh]; }
 
  private:
   std::vector<bool> absorbing_; // by material
   std::vector<Facing> meshes_;  // those that are not shown with an absorbing material are not looked at
+  std::vector<Bounds> boxes_;   // by mesh, of those that are closed
   bool any_ = false;
 };
 

@@ -74,7 +74,7 @@ Media::Media(const MethodHost& host, VkDescriptorSetLayout lists, std::uint32_t 
     const std::uint32_t material = scene.draws[drawn.sourceOf(draw.firstInstance)].material;
     const Facing facing = drawn.solids().of(draw.mesh, material);
     if (facing == Facing::Open) continue;
-    const Bounds box = boundsOf(scene.meshes[draw.mesh]);
+    const Bounds& box = drawn.solids().boxOf(draw.mesh);
     const glm::vec4 object(drawn.opacity() * absorption(scene.materials[material]),
                            static_cast<float>(facing == Facing::Inward ? shaders::MEDIA_INWARD : 0U));
     for (std::uint32_t i = draw.firstInstance; i < draw.firstInstance + draw.instanceCount; ++i) {
