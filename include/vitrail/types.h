@@ -145,6 +145,11 @@ typedef enum VitrailResolve {
    * there. Exact for lists with VITRAIL_BLEND_MULTIPLY only with dual-source blending; without it, pixels whose
    * transmittance differs between channels are blended with its mean and counted in approximatePixels. */
   VITRAIL_RESOLVE_FRAGMENT = 2,
+  /* The host's own shaders, which walk the lists (shaders/vitrail/list.glsl with VITRAIL_SORTED_LISTS) and draw what
+   * they make of them: light that is absorbed between two surfaces, say. The library collects, sorts and counts, and
+   * writes no picture. What the library's own resolve would do is the host's: maxLayers is 0, and of a frame that
+   * overflowed nothing is summed. */
+  VITRAIL_RESOLVE_HOST = 3,
   VITRAIL_RESOLVE_MAX_ENUM = 0x7fffffff
 } VitrailResolve;
 

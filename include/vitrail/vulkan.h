@@ -312,8 +312,8 @@ VITRAIL_API uint64_t vitrailVkTargetFrame(VitrailVkTarget target);
 
 /* Ends the collect pass. Once a frame, outside a rendering scope, after all draws that collect. Makes the lists that
  * fragment shaders wrote visible to the resolve. With VITRAIL_LIST_BUILD_COMPUTE it builds the lists, and for
- * VITRAIL_RESOLVE_FRAGMENT it sorts the lists that are longer than 16 fragments, in place. Binds compute pipelines and
- * a set. */
+ * VITRAIL_RESOLVE_FRAGMENT and VITRAIL_RESOLVE_HOST it sorts the lists that are longer than 16 fragments, in place: for
+ * the latter fragments that are alike by their words. Binds compute pipelines and a set. */
 VITRAIL_API void vitrailVkCmdCollected(VkCommandBuffer commandBuffer, VitrailVkTarget target);
 
 typedef struct VitrailVkResolveInfo {
@@ -332,7 +332,10 @@ typedef struct VitrailVkResolveInfo {
  *
  * VITRAIL_RESOLVE_FRAGMENT: inside the host's rendering scope, which has the target's formats and sample count. Binds a
  * graphics pipeline and descriptor sets, and sets viewport and scissor; the host binds and sets its own again. Earlier
- * writes to views.opaque and views.depth are visible to (FRAGMENT_SHADER, SHADER_READ). */
+ * writes to views.opaque and views.depth are visible to (FRAGMENT_SHADER, SHADER_READ).
+ *
+ * VITRAIL_RESOLVE_HOST: records nothing, and says that the host's own pass over the lists is recorded, which comes
+ * after vitrailVkCmdCollected() and before vitrailVkCmdEnd(). A frame without this call does not count as complete. */
 VITRAIL_API void vitrailVkCmdResolve(VkCommandBuffer commandBuffer, VitrailVkTarget target,
                                      const VitrailVkResolveInfo* info);
 

@@ -255,9 +255,7 @@ struct VitrailPair {
   vec4 transmittance;
 };
 
-VitrailPair vitrailPairOf(uvec4 key, VitrailLayout nodes) {
-  vec4 c = vitrailKeyColor(key, nodes);
-  uint blend = vitrailKeyBlend(key, nodes);
+VitrailPair vitrailPairOf(vec4 c, uint blend) {
   bool multiplies = blend == VITRAIL_MULTIPLY;
   VitrailPair pair;
   pair.color = c.rgb * mix(mix(c.a, 0.0, multiplies), 1.0, blend == VITRAIL_PREMULTIPLIED);
@@ -265,5 +263,10 @@ VitrailPair vitrailPairOf(uvec4 key, VitrailLayout nodes) {
   pair.transmittance.rgb = mix(pair.transmittance.rgb, mix(vec3(1.0), c.rgb, c.a), bvec3(multiplies));
   return pair;
 }
+
+VitrailPair vitrailPairOf(uvec4 key, VitrailLayout nodes) {
+  return vitrailPairOf(vitrailKeyColor(key, nodes), vitrailKeyBlend(key, nodes));
+}
+VitrailPair vitrailPairOf(VitrailLayer layer) { return vitrailPairOf(layer.color, layer.blend); }
 
 #endif

@@ -89,7 +89,9 @@ constexpr std::array kRows = {
     dispatch(Call::Collected, Kernel::Prepare, Extent::One, 0, kCompute, 0, kBuildsByCompute),
     dispatch(Call::Collected, Kernel::SortFind, Extent::Indirect, kPixelArguments, kIndirect, 0, kResolvesByCompute),
     dispatch(Call::Collected, Kernel::SortLong, Extent::Indirect, classArguments(VITRAIL_CLASS_LONG), kIndirect, 0,
-             kResolvesByCompute),
+             kResolvesByCompute | kHostResolves),
+    dispatch(Call::Collected, Kernel::SortLongWords, Extent::Indirect, classArguments(VITRAIL_CLASS_LONG), kIndirect,
+             kHostResolves),
 
     action(Call::CopyLists, Action::BeginCopy, lists({kStageTransfer, kAccessTransferWrite}), kCopiesLists),
     dispatch(Call::CopyLists, Kernel::CopyLists, Extent::Copied, 0, kCompute, kCopiesLists),
@@ -110,7 +112,8 @@ constexpr std::array kRows = {
              kResolvesByCompute | kKeepsSums, kNetworks), // by networks the first kernel does it
     dispatch(Call::Resolve, Kernel::ResolvePlain, Extent::Indirect, kPlainArguments, kPicture,
              kResolvesByCompute | kAveragesSamples),
-    draw(Action::Draw, offsetof(layout::VitrailControl, drawVertices), kTriangle, 0, kResolvesByCompute),
+    draw(Action::Draw, offsetof(layout::VitrailControl, drawVertices), kTriangle, 0,
+         kResolvesByCompute | kHostResolves),
     draw(Action::DrawPlain, offsetof(layout::VitrailControl, plainVertices), kPlainTriangle, kAveragesSamples,
          kResolvesByCompute),
 
@@ -165,6 +168,7 @@ std::uint32_t planFacts(const DeviceLimits& limits, const TargetInfo& info) {
   if (info.listBuild == VITRAIL_LIST_BUILD_COMPUTE) facts |= kBuildsByCompute;
   if (info.resolve == VITRAIL_RESOLVE_COMPUTE) facts |= kResolvesByCompute;
   if (limits.networks && limits.exchangesInGroups) facts |= kNetworks;
+  if (info.hostResolves()) facts |= kHostResolves;
   if (info.maxLayers != 0 && info.maxLayers <= layout::VITRAIL_SHORT_LIST) facts |= kCapped;
   if (info.keepsSums()) facts |= kKeepsSums;
   if (info.perPixel()) facts |= kAveragesSamples;

@@ -102,7 +102,8 @@ enum PlanFact : std::uint32_t {
   kCapped = 1U << 3U,   // lists are not sorted as a whole: only their nearest fragments are kept
   kKeepsSums = 1U << 4U,
   kAveragesSamples = 1U << 5U, // several samples are resolved per pixel
-  kCopiesLists = 1U << 6U
+  kCopiesLists = 1U << 6U,
+  kHostResolves = 1U << 7U // shaders of the host's walk the sorted lists, and the library draws nothing
 };
 std::uint32_t planFacts(const DeviceLimits& limits, const TargetInfo& info);
 

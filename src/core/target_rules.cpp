@@ -107,8 +107,13 @@ VitrailResult checkCapacity(const DeviceLimits& limits, const Log& log, const Ta
 }
 
 VitrailResult checkResolve(const DeviceLimits& limits, const Log& log, const TargetInfo& info) {
-  if (info.resolve != VITRAIL_RESOLVE_COMPUTE && info.resolve != VITRAIL_RESOLVE_FRAGMENT) {
+  if (info.resolve != VITRAIL_RESOLVE_COMPUTE && info.resolve != VITRAIL_RESOLVE_FRAGMENT && !info.hostResolves()) {
     return unknown(log, "resolve", info.resolve, "VitrailResolve");
+  }
+  if (info.hostResolves() && info.maxLayers != 0) {
+    return log.fail(VITRAIL_ERROR_INVALID,
+                    "maxLayers %u with VITRAIL_RESOLVE_HOST: bound the layers where you walk the lists",
+                    info.maxLayers);
   }
   if (info.msaaResolve != VITRAIL_MSAA_RESOLVE_PER_PIXEL && info.msaaResolve != VITRAIL_MSAA_RESOLVE_PER_SAMPLE) {
     return unknown(log, "msaaResolve", info.msaaResolve, "VitrailMsaaResolve");

@@ -37,11 +37,16 @@ struct TargetInfo {
   bool stencilMark = false;
   bool hasStencil = false; // the scope has one, or may have
 
-  [[nodiscard]] bool keepsSums() const { return overflow == VITRAIL_OVERFLOW_APPROXIMATE; }
-  [[nodiscard]] bool perSample() const { return samples > 1 && msaaResolve == VITRAIL_MSAA_RESOLVE_PER_SAMPLE; }
-  [[nodiscard]] bool perPixel() const { return samples > 1 && msaaResolve != VITRAIL_MSAA_RESOLVE_PER_SAMPLE; }
+  [[nodiscard]] bool hostResolves() const { return resolve == VITRAIL_RESOLVE_HOST; }
+  [[nodiscard]] bool keepsSums() const { return overflow == VITRAIL_OVERFLOW_APPROXIMATE && !hostResolves(); }
+  // How the library's own resolve takes several samples.
+  [[nodiscard]] bool perSample() const { return severalResolved() && msaaResolve == VITRAIL_MSAA_RESOLVE_PER_SAMPLE; }
+  [[nodiscard]] bool perPixel() const { return severalResolved() && msaaResolve != VITRAIL_MSAA_RESOLVE_PER_SAMPLE; }
   // Coverage has not passed the depth test: the resolve tests it.
-  [[nodiscard]] bool testsDepth() const { return samples > 1 && !postDepthCoverage; }
+  [[nodiscard]] bool testsDepth() const { return severalResolved() && !postDepthCoverage; }
+
+ private:
+  [[nodiscard]] bool severalResolved() const { return samples > 1 && !hostResolves(); }
 };
 
 // What images the host gives, each kind with as many views as `count` says.

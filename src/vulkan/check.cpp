@@ -155,6 +155,7 @@ ViewsInfo viewsInfo(const VitrailVkViews& views) {
 }
 
 VkResult checkFormats(const VitrailVkContext_T& context, const VitrailVkTargetDesc& desc, const TargetInfo& info) {
+  if (info.hostResolves()) return VK_SUCCESS; // the library writes to no image
   const bool compute = info.resolve == VITRAIL_RESOLVE_COMPUTE;
   const VkResult result = checkColorFormat(context, colorFormatOf(desc), compute);
   return result != VK_SUCCESS || compute ? result : checkScope(context, desc.scope);

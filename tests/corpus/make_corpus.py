@@ -998,6 +998,8 @@ def write_good_stl(facet, binary):
         corners += [((math.cos(a), math.sin(a), 0), (math.cos(b), math.sin(b), 0), (math.cos(b), math.sin(b), 1))]
         corners += [((math.cos(a), math.sin(a), 0), (math.cos(b), math.sin(b), 1), (math.cos(a), math.sin(a), 1))]
     (GOOD / "ridge.stl").write_bytes(binary(b"ridge", [([v for p in c for v in p], 0) for c in corners]))
+
+
 def write_good_material_extensions():
     """One material with all extensions that it may have, and one of specular colour and glossiness."""
     m = Model()
@@ -1075,6 +1077,36 @@ def write_good_material_extensions():
     m.doc["nodes"] = [{"mesh": mesh, "translation": [2 * mesh, 0, 0]} for mesh in meshes]
     m.doc["scenes"] = [{"nodes": [0, 1, 2]}]
     m.save("material_extensions.gltf")
+
+
+def write_good_volume():
+    """A pane of glass before a white background, as thick as it is said to be; and what is no volume."""
+    m = Model()
+    m.doc["extensionsUsed"] = m.doc["extensionsRequired"] = ["KHR_materials_transmission", "KHR_materials_volume"]
+    m.put("images", {"uri": data_uri(RED_GREEN, "image/png")})
+    m.put("textures", {"source": 0})
+    attributes = {
+        "POSITION": m.accessor(QUAD, "VEC3"),
+        "NORMAL": m.accessor(UP * 4, "VEC3"),
+        "TEXCOORD_0": m.accessor([0, 1, 1, 1, 0, 0, 1, 0], "VEC2"),
+    }
+    indices = m.accessor([0, 1, 2, 2, 1, 3], "SCALAR", USHORT)
+    rose = {"attenuationDistance": 1, "attenuationColor": [1, 0.5, 0.5]}
+    volumes = [
+        ("pane", {"transmissionFactor": 1}, {"thicknessFactor": 1, **rose}),
+        ("textured", {"transmissionFactor": 1}, {"thicknessFactor": 2, "thicknessTexture": {"index": 0}, **rose}),
+        ("thin", {"transmissionFactor": 1}, rose),
+        ("clear", {"transmissionFactor": 1}, {"thicknessFactor": 1}),
+        ("opaque", {}, {"thicknessFactor": 1, **rose}),
+    ]
+    for i, (name, transmission, volume) in enumerate(volumes):
+        extensions = {"KHR_materials_transmission": transmission, "KHR_materials_volume": volume}
+        pbr = {"metallicFactor": 0, "roughnessFactor": 1}
+        material = m.put("materials", {"name": name, "pbrMetallicRoughness": pbr, "extensions": extensions})
+        mesh = m.mesh(attributes, indices=indices, material=material)
+        node = m.put("nodes", {"mesh": mesh, "translation": [1.5 * i, 0, 0]})
+        m.doc.setdefault("scenes", [{"nodes": []}])[0].setdefault("nodes", []).append(node)
+    m.save("volume.gltf")
 
 
 def write_good_plain():
@@ -1337,6 +1369,8 @@ def bad_documents():
     yield simple("material_extension_factor_type", "materials", [{"extensions": coat}])
     shiny = {"KHR_materials_pbrSpecularGlossiness": {"specularGlossinessTexture": {"index": 1}}}
     yield "material_extension_texture_range", change(setter("materials", [{"extensions": shiny}]), triangle_with(**image))
+    volume = {"KHR_materials_volume": {"attenuationColor": [1, 0.5]}}
+    yield simple("material_volume_color", "materials", [{"extensions": volume}])
     yield simple("material_factor_type", "materials", [{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]}}])
     yield simple("mesh_mode", "meshes", 0, "primitives", 0, "mode", 7)
     yield simple("node_cycle", "nodes", [{"mesh": 0}, {"children": [2]}, {"children": [1]}])
@@ -1567,6 +1601,7 @@ def main():
     write_good_materials()
     write_good_transmission()
     write_good_material_extensions()
+    write_good_volume()
     write_good_plain()
     write_good_obj()
     write_good_compressed()

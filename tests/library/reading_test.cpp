@@ -131,6 +131,58 @@ TEST_P(ReadingTest, SamplesPoolsAndAreasOfAllKinds) {
   }
 }
 
+// Where the host resolves: long lists lie sorted, alike fragments by their words, however nodes are stored and linked,
+// and the counters are as ever. No picture is drawn.
+TEST_P(ReadingTest, TheHostResolvesListsThatLieSorted) {
+  std::vector<std::uint32_t> counts = sampleCounts(features());
+  if (counts.size() > 2) counts = {1, 4};
+  for (const std::uint32_t samples : counts) {
+    for (const VitrailNodeFormat format : nodeFormats(samples)) {
+      for (const VitrailListBuild build : {VITRAIL_LIST_BUILD_FRAGMENT, VITRAIL_LIST_BUILD_COMPUTE}) {
+        for (const bool addresses : {false, true}) {
+          if (addresses && !features().addresses) continue;
+          SCOPED_TRACE(std::to_string(samples) + " samples, format " + std::to_string(format) + ", build " +
+                       std::to_string(build) + (addresses ? ", by address" : ""));
+          HostDesc desc = hostDesc();
+          desc.samples = samples;
+          desc.nodes = format;
+          desc.listBuild = build;
+          desc.addresses = addresses;
+          desc.resolve = VITRAIL_RESOLVE_HOST;
+          const std::vector<Point> points = wordyPoints(desc, 8, samples > 1);
+          desc.capacity = static_cast<std::uint32_t>(points.size());
+          const VitrailRect area = {0, 0, desc.width, desc.height};
+          for (const bool afterResolve : {false, true}) {
+            const ListsRead read =
+                makeHost(desc)->drawAndRead(ordered(points, Order::Shuffled), area, ReadBy::Shader, afterResolve);
+            expectLists(read, desc, points, area);
+            EXPECT_EQ(read.frame.stats.complete, 1U);
+            EXPECT_EQ(read.frame.stats.layersMax, expectedFrame(desc, points).layersMax);
+            EXPECT_EQ(read.frame.stats.coveredPixels, expectedFrame(desc, points).coveredPixels);
+          }
+        }
+      }
+    }
+  }
+}
+
+// A copy of lists that lie sorted, and a frame that overflows: its lists are walked, and end.
+TEST_P(ReadingTest, TheHostMayCopyAndOverflow) {
+  HostDesc desc = hostDesc();
+  desc.resolve = VITRAIL_RESOLVE_HOST;
+  const std::vector<Point> points = wordyPoints(desc, 9);
+  desc.capacity = static_cast<std::uint32_t>(points.size());
+  const VitrailRect area = {0, 0, desc.width, desc.height};
+  expectLists(makeHost(desc)->drawAndRead(points, area, ReadBy::Copy, false), desc, points, area);
+  desc.capacity /= 2;
+  const ListsRead read = makeHost(desc)->drawAndRead(points, area, ReadBy::Shader, false);
+  EXPECT_EQ(read.frame.stats.complete, 0U);
+  EXPECT_GT(read.frame.stats.fragmentsMissing, 0U);
+  std::size_t layers = 0;
+  for (const auto& list : read.pixels) layers += list ? list->size() : 0;
+  EXPECT_EQ(layers, desc.capacity);
+}
+
 // Words are no part of what is drawn.
 TEST_P(ReadingTest, WordsChangeNoPicture) {
   for (const Way& way : everyWay(features(), 1)) {

@@ -9,6 +9,7 @@
 
 #include "../../tool/scene/exposure.h"
 #include "library/reference/resolve.h"
+#include "media.h"
 #include "rays.h"
 #include "shading.h"
 #include "surfaces.h"
@@ -84,6 +85,11 @@ class Eye {
   std::uint32_t storedCount(const PictureRay& ray, const PixelSurface& surface) const;
   std::vector<PixelSurface> swapTies(const std::vector<PixelSurface>& surfaces) const;
   Samples blend(const PictureRay& ray, const std::vector<PixelSurface>& surfaces, PixelList* stored) const;
+  std::vector<Crossing> crossings(const PictureRay& ray, const std::vector<PixelSurface>& surfaces,
+                                  std::uint32_t sample) const;
+  Blended blendAbsorbing(const PictureRay& ray, const PixelSurfaces& found, const std::vector<PixelSurface>& surfaces,
+                         std::uint32_t sample, bool rounded) const;
+  Samples blendAll(const PictureRay& ray, const PixelSurfaces& found, const std::vector<PixelSurface>& surfaces) const;
   std::array<Color, kMostSamples> opaqueColors(const PictureRay& ray, const PixelSurfaces& surfaces) const;
   Color behindEverything(const PictureRay& ray) const;
   glm::dvec4 mean(const Samples& samples, const std::array<Color, kMostSamples>& behind) const;
@@ -97,6 +103,9 @@ class Eye {
   glm::dmat3 cameraAxes_;
   glm::dvec3 toLight_;
   std::vector<glm::dmat3> normalToWorld_; // by draw
+  std::vector<double> growth_;            // by draw: the cube root of its transform's determinant
+  SolidDraws solids_;
+  bool absorbs_ = false; // whether any draw is solid
 };
 
 void checkTextures(const Scene& scene) {
@@ -106,7 +115,7 @@ void checkTextures(const Scene& scene) {
           &material.emissiveTexture, &material.transmissionTexture, &material.specularTexture,
           &material.specularColorTexture, &material.clearcoatTexture, &material.clearcoatRoughnessTexture,
           &material.sheenColorTexture, &material.sheenRoughnessTexture, &material.anisotropyTexture,
-          &material.iridescenceTexture, &material.iridescenceThicknessTexture}) {
+          &material.iridescenceTexture, &material.iridescenceThicknessTexture, &material.thicknessTexture}) {
       if (slot->image >= 0) throw std::invalid_argument("the reference knows base colour textures only");
     }
   }
@@ -120,9 +129,12 @@ Eye::Eye(const Scene& scene, const ReferenceOptions& options)
       coding_{options.nodeFormat, options.samples, true},
       brightest_(options.nodeFormat == layout::VITRAIL_FORMAT_HDR ? kLargestHalf : 1.0),
       cameraAxes_(glm::dmat4(options.view.cameraToWorld)),
-      toLight_(cameraAxes_ * glm::normalize(glm::dvec3(-0.4, 0.7, 0.6))) {
+      toLight_(cameraAxes_ * glm::normalize(glm::dvec3(-0.4, 0.7, 0.6))),
+      solids_(scene, double{options.opacity.value_or(1.0F)}) {
   checkTextures(scene);
   for (const Draw& draw : scene.draws) {
+    growth_.push_back(std::cbrt(std::abs(glm::determinant(glm::dmat3(glm::dmat4(draw.transform))))));
+    absorbs_ = absorbs_ || solids_.isSolid(static_cast<std::uint32_t>(growth_.size() - 1));
     normalToWorld_.push_back(glm::transpose(glm::inverse(glm::dmat3(glm::dmat4(draw.transform)))));
   }
 }
@@ -198,8 +210,16 @@ Eye::Fragments Eye::fragmentsOf(const PictureRay& ray, const PixelSurface& surfa
   if (t > 0.0) {
     const double q = t * (1.0 - std::clamp(double{material.metallic}, 0.0, 1.0));
     const double passing = 1.0 - k + k * q;
-    return {fragment(k * color, k * (1.0 - q), layout::VITRAIL_PREMULTIPLIED),
-            fragment(glm::dvec3(surface.base), passing > 0.0 ? k * q / passing : 0.0, layout::VITRAIL_MULTIPLY)};
+    glm::dvec3 tint(surface.base);
+    const Fragment reflection = fragment(k * color, k * (1.0 - q), layout::VITRAIL_PREMULTIPLIED);
+    if (solids_.isSolid(surface.hit.draw)) {
+      const double share = passing > 0.0 ? k * q / passing : 0.0;
+      return {reflection, fragment(glm::mix(glm::dvec3(1.0), tint, share), 1.0, layout::VITRAIL_MULTIPLY)};
+    }
+    if (surface.hit.front) {
+      tint *= glm::exp(-absorptionOf(material) * double{material.thickness} * growth_[surface.hit.draw]);
+    }
+    return {reflection, fragment(tint, passing > 0.0 ? k * q / passing : 0.0, layout::VITRAIL_MULTIPLY)};
   }
   const bool adds = material.alphaMode == AlphaMode::Blend && material.blend == BlendMode::Additive;
   return {fragment(color, k, adds ? layout::VITRAIL_ADDITIVE : layout::VITRAIL_OVER)};
@@ -267,6 +287,66 @@ Samples Eye::blend(const PictureRay& ray, const std::vector<PixelSurface>& surfa
   return samples;
 }
 
+// Where a sample's ray goes through solids, at the pixel's centre.
+std::vector<Crossing> Eye::crossings(const PictureRay& ray, const std::vector<PixelSurface>& surfaces,
+                                     std::uint32_t sample) const {
+  const double stretch = glm::length(glm::dvec3(ray.slope, 1.0));
+  std::vector<Crossing> result;
+  for (const PixelSurface& surface : surfaces) {
+    if ((surface.covered >> sample & 1U) == 0 || !solids_.isSolid(surface.hit.draw)) continue;
+    result.push_back(
+        {surface.hit.draw, solids_.isEntry(surface.hit.draw, surface.hit.front), surface.hit.depth * stretch});
+  }
+  return result;
+}
+
+// One sample of a scene with solids: every fragment is weakened by what is between the near plane and it. What comes
+// from behind all of them is weakened in the transmittance. `rounded`: fragments as they are stored.
+Blended Eye::blendAbsorbing(const PictureRay& ray, const PixelSurfaces& found,
+                            const std::vector<PixelSurface>& surfaces, std::uint32_t sample, bool rounded) const {
+  const double stretch = glm::length(glm::dvec3(ray.slope, 1.0));
+  const double start = double{options_.view.nearPlane} * stretch;
+  const std::vector<Crossing> all = crossings(ray, surfaces, sample);
+  Blended result; // of the surfaces alone
+  Blended seen;   // with what is between them
+  const auto weaken = [](Color& color, const glm::dvec3& left) {
+    for (int c = 0; c < 3; ++c) color[static_cast<std::size_t>(c)] *= left[c];
+  };
+  for (const PixelSurface& surface : surfaces) {
+    if ((surface.covered & ~surface.hidden & 1U << sample) == 0) continue;
+    const glm::dvec3 left = solids_.left(all, start, surface.hit.depth * stretch);
+    for (Fragment fragment : fragmentsOf(ray, surface)) {
+      if (rounded) {
+        fragment.color[3] = snapAlpha(fragment.color[3], coding_);
+        const auto node = packNode(coding_, fragment);
+        if (!node) continue;
+        fragment = unpackNode(coding_, *node);
+      }
+      Color light = result.transmittance;
+      weaken(light, left);
+      const Blended blended = blendOf(fragment);
+      for (std::size_t c = 0; c < 4; ++c) seen.color[c] += light[c] * blended.color[c];
+      result = compose(result, blended);
+    }
+  }
+  const int nearest = found.nearestOpaque[sample];
+  double end = start;
+  for (const Crossing& crossing : all) end = std::max(end, crossing.at);
+  if (double{options_.view.farPlane} > 0.0) end = double{options_.view.farPlane} * stretch;
+  if (nearest >= 0) end = found.opaque[static_cast<std::size_t>(nearest)].depths[sample] * stretch;
+  seen.transmittance = result.transmittance;
+  weaken(seen.transmittance, solids_.left(all, start, end));
+  return seen;
+}
+
+Samples Eye::blendAll(const PictureRay& ray, const PixelSurfaces& found,
+                      const std::vector<PixelSurface>& surfaces) const {
+  if (!absorbs_) return blend(ray, surfaces, nullptr);
+  Samples samples;
+  for (std::uint32_t s = 0; s < options_.samples; ++s) samples[s] = blendAbsorbing(ray, found, surfaces, s, false);
+  return samples;
+}
+
 Color Eye::behindEverything(const PictureRay& ray) const {
   glm::dvec3 color(0.0);
   switch (options_.background.kind) {
@@ -322,13 +402,22 @@ Sight Eye::look(const glm::dvec2& centre, const glm::dvec2& nudge, std::vector<R
   Sight sight;
   for (const PixelSurface& surface : surfaces.transparent) sight.layers += storedCount(ray, surface);
   PixelList stored{coding_, {}, {}, 0};
-  sight.exact = mean(blend(ray, surfaces.transparent, still ? &stored : nullptr), behind);
+  sight.exact = mean(blendAll(ray, surfaces, surfaces.transparent), behind);
   if (!still) return sight;
-  const Color rounded = resolvePixel(stored, behind);
-  sight.rounded = {rounded[0], rounded[1], rounded[2], rounded[3]};
+  if (absorbs_) {
+    Samples samples;
+    for (std::uint32_t s = 0; s < options_.samples; ++s) {
+      samples[s] = blendAbsorbing(ray, surfaces, surfaces.transparent, s, true);
+    }
+    sight.rounded = mean(samples, behind);
+  } else {
+    blend(ray, surfaces.transparent, &stored);
+    const Color rounded = resolvePixel(stored, behind);
+    sight.rounded = {rounded[0], rounded[1], rounded[2], rounded[3]};
+  }
   const std::vector<PixelSurface> swapped = swapTies(surfaces.transparent);
   sight.tiesSwapped =
-      sameOrder(surfaces.transparent, swapped) ? sight.exact : mean(blend(ray, swapped, nullptr), behind);
+      sameOrder(surfaces.transparent, swapped) ? sight.exact : mean(blendAll(ray, surfaces, swapped), behind);
   return sight;
 }
 

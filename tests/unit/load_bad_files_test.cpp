@@ -112,6 +112,8 @@ const std::map<std::string, std::string>& expectedMessages() {
       {"material_extension_texture_range.gltf",
        "material 0: extensions.KHR_materials_pbrSpecularGlossiness.specularGlossinessTexture.index is 1, but textures "
        "has 1 element"},
+      {"material_volume_color.gltf",
+       "material 0: extensions.KHR_materials_volume.attenuationColor has 2 numbers where 3 belong"},
       {"material_transmission_range.gltf",
        "material 0: extensions.KHR_materials_transmission.transmissionTexture.index is 1, but textures has 1 element"},
       {"meshopt_count.gltf",

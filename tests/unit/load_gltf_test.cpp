@@ -1,5 +1,6 @@
 // The values that glTF files load to: one small file of the corpus a feature.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "load_good.h"
 #include "scene/load.h"
 #include "scene/mesh_build.h"
+#include "scene/volume.h"
 
 namespace vitrail::tool {
 namespace {
@@ -322,6 +324,26 @@ TEST(LoadGltf, SpecularGlossiness) {
   EXPECT_EQ(gloss.metallic, 0.0F);
   EXPECT_EQ(gloss.metallicRoughnessTexture.image, 0);
   EXPECT_EQ(gloss.alphaMode, AlphaMode::Blend);
+}
+
+TEST(LoadGltf, Volume) {
+  const Scene scene = loadGood("volume.gltf");
+  const auto named = [&](const std::string& name) {
+    return *std::ranges::find(scene.materials, name, &Material::name);
+  };
+  EXPECT_EQ(named("pane").thickness, 1.0F);
+  EXPECT_EQ(named("pane").attenuationDistance, 1.0F);
+  EXPECT_EQ(named("pane").attenuationColor, glm::vec3(1.0F, 0.5F, 0.5F));
+  EXPECT_EQ(named("textured").thickness, 2.0F);
+  EXPECT_EQ(named("textured").thicknessTexture.image, 0);
+  EXPECT_EQ(named("thin").thickness, 0.0F);
+  EXPECT_EQ(named("clear").attenuationDistance, 0.0F) << "none is an infinite one";
+  const glm::vec3 perLength = absorption(named("pane"));
+  EXPECT_EQ(perLength.r, 0.0F);
+  EXPECT_FLOAT_EQ(perLength.g, std::log(2.0F));
+  for (const char* name : {"thin", "clear", "opaque"}) {
+    EXPECT_EQ(absorption(named(name)), glm::vec3(0.0F)) << name;
+  }
 }
 
 TEST(LoadGltf, TextureTransformsScaleThenTurnThenMove) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "../scene/volume.h"
 #include "method.h"
 
 namespace vitrail::tool {
@@ -190,6 +191,14 @@ void checkMethodOptions(const MethodOptions& options) {
   }
   checkTaken(options);
   checkStored(options);
+}
+
+std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions& options) {
+  const MethodOptions defaults;
+  if ((options.name == defaults.name && options.maxLayers == 0) || !Solids(scene).any()) return {};
+  return {options.name == defaults.name
+              ? "volumes are attenuated by the file's thickness, not by the true path: leave --layers out"
+              : "volumes are attenuated by the file's thickness, not by the true path: use --method linked-list"};
 }
 
 void checkPictureOptions(std::string_view method, bool memoryBudget) {

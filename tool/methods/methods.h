@@ -8,12 +8,15 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "method_options.h"
 
 namespace vitrail::tool {
 
+struct Scene; // scene/scene.h
 class Method; // method.h
 struct MethodHost;
 
@@ -62,6 +65,9 @@ void checkMethodOptions(const MethodOptions& options);
 
 // The same for what is chosen with each picture: whether there is a memory budget.
 void checkPictureOptions(std::string_view method, bool memoryBudget);
+
+// What the method draws otherwise of a scene than others would: lines as Scene::warnings has them.
+std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions& options);
 
 // Counts the fragments of each pixel and draws no picture; not listed.
 inline constexpr std::string_view kLayerCount = "layer-count";

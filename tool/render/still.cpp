@@ -23,12 +23,12 @@ constexpr int kMaxAttempts = 3;
 
 struct StillRenderer::Impl {
   MethodOptions options;
+  std::vector<std::string> warnings; // of what the method, or the device, draws otherwise
   Submitter submitter;
   Stage stage;                    // the method's target holds views of its images
   std::unique_ptr<Method> method; // draws on it
   EncodePass encode;
   Timers timers;
-  std::vector<std::string> warnings; // of what the device draws otherwise
 
   Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, const MethodOptions& chosen);
   void prepare(const RenderOptions& picture);
@@ -39,6 +39,7 @@ struct StillRenderer::Impl {
 
 StillRenderer::Impl::Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, const MethodOptions& chosen)
     : options(chosen),
+      warnings(methodWarnings(scene, chosen)),
       submitter(gpu),
       stage(gpu, scene, info),
       method(makeMethod({gpu, stage.surfaces(), scene}, chosen)),

@@ -53,10 +53,10 @@ std::vector<std::uint32_t> usedMaterials(const Scene& scene) {
   return {used.begin(), used.end()};
 }
 
-// Uploads structures as one uniform buffer in which each starts at a multiple of `stride`.
+// Uploads structures as one uniform buffer in which each starts at a multiple of its stride.
 template <typename Data>
-GpuBuffer uploadUniforms(Gpu& gpu, Uploader& uploader, const std::vector<Data>& data, std::uint32_t stride,
-                         const char* name) {
+GpuBuffer uploadUniforms(Gpu& gpu, Uploader& uploader, const std::vector<Data>& data, const char* name) {
+  constexpr std::uint32_t stride = kUniformStride<Data>;
   checkCount(data.size(), std::numeric_limits<std::uint32_t>::max() / stride, name);
   std::vector<std::byte> bytes(data.size() * stride);
   for (std::size_t i = 0; i < data.size(); ++i) std::memcpy(&bytes[i * stride], &data[i], sizeof(Data));
@@ -85,7 +85,7 @@ void groupOpaque(std::vector<GpuDraw>& draws) {
 } // namespace
 
 GpuScene::GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released)
-    : gpu_(gpu), order_(order), origin_(farMiddle(scene)) {
+    : gpu_(gpu), order_(order), solids_(scene), opacity_(opacity.value_or(1.0F)), origin_(farMiddle(scene)) {
   Uploader uploader(gpu);
   const std::vector<MeshRange> ranges = placeMeshes(scene, opacity.has_value());
   uploadMaterials(uploader, scene, opacity);
@@ -163,8 +163,7 @@ void GpuScene::uploadMaterials(Uploader& uploader, const Scene& scene, std::opti
   std::vector<shaders::MaterialData> data;
   data.reserve(scene.materials.size());
   for (const Material& material : scene.materials) data.push_back(makeMaterialData(material, opacity));
-  static_assert(sizeof(shaders::MaterialData) <= kMaterialStride && kMaterialStride % kUniformStride == 0);
-  materials_ = uploadUniforms(gpu_, uploader, data, kMaterialStride, "materials");
+  materials_ = uploadUniforms(gpu_, uploader, data, "materials");
 }
 
 void GpuScene::uploadLights(Uploader& uploader, const Scene& scene) {
@@ -216,12 +215,13 @@ GpuDraw GpuScene::describe(const Scene& scene, const DrawGroup& group, const Mes
   const Mesh& mesh = scene.meshes[group.mesh];
   GpuDraw draw;
   draw.mesh = group.mesh;
-  draw.materialOffset = group.material * kMaterialStride;
+  draw.materialOffset = group.material * kUniformStride<shaders::MaterialData>;
   draw.firstIndex = static_cast<std::uint32_t>(transparent ? range.firstTransparentIndex : range.firstOpaqueIndex);
   draw.indexCount = static_cast<std::uint32_t>(mesh.indices.size());
   draw.firstInstance = static_cast<std::uint32_t>(sources_.size());
   draw.instanceCount = static_cast<std::uint32_t>(group.draws.size());
   draw.features = featuresOf(scene, material, mesh, textures_->isPremultiplied(group.material));
+  if (solids_.of(group.mesh, group.material) != Facing::Open) draw.features |= shaders::FEATURE_SOLID;
   draw.textures = textures_->set(group.material);
   // A mirror turns the triangles round, and glTF means the side that was outside before.
   draw.frontFace = group.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;

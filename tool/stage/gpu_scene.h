@@ -9,6 +9,7 @@
 #include "../gpu/resources.h"
 #include "../gpu/upload.h"
 #include "../scene/scene.h"
+#include "../scene/volume.h"
 #include "draw_groups.h"
 #include "draw_order.h"
 #include "texture.h"
@@ -17,8 +18,9 @@
 namespace vitrail::tool {
 
 // The largest alignment of a uniform buffer's offset that a device may ask for.
-constexpr std::uint32_t kUniformStride = 256;
-constexpr std::uint32_t kMaterialStride = 768; // a multiple of it
+constexpr std::uint32_t kUniformAlignment = 256;
+template <typename Data>
+constexpr std::uint32_t kUniformStride = (sizeof(Data) + kUniformAlignment - 1) / kUniformAlignment* kUniformAlignment;
 
 // Some instances of one mesh with one material: one indexed draw.
 struct GpuDraw {
@@ -59,9 +61,13 @@ class GpuScene {
   std::vector<std::uint32_t> transparentIndices(const Scene& scene, std::size_t i) const;
   const VertexStreams& streams() const { return *streams_; }
   const GpuBuffer& indices() const { return indices_; }     // 32-bit
-  const GpuBuffer& materials() const { return materials_; } // of shaders::MaterialData, kMaterialStride apart
+  const GpuBuffer& materials() const { return materials_; } // of shaders::MaterialData, a stride apart
   const GpuBuffer& lights() const { return lights_; }       // of shaders::LightData; one at least
   std::uint32_t lightCount() const { return lightCount_; }
+  // What of the scene encloses a volume.
+  const Solids& solids() const { return solids_; }
+  float opacity() const { return opacity_; } // that all materials are blended with, else 1
+  std::size_t instanceCount() const { return sources_.size(); }
   void cmdBindInstances(VkCommandBuffer commands) const;
   // The point of the world that is the GPU's (0, 0, 0): near the scene, so that a model far from the world's own origin
   // keeps its precision in 32-bit floats. Views are moved with it.
@@ -89,6 +95,8 @@ class GpuScene {
 
   Gpu& gpu_;
   DrawOrder order_;
+  Solids solids_;
+  float opacity_ = 1.0F;
   glm::dvec3 origin_{0.0};
   std::uint64_t indexCount_ = 0;
   std::optional<VertexStreams> streams_;

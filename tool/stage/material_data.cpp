@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../scene/volume.h"
 #include "texture.h"
 
 namespace vitrail::tool {
@@ -19,6 +20,7 @@ shaders::MaterialData makeMaterialData(const Material& material, std::optional<f
   shaders::MaterialData data{};
   data.baseColor = material.baseColor;
   data.emissive = glm::vec4(material.emissive, 0.0F);
+  data.attenuation = glm::vec4(material.thickness * absorption(material), 0.0F);
   data.metallic = material.metallic;
   data.roughness = material.roughness;
   data.normalScale = material.normalScale;
@@ -75,7 +77,7 @@ std::uint32_t extensionsOf(const Material& material, std::uint32_t features) {
     if (!there) features &= ~slots;
   };
   need(material.transmission > 0.0F, shaders::FEATURE_TRANSMISSION, bit(shaders::SLOT_TRANSMISSION));
-  need(false, 0, bit(shaders::SLOT_THICKNESS)); // nothing is as thick as that in this shading
+  need(absorption(material) != glm::vec3(0.0F), shaders::FEATURE_VOLUME, bit(shaders::SLOT_THICKNESS));
   if (material.specularGlossiness) features |= shaders::FEATURE_SPECULAR_GLOSSINESS;
   need(!material.specularGlossiness &&
            (material.ior != 1.5F || material.specular != 1.0F || material.specularColor != glm::vec3(1.0F) ||

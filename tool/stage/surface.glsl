@@ -19,6 +19,7 @@ layout(set = 1, binding = 6) uniform sampler2D specularTexture;
 layout(set = 1, binding = 7) uniform sampler2D specularColorTexture;
 layout(set = 1, binding = 8) uniform sampler2D clearcoatTexture;
 layout(set = 1, binding = 9) uniform sampler2D clearcoatRoughnessTexture;
+layout(set = 1, binding = 10) uniform sampler2D thicknessTexture;
 layout(set = 1, binding = 11) uniform sampler2D sheenColorTexture;
 layout(set = 1, binding = 12) uniform sampler2D sheenRoughnessTexture;
 layout(set = 1, binding = 13) uniform sampler2D anisotropyTexture;
@@ -38,6 +39,7 @@ layout(location = 4) SURFACE_IN vec4 inTexCoords[SLOT_PAIRS];
 const float PI = 3.14159265358979;
 
 bool has(uint feature) { return (kFeatures & feature) != 0u; }
+bool isSolid() { return (kFeatures & FEATURE_SOLID) == FEATURE_SOLID; }
 bool hasTexture(uint slot) { return has(1u << slot); }
 vec2 texCoord(uint slot) {
   vec4 two = inTexCoords[slot / 2u];
@@ -181,6 +183,15 @@ vec3 lit(Lit s, vec3 emissive) {
   return color;
 }
 
+// Whether the volume behind the surface is taken to be as thick as the file says, and to tint what passes through the
+// surface. A method that follows light through what surfaces enclose defines SURFACE_TRUE_PATH.
+bool thickAsStated() {
+#ifdef SURFACE_TRUE_PATH
+  if (isSolid()) return false;
+#endif
+  return has(FEATURE_VOLUME) && gl_FrontFacing;
+}
+
 // A surface at one pixel, as docs/shading.md states it.
 struct Surface {
   vec3 color;  // linear
@@ -206,6 +217,7 @@ struct Texels {
   vec3 anisotropy;
   float iridescence;
   float iridescenceThickness;
+  float thickness;
 };
 
 #define TEXEL(slot, image) (hasTexture(slot) ? texture(image, texCoord(slot)) : vec4(1.0))
@@ -229,6 +241,7 @@ Texels sampleTextures() {
                                              : vec3(1.0, 0.5, 1.0);
   t.iridescence = TEXEL(SLOT_IRIDESCENCE, iridescenceTexture).r;
   t.iridescenceThickness = TEXEL(SLOT_IRIDESCENCE_THICKNESS, iridescenceThicknessTexture).g;
+  t.thickness = TEXEL(SLOT_THICKNESS, thicknessTexture).g;
   return t;
 }
 
@@ -292,7 +305,9 @@ Surface shadeSurface() {
   if (has(FEATURE_CLEARCOAT)) s.coat = coatOf(smoothly, s.view, t.clearcoat, t.clearcoatRoughness);
   if (has(FEATURE_RARE)) s.grooves = groovesOf(tangentOf(s.normal), s.normal, s.roughness, t.anisotropy);
   vec3 color = lit(s, material.emissive.rgb * t.emissive);
-  return Surface(color, alpha, base.rgb, transmission * (1.0 - metallic));
+  vec3 tint = base.rgb;
+  if (thickAsStated()) tint *= exp(-material.attenuation.rgb * (t.thickness * abs(inTangent.w)));
+  return Surface(color, alpha, tint, transmission * (1.0 - metallic));
 }
 
 // The two fragments of a transmissive surface, the first in front of the second: what it reflects, premultiplied, and

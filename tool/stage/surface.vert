@@ -25,6 +25,9 @@ layout(location = 1) out vec3 outNormal;
 layout(location = 2) out vec4 outTangent;
 layout(location = 3) out vec4 outColor;
 layout(location = 4) out vec4 outTexCoords[SLOT_PAIRS];
+#ifdef SURFACE_OBJECT
+layout(location = 15) flat out uint outObject; // the number of the instance
+#endif
 
 // Both passes must give one vertex the same bits, or transparent decals on opaque surfaces would flicker.
 invariant gl_Position;
@@ -51,8 +54,8 @@ void main() {
   vec4 position = vec4(dot(inRow0, local), dot(inRow1, local), dot(inRow2, local), 1.0);
   gl_Position = frame.viewProjection * position;
   // Along the edge between two rows or columns of pixels a line is drawn in the lower or right one, on every device.
-  if ((kFeatures & FEATURE_LINES) != 0u) gl_Position.xy += gl_Position.w * frame.depth.zw;
-  if ((kFeatures & FEATURE_POINTS) != 0u) gl_PointSize = kPointSize;
+  if ((kFeatures & FEATURE_SOLID) == FEATURE_LINES) gl_Position.xy += gl_Position.w * frame.depth.zw;
+  if ((kFeatures & FEATURE_SOLID) == FEATURE_POINTS) gl_PointSize = kPointSize;
   outPosition = position.xyz;
 
   // Normals turn as planes do: by the cofactors, which exist even where the transform has no inverse, scaled so that
@@ -66,7 +69,12 @@ void main() {
   outNormal = mirrored * (fromOctahedral(inNormal) * cofactors);
   vec3 tangent = fromOctahedral(vec2(float(inTangent.x) / 32767.0, float(inTangent.y >> 1) / 16383.0));
   outTangent = vec4(tangent * rows, (inTangent.y & 1) != 0 ? -mirrored : mirrored);
+  // Beside the sign w then says how much longer things become: no output more for the few that ask.
+  if ((kFeatures & FEATURE_VOLUME) != 0u) outTangent.w *= size * pow(abs(dot(rows[0], cofactors[0])), 1.0 / 3.0);
   outColor = inColor;
+#ifdef SURFACE_OBJECT
+  outObject = uint(gl_InstanceIndex);
+#endif
   for (uint pair = 0u; pair < SLOT_PAIRS; ++pair) {
     outTexCoords[pair] = vec4(slotCoordinates(2u * pair), slotCoordinates(2u * pair + 1u));
   }

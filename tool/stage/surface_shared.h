@@ -52,8 +52,11 @@ const uint FEATURE_SHEEN = 0x2000000u;
 const uint FEATURE_RARE = 0x4000000u;          // anisotropy, iridescence or diffuse transmission, or several of them
 const uint FEATURE_PREMULTIPLIED = 0x8000000u; // the base colour texture holds colours times alpha
 const uint FEATURE_FLAT = 0x10000000u;         // there are no vertex normals: each triangle has that of its plane
-const uint FEATURE_LINES = 0x20000000u;        // lines, a pixel wide, in place of triangles
-const uint FEATURE_POINTS = 0x40000000u;       // points
+// What is drawn: triangles where neither of these bits is there.
+const uint FEATURE_LINES = 0x20000000u;  // lines, a pixel wide, in place of triangles
+const uint FEATURE_POINTS = 0x40000000u; // points
+const uint FEATURE_SOLID = 0x60000000u;  // both: triangles that enclose a volume (below)
+const uint FEATURE_VOLUME = 0x80000000u; // there is something behind it that absorbs light
 
 // What all draws of a frame share (std140).
 struct FrameData {
@@ -86,7 +89,8 @@ struct SlotData {
 // One material (std140).
 struct MaterialData {
   vec4 baseColor;
-  vec4 emissive; // rgb
+  vec4 emissive;    // rgb
+  vec4 attenuation; // rgb: absorption times thickness, in the mesh's lengths
   float metallic;
   float roughness; // with FEATURE_SPECULAR_GLOSSINESS: 1 - glossiness
   float normalScale;
@@ -111,7 +115,7 @@ struct MaterialData {
 static_assert(sizeof(FrameData) == 192);
 static_assert(sizeof(SlotData) == 32);
 static_assert(sizeof(LightData) == 64);
-static_assert(sizeof(MaterialData) == 672);
+static_assert(sizeof(MaterialData) == 688);
 #endif
 
 VITRAIL_SHARED_END

@@ -20,8 +20,8 @@ Unique<VkPipelineLayout> makeLayout(const Surfaces& surfaces, const SurfaceProgr
 }
 
 VkPrimitiveTopology topologyOf(std::uint32_t features) {
-  if ((features & shaders::FEATURE_LINES) != 0) return VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
-  if ((features & shaders::FEATURE_POINTS) != 0) return VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+  if ((features & shaders::FEATURE_SOLID) == shaders::FEATURE_LINES) return VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+  if ((features & shaders::FEATURE_SOLID) == shaders::FEATURE_POINTS) return VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
   return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
 }
 

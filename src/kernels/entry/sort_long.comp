@@ -1,6 +1,15 @@
-// Before a fragment resolve: sorts the lists that sort_find.comp found, where they lie. One thread a list.
+// Before a fragment resolve or one of the host's: sorts the lists that sort_find.comp found, where they lie, with
+// VITRAIL_SORT_WORDS those that are alike by their words. One thread a list.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "target.glsl"
+
+#ifdef VITRAIL_SORT_WORDS
+uint vitrailWordOf(uint index) {
+  return vitrailParameters.userWords != 0u ? vitrailLoadWord(index, vitrailNodes()) : 0u;
+}
+#endif
+
 #include "list/deep.glsl"
 #include "list/walk.glsl"
 #include "sink/samples.glsl"

@@ -78,9 +78,9 @@ PointPipelines& VulkanBackend::pipelines(const PointPipelinesInfo& info) {
   return pipelines_.try_emplace(info, device(), info).first->second;
 }
 
-ListWalker& VulkanBackend::walker(const Context& context, bool byAddress) {
+ListWalker& VulkanBackend::walker(const Context& context, const WalkKind& kind) {
   const VkDescriptorSetLayout set = context.descriptorSetLayout();
-  return walkers_.try_emplace({set, byAddress}, device(), set, byAddress).first->second;
+  return walkers_.try_emplace({set, kind}, device(), set, kind).first->second;
 }
 
 VulkanBackend& backend() { return Registered<VulkanBackend>::get(); }

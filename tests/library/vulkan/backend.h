@@ -44,7 +44,7 @@ class VulkanBackend : public Backend {
   std::uint32_t allFeatures();
 
   PointPipelines& pipelines(const PointPipelinesInfo& info);
-  ListWalker& walker(const Context& context, bool byAddress);
+  ListWalker& walker(const Context& context, const WalkKind& kind);
 
   // What a context is made with: this device, and its log here.
   VitrailVkContextDesc contextDesc();
@@ -54,8 +54,8 @@ class VulkanBackend : public Backend {
  private:
   std::unique_ptr<Device> device_;
   std::map<std::uint32_t, Context> contexts_;
-  std::map<PointPipelinesInfo, PointPipelines> pipelines_;               // with the contexts' layouts: they go before
-  std::map<std::pair<VkDescriptorSetLayout, bool>, ListWalker> walkers_; // as well
+  std::map<PointPipelinesInfo, PointPipelines> pipelines_; // with the contexts' layouts: they go before
+  std::map<std::pair<VkDescriptorSetLayout, WalkKind>, ListWalker> walkers_; // as well
   std::vector<LogLine> log_;
   std::vector<std::string> lastErrors_; // of a device that was closed
 };

@@ -6,6 +6,8 @@
 
 #include "shaders/walk.comp.h"
 #include "shaders/walk_address.comp.h"
+#include "shaders/walk_sorted.comp.h"
+#include "shaders/walk_sorted_address.comp.h"
 
 namespace vitrail::tests::vulkan {
 
@@ -40,9 +42,15 @@ Owned<VkPipelineLayout> makeWalkLayout(const Device& device, const std::array<Vk
   return make(device, vkCreatePipelineLayout, vkDestroyPipelineLayout, info);
 }
 
-Owned<VkPipeline> makeWalkPipeline(const Device& device, VkPipelineLayout layout, bool byAddress) {
-  const std::span<const std::uint32_t> code =
-      byAddress ? std::span<const std::uint32_t>(shaders::walk_address_comp) : shaders::walk_comp;
+std::span<const std::uint32_t> walkCode(const WalkKind& kind) {
+  if (kind.sorted && kind.byAddress) return shaders::walk_sorted_address_comp;
+  if (kind.sorted) return shaders::walk_sorted_comp;
+  if (kind.byAddress) return shaders::walk_address_comp;
+  return shaders::walk_comp;
+}
+
+Owned<VkPipeline> makeWalkPipeline(const Device& device, VkPipelineLayout layout, const WalkKind& kind) {
+  const std::span<const std::uint32_t> code = walkCode(kind);
   auto moduleInfo = zeroed<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
   moduleInfo.codeSize = code.size_bytes();
   moduleInfo.pCode = code.data();
@@ -70,11 +78,11 @@ Owned<VkDescriptorPool> makePool(const Device& device) {
 
 } // namespace
 
-ListWalker::ListWalker(const Device& device, VkDescriptorSetLayout set, bool byAddress)
+ListWalker::ListWalker(const Device& device, VkDescriptorSetLayout set, const WalkKind& kind)
     : device_(device),
       setLayout_(makeSetLayout(device)),
       layout_(makeWalkLayout(device, {set, setLayout_.get()})),
-      pipeline_(makeWalkPipeline(device, layout_.get(), byAddress)),
+      pipeline_(makeWalkPipeline(device, layout_.get(), kind)),
       pool_(makePool(device)) {
   auto info = zeroed<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
   info.descriptorPool = pool_.get();

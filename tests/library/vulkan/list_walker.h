@@ -1,6 +1,7 @@
 // A compute shader of the host's that walks lists (vitrail/list.glsl) and writes them down.
 #pragma once
 
+#include <compare>
 #include <optional>
 #include <vector>
 
@@ -9,10 +10,17 @@
 
 namespace vitrail::tests::vulkan {
 
+struct WalkKind {
+  bool byAddress = false; // the shader reaches the pool by its address
+  bool sorted = false;    // it takes long lists to lie sorted (VITRAIL_SORTED_LISTS)
+
+  auto operator<=>(const WalkKind&) const = default;
+};
+
 class ListWalker {
  public:
-  // `set` is the library's layout; `byAddress`: the shader reaches the pool by its address.
-  ListWalker(const Device& device, VkDescriptorSetLayout set, bool byAddress);
+  // `set` is the library's layout.
+  ListWalker(const Device& device, VkDescriptorSetLayout set, const WalkKind& kind);
 
   // Walks the lists of an area of the target with this set. The lists are visible to compute shaders.
   void cmdWalk(VkCommandBuffer commands, VkDescriptorSet set, const VitrailRect& area);

@@ -88,6 +88,7 @@ void VulkanHost::makeImages() {
 
 VitrailVkViews VulkanHost::views() {
   VitrailVkViews views{};
+  if (desc_.resolve == VITRAIL_RESOLVE_HOST) return views;
   if (desc_.resolve != VITRAIL_RESOLVE_FRAGMENT) views.color = colorViews_.data();
   if (perPixel(desc_)) views.opaque = opaqueViews_.data();
   if (severalSamples(desc_) && !postDepthCoverage_) views.depth = depthViews_.data();
@@ -459,7 +460,7 @@ ListsRead VulkanHost::drawAndRead(std::span<const Point> points, const VitrailRe
   ListWalker* walker = nullptr;
   Buffer copy;
   if (by == ReadBy::Shader) {
-    walker = &backend_.walker(*context_, desc_.addresses);
+    walker = &backend_.walker(*context_, {desc_.addresses, desc_.resolve == VITRAIL_RESOLVE_HOST});
   } else {
     copy = Buffer(device_, target_.copySize(area.width, area.height), VK_BUFFER_USAGE_TRANSFER_DST_BIT, Memory::Host);
   }

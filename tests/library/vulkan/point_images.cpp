@@ -126,7 +126,7 @@ void PointImages::cmdBeginPoints(VkCommandBuffer commands) {
 }
 
 void PointImages::cmdToResolve(VkCommandBuffer commands) {
-  const bool compute = desc_.resolve == VITRAIL_RESOLVE_COMPUTE;
+  const bool compute = desc_.resolve != VITRAIL_RESOLVE_FRAGMENT;
   const VkPipelineStageFlags2 stage =
       compute ? VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT : VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
   if (severalSamples() && !perSample()) {

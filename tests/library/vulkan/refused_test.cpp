@@ -115,6 +115,15 @@ TEST_F(RefusedTest, ViewsWithoutACount) {
   }
 }
 
+TEST_F(RefusedTest, LayersBoundedWhereTheHostResolves) {
+  VitrailVkTargetDesc desc = desc_;
+  desc.resolve = VITRAIL_RESOLVE_HOST;
+  Target target;
+  EXPECT_EQ(Target::create(context(), desc, target), VK_SUCCESS);
+  desc.maxLayers = 4;
+  expectRefused(desc, VK_ERROR_INITIALIZATION_FAILED, "maxLayers");
+}
+
 TEST_F(RefusedTest, ViewsThatAreNullHandles) {
   const std::array<VkImageView, 3> views = {view_, view_, VK_NULL_HANDLE};
   VitrailVkTargetDesc desc = desc_;

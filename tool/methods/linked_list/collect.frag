@@ -7,18 +7,42 @@
 #endif
 #include "vitrail/collect.glsl"
 
+#ifdef COLLECT_MEDIA // the resolve follows light through objects
+#define SURFACE_TRUE_PATH
+#include "media_shared.h"
+layout(location = 15) flat in uint inObject;
+#endif
 #include "stage/surface.glsl"
 
 // Whether depths follow from gl_FragCoord.w: with a perspective camera.
 layout(constant_id = 1) const bool kDepthFromW = false;
 
-void collect(vec4 color, uint blend) {
+void collect(vec4 color, uint blend, uint word) {
   float depth = kDepthFromW ? fma(gl_FragCoord.w, frame.depth.y, frame.depth.x) : gl_FragCoord.z;
-  vitrailCollect(color, blend, depth);
+  vitrailCollect(color, blend, depth, word);
 }
+void collect(vec4 color, uint blend) { collect(color, blend, 0u); }
+
+#ifdef COLLECT_MEDIA
+// A surface that encloses a volume: both fragments say of which object they are. The filter is stored whatever it does:
+// the tint's share is in its colour, so that its alpha is 1.
+void collectSolid(Surface surface) {
+  uint object = MEDIA_OBJECT * (inObject + 1u);
+  vec4 through = filterOf(surface);
+  collect(reflectionOf(surface), VITRAIL_PREMULTIPLIED, object);
+  collect(vec4(mix(vec3(1.0), through.rgb, through.a), 1.0), VITRAIL_MULTIPLY,
+          object | MEDIA_SURFACE | (gl_FrontFacing ? MEDIA_FRONT : 0u));
+}
+#endif
 
 void main() {
   Surface surface = shadeSurface();
+#ifdef COLLECT_MEDIA
+  if (isSolid()) {
+    collectSolid(surface);
+    return;
+  }
+#endif
   if (has(FEATURE_TRANSMISSION)) {
     collect(reflectionOf(surface), VITRAIL_PREMULTIPLIED);
     collect(filterOf(surface), VITRAIL_MULTIPLY);

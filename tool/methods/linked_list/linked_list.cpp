@@ -21,10 +21,16 @@
 #include "../../stage/picture_images.h"
 #include "../method.h"
 #include "../methods.h"
+#include "media.h"
 #include "shaders/collect.frag.h"
 #include "shaders/collect_address.frag.h"
 #include "shaders/collect_coverage.frag.h"
 #include "shaders/collect_coverage_address.frag.h"
+#include "shaders/collect_media.frag.h"
+#include "shaders/collect_media_address.frag.h"
+#include "shaders/collect_media_coverage.frag.h"
+#include "shaders/collect_media_coverage_address.frag.h"
+#include "shaders/surface_object.vert.h"
 
 namespace vitrail::tool {
 
@@ -72,6 +78,17 @@ std::vector<VitrailBounds> boxesOf(const Surfaces& surfaces) {
   return result;
 }
 
+std::span<const std::uint32_t> collectCode(bool media, bool coverage, bool address) {
+  if (media && coverage && address) return shaders::collect_media_coverage_address_frag;
+  if (media && coverage) return shaders::collect_media_coverage_frag;
+  if (media && address) return shaders::collect_media_address_frag;
+  if (media) return shaders::collect_media_frag;
+  if (coverage && address) return shaders::collect_coverage_address_frag;
+  if (coverage) return shaders::collect_coverage_frag;
+  if (address) return shaders::collect_address_frag;
+  return shaders::collect_frag;
+}
+
 bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
   return a.extent.width == b.extent.width && a.extent.height == b.extent.height && a.color == b.color &&
          a.opaque == b.opaque && a.depth == b.depth && a.memoryBudget == b.memoryBudget && a.surfaces == b.surfaces;
@@ -97,8 +114,10 @@ class LinkedList final : public Method {
   bool createTarget(const VitrailVkTargetDesc& desc);
   bool createWholeTarget(std::uint64_t nodeCapacity);
   void countMemory();
+  std::uint64_t wordsOf(std::uint64_t bytes) const;
   void planTiles(std::span<const VitrailBounds> bounds);
   void drawTiles(Frame& frame);
+  void drawCollecting(Frame& frame);
   void drawArea(Frame& frame, const VkRect2D& area);
   VitrailStats readStats() const;
   bool grow(std::uint64_t fragments);
@@ -118,8 +137,10 @@ class LinkedList final : public Method {
   ImageNeeds needs_;
   std::string reason_; // what the library last logged
   vulkan::Context context_;
-  PipelineKind pipelines_; // of surfaces_
+  std::optional<Media> media_; // where objects absorb light: what resolves the lists then
+  PipelineKind pipelines_;     // of surfaces_
   std::optional<SurfacePipelines> surfaces_;
+  std::optional<SurfacePipelines> untested_; // the same without a depth test, where media_ asks for them
   vulkan::Target target_;
   std::uint64_t frame_ = 0;    // of the target: rises with every area
   TilePlan plan_;              // where inTiles_
@@ -137,6 +158,10 @@ class LinkedList final : public Method {
 LinkedList::LinkedList(const MethodHost& host, const MethodOptions& options)
     : gpu_(host.gpu), source_(host.surfaces), options_(options) {
   makeContext();
+  // With a bound on the layers only the nearest are drawn as they are: then objects are as thick as their files say.
+  if (source_.scene().solids().any() && options_.maxLayers == 0) {
+    media_.emplace(host, context_.descriptorSetLayout(), options_.samples);
+  }
   chooseResolve();
 }
 
@@ -156,6 +181,12 @@ void LinkedList::makeContext() {
 
 void LinkedList::chooseResolve() {
   const GpuFeatures& features = gpu_.features();
+  if (media_) { // which resolves by compute, a pixel at a time, whatever was asked for: there is no other way
+    options_.resolve = VITRAIL_RESOLVE_COMPUTE;
+    options_.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
+    needs_.depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    return;
+  }
   needs_.perSample = options_.samples > 1 && options_.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
   if (needs_.perSample && !features.sampleRateShading) {
     throw GpuError(fmt::format("{} does not shade samples one by one: use --msaa-resolve per-pixel",
@@ -185,15 +216,14 @@ void LinkedList::makeSurfaces() {
   // depths are compared with those of the depth image.
   const bool isCpu = gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   const bool spares = !isCpu || kind.listBuild == VITRAIL_LIST_BUILD_COMPUTE;
-  kind.depthFromW = spares && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
-  if (surfaces_ && kind == pipelines_) return;
+  kind.depthFromW = spares && !media_ && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
+  const bool wantsUntested = media_ && media_->anyNear();
+  if (surfaces_ && kind == pipelines_ && (untested_ || !wantsUntested)) return;
   pipelines_ = kind;
   const VitrailVkSpecialization specialization = context_.collectSpecialization(desc);
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
-    if (coverage && address) info.fragmentShader = shaders::collect_coverage_address_frag;
-    if (coverage && !address) info.fragmentShader = shaders::collect_coverage_frag;
-    if (!coverage && address) info.fragmentShader = shaders::collect_address_frag;
-    if (!coverage && !address) info.fragmentShader = shaders::collect_frag;
+    info.fragmentShader = collectCode(media_.has_value(), coverage, address);
+    if (media_) info.vertexShader = shaders::surface_object_vert;
     for (std::size_t i = 0; i < specialization.count; ++i) {
       info.constants.emplace_back(specialization.entries[i].constantID, specialization.data[i]);
     }
@@ -204,6 +234,13 @@ void LinkedList::makeSurfaces() {
   };
   const SurfaceProgram program{.set = context_.descriptorSetLayout(), .name = "collect"};
   surfaces_.emplace(source_, source_.scene().transparentDraws(), program, describe);
+  untested_.reset();
+  if (!wantsUntested) return;
+  const auto describeUntested = [&](std::uint32_t features, GraphicsPipelineInfo& info) {
+    describe(features, info);
+    info.depthTest = VK_COMPARE_OP_ALWAYS;
+  };
+  untested_.emplace(source_, source_.scene().transparentDraws(), program, describeUntested);
 }
 
 // All but the memory and the images.
@@ -213,7 +250,8 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
   desc.samples = flagOf(options_.samples);
   desc.nodeFormat = options_.nodes;
   desc.depthOrder = VITRAIL_DEPTH_NEAREST_IS_ONE;
-  desc.resolve = options_.resolve;
+  desc.resolve = media_ ? VITRAIL_RESOLVE_HOST : options_.resolve;
+  desc.userWords = media_ ? VK_TRUE : VK_FALSE;
   desc.msaaResolve = options_.msaaResolve;
   desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
   desc.maxLayers = options_.maxLayers;
@@ -229,9 +267,11 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
 }
 
 void LinkedList::setTarget(const MethodTarget& target) {
+  if (media_) media_->setView(source_.view());
   if (wanted_.color != VK_NULL_HANDLE && sameTarget(target, wanted_)) return makeSurfaces();
   releaseTarget();
   wanted_ = target;
+  if (media_) media_->setTarget(target);
   makeSurfaces();
   expected_ = 0;
   budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
@@ -259,10 +299,12 @@ bool LinkedList::createTarget(const VitrailVkTargetDesc& desc) {
   target_ = vulkan::Target();       // first: the old pool and the new one need not fit together
   gpu_.memoryFreed(std::exchange(counted_, 0));
   VitrailVkTargetDesc full = desc;
-  full.views.count = 1;
-  full.views.color = &wanted_.color;
-  if (options_.samples > 1 && !needs_.perSample) full.views.opaque = &wanted_.opaque;
-  if (needs_.depthUsage != 0) full.views.depth = &wanted_.depth;
+  if (!media_) {
+    full.views.count = 1;
+    full.views.color = &wanted_.color;
+    if (options_.samples > 1 && !needs_.perSample) full.views.opaque = &wanted_.opaque;
+    if (needs_.depthUsage != 0) full.views.depth = &wanted_.depth;
+  }
   const VkResult result = vulkan::Target::create(context_, full, target_);
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) return false; // the reason stays, in case that it ends the program
   check(result, "vitrailVkCreateTarget");
@@ -315,13 +357,20 @@ void LinkedList::drawTiles(Frame& frame) {
   }
 }
 
+void LinkedList::drawCollecting(Frame& frame) {
+  if (!media_ || !media_->anyNear()) return frame.drawSurfaces(*surfaces_, target_.descriptorSet());
+  const std::vector<SurfaceRun>& runs = source_.transparentRuns();
+  frame.drawSurfaces(*surfaces_, target_.descriptorSet(), media_->part(runs, false));
+  frame.drawSurfaces(*untested_, target_.descriptorSet(), media_->part(runs, true));
+}
+
 void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
   VkCommandBuffer commands = frame.commands();
   PictureImages& images = frame.images();
   target_.begin(commands, {nullptr, ++frame_, area});
   frame.endPass("clear");
   cmdBeginScope(commands, images.transparentScope(area));
-  frame.drawSurfaces(*surfaces_, target_.descriptorSet());
+  drawCollecting(frame);
   vkCmdEndRendering(commands);
   if (pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE) frame.endPass("collect");
   target_.collected(commands);
@@ -333,10 +382,18 @@ void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
   } else {
     images.cmdToComputeResolve(commands);
     target_.resolve(commands);
+    if (media_) media_->cmdResolve(commands, target_.descriptorSet(), area.extent);
   }
   frame.endPass("resolve");
   target_.end(commands);
   frame.endPass("statistics");
+}
+
+// What words take at most of so many bytes of nodes with words: plans of tiles know nodes alone.
+std::uint64_t LinkedList::wordsOf(std::uint64_t bytes) const {
+  constexpr std::uint64_t kNodes = 1024;
+  const std::uint64_t word = kNodes * sizeof(std::uint32_t);
+  return bytes / (vitrailNodePoolSize(options_.nodes, kNodes) + word) * word;
 }
 
 void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
@@ -356,7 +413,7 @@ void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
   desc.expectedFragments = expected_;
   // The device may have less memory left than it says that it can give: then less is tried.
   for (;;) {
-    desc.memoryBudget = budget_;
+    desc.memoryBudget = media_ ? budget_ - wordsOf(budget_) : budget_;
     check(resultOf(TilePlan::create(desc, plan_)), "vitrailCreateTilePlan");
     VitrailVkTargetDesc target = targetDesc();
     vitrailVkTilePlanTarget(plan_.handle(), &target);

@@ -50,7 +50,7 @@ constexpr GltfExtension kExtensions[] = {
     {"KHR_materials_transmission", Drawn, ""},
     {"KHR_materials_unlit", Drawn, ""},
     {"KHR_materials_pbrSpecularGlossiness", Drawn, ""},
-    {"KHR_materials_volume", Left, "glass absorbs nothing on the way through"},
+    {"KHR_materials_volume", Drawn, ""},
     {"KHR_materials_volume_scatter", Left, "light is not scattered inside objects"},
     {"KHR_materials_ior", Drawn, ""},
     {"KHR_materials_specular", Drawn, ""},
