@@ -28,6 +28,16 @@ layout(location = 4) out vec2 outTexCoords[SLOT_COUNT];
 // Both passes must give one vertex the same bits, or transparent decals on opaque surfaces would flicker.
 invariant gl_Position;
 
+#ifdef SURFACE_CLIPPED
+out float gl_ClipDistance[CLIP_PLANE_COUNT];
+
+void clip(vec3 position) {
+  for (uint i = 0u; i < CLIP_PLANE_COUNT; ++i) {
+    gl_ClipDistance[i] = dot(frame.clipPlanes[i], vec4(position, 1.0));
+  }
+}
+#endif
+
 // Here and not in the fragment shader: what textures are sampled with is then interpolated and nothing else, and its
 // derivatives do not rest on what a driver loads for helper invocations.
 vec2 slotCoordinates(uint slot) {
@@ -49,6 +59,9 @@ void main() {
   vec4 local = vec4(inPosition, 1.0);
   vec4 position = vec4(dot(inRow0, local), dot(inRow1, local), dot(inRow2, local), 1.0);
   gl_Position = frame.viewProjection * position;
+#ifdef SURFACE_CLIPPED
+  clip(position.xyz);
+#endif
   outPosition = position.xyz;
 
   // Normals turn as planes do: by the cofactors, which exist even where the transform has no inverse, scaled so that

@@ -33,6 +33,8 @@ const uint FEATURE_TRANSMISSION = 512u; // light passes through, tinted
 const uint FEATURE_ADDITIVE = 1024u;    // adds its light to what is behind it
 const uint FEATURE_FLAT = 2048u;        // there are no vertex normals: each triangle has that of its plane
 
+const uint CLIP_PLANE_COUNT = 8u;
+
 // What all draws of a frame share (std140).
 struct FrameData {
   mat4 viewProjection;
@@ -41,6 +43,8 @@ struct FrameData {
   vec4 toLight; // xyz: unit vector in the world
   vec4 ray;     // a pixel at (x, y) looks along (x * ray.x - ray.z, ray.w - y * ray.y, -1) in camera axes
   vec4 depth;   // a perspective camera's depths are depth.x + depth.y * gl_FragCoord.w
+  // Points with dot(xyz, point) + w >= 0 are kept. Those that are not there keep everything.
+  vec4 clipPlanes[CLIP_PLANE_COUNT];
 };
 
 // Where a texture slot samples: (u, v, 1) times two rows, row0.w: which texture coordinates, 0 or 1.
@@ -65,7 +69,7 @@ struct MaterialData {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameData) == 192);
+static_assert(sizeof(FrameData) == 320);
 static_assert(sizeof(SlotData) == 32);
 static_assert(sizeof(MaterialData) == 256);
 #endif

@@ -1,11 +1,13 @@
 #include "surfaces.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
 #include <fmt/format.h>
 
 #include "shaders/surface.vert.h"
+#include "shaders/surface_clipped.vert.h"
 
 namespace vitrail::tool {
 
@@ -17,6 +19,23 @@ Unique<VkPipelineLayout> makeLayout(const Surfaces& surfaces, const SurfaceProgr
   return makePipelineLayout(surfaces.gpu(), sets, {VK_SHADER_STAGE_FRAGMENT_BIT, program.constantBytes}, program.name);
 }
 
+// The scene's clip planes in the GPU's space, filled up with planes that keep everything.
+void setClipPlanes(const Scene& scene, const glm::dvec3& origin, shaders::FrameData& view) {
+  for (std::size_t i = 0; i < shaders::CLIP_PLANE_COUNT; ++i) {
+    view.clipPlanes[i] = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
+    if (i >= scene.clipPlanes.size()) continue;
+    const glm::dvec4& plane = scene.clipPlanes[i];
+    view.clipPlanes[i] = glm::vec4(glm::dvec3(plane), glm::dot(glm::dvec3(plane), origin) - plane.w);
+  }
+}
+
+void checkClipPlanes(const Gpu& gpu, const Scene& scene) {
+  static_assert(kMostClipPlanes == shaders::CLIP_PLANE_COUNT);
+  if (scene.clipPlanes.empty() || gpu.features().clipPlanes >= shaders::CLIP_PLANE_COUNT) return;
+  throw GpuError(
+      fmt::format("{} cannot cut a model: it lacks clip distances (see --clip-plane)", gpu.properties().deviceName));
+}
+
 } // namespace
 
 SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const GpuDraw> draws,
@@ -25,7 +44,8 @@ SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const Gpu
   for (const GpuDraw& draw : draws) {
     if (pipelines_.contains(draw.features)) continue;
     GraphicsPipelineInfo info;
-    info.vertexShader = shaders::surface_vert;
+    info.vertexShader = surfaces.isClipped() ? std::span<const std::uint32_t>(shaders::surface_clipped_vert)
+                                             : std::span<const std::uint32_t>(shaders::surface_vert);
     info.vertices = surfaceVertexLayout();
     info.depthTest = VK_COMPARE_OP_GREATER;
     describe(draw.features, info);
@@ -40,6 +60,7 @@ Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
     : gpu_(gpu),
       scene_(gpu, scene, opacity, order, released),
       transparentRuns_(runsOf(scene_.transparentDraws())),
+      isClipped_(!scene.clipPlanes.empty()),
       viewBuffer_(gpu, sizeof(shaders::FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::Upload,
                   "frame data"),
       frameSet_(
@@ -47,6 +68,8 @@ Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
           {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT},
            {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT}},
           "frame") {
+  checkClipPlanes(gpu, scene);
+  setClipPlanes(scene, scene_.origin(), view_);
   frameSet_.writeBuffer(0, viewBuffer_.get(), viewBuffer_.size());
   frameSet_.writeBuffer(1, scene_.materials().get(), sizeof(shaders::MaterialData));
 }
@@ -62,8 +85,10 @@ std::vector<SurfaceRun> Surfaces::runsOf(std::span<const GpuDraw> draws) {
 }
 
 void Surfaces::setView(const shaders::FrameData& view) {
+  const shaders::FrameData last = view_;
   view_ = view;
-  std::memcpy(viewBuffer_.mapped(), &view, sizeof(view));
+  std::ranges::copy(last.clipPlanes, view_.clipPlanes);
+  std::memcpy(viewBuffer_.mapped(), &view_, sizeof(view_));
 }
 
 void Surfaces::cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout) const {
