@@ -1,7 +1,13 @@
-// The finished picture: linear premultiplied colour to 8-bit sRGB with straight alpha (IEC 61966-2-1).
+// The finished picture: linear premultiplied colour to 8-bit or 16-bit sRGB with straight alpha (IEC 61966-2-1), or
+// handed on as it is.
 #version 460
 
 layout(local_size_x = 8, local_size_y = 8) in;
+
+// Of image/picture.h's Encoding.
+layout(constant_id = 0) const uint kEncoding = 0u;
+const uint SRGB_8 = 0u;
+const uint SRGB_16 = 1u;
 
 layout(set = 0, binding = 0, rgba16f) uniform readonly image2D colorImage;
 layout(set = 0, binding = 1, std430) writeonly buffer PixelBlock { uint pixels[]; }; // one band of rows
@@ -21,15 +27,27 @@ float encode(float linear) {
   return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
 }
 
-uint quantize(float v) { return uint(v * 255.0 + 0.5); }
+uint quantize(float v, float most) { return uint(v * most + 0.5); }
 
 void main() {
   uvec2 local = gl_GlobalInvocationID.xy;
   uvec2 pixel = uvec2(local.x, firstRow + local.y);
   if (pixel.x >= width || local.y >= rows || pixel.y >= height) return;
   vec4 color = imageLoad(colorImage, ivec2(pixel));
+  uint at = local.y * width + pixel.x;
+  if (kEncoding > SRGB_16) {
+    pixels[2u * at] = packHalf2x16(color.rg);
+    pixels[2u * at + 1u] = packHalf2x16(color.ba);
+    return;
+  }
   float alpha = saturate(color.a);
   vec3 straight = alpha > 0.0 ? color.rgb / alpha : vec3(0.0);
-  pixels[local.y * width + pixel.x] = quantize(encode(straight.r)) | quantize(encode(straight.g)) << 8 |
-                                      quantize(encode(straight.b)) << 16 | quantize(alpha) << 24;
+  vec3 srgb = vec3(encode(straight.r), encode(straight.g), encode(straight.b));
+  if (kEncoding == SRGB_16) {
+    pixels[2u * at] = quantize(srgb.r, 65535.0) | quantize(srgb.g, 65535.0) << 16;
+    pixels[2u * at + 1u] = quantize(srgb.b, 65535.0) | quantize(alpha, 65535.0) << 16;
+  } else {
+    pixels[at] = quantize(srgb.r, 255.0) | quantize(srgb.g, 255.0) << 8 | quantize(srgb.b, 255.0) << 16 |
+                 quantize(alpha, 255.0) << 24;
+  }
 }
