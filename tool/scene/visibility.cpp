@@ -101,11 +101,18 @@ class Search {
       if (!alphas.isVisible(draw, seen_.opacity.has_value())) continue;
       found_.anyThere = true;
       addDraw(draw);
+      if (isSeen()) break;
     }
     return found_;
   }
 
  private:
+  // Enough is known: some of it covers a pixel. Most scenes show so with their first triangles.
+  bool isSeen() const {
+    const glm::dvec2 pixels = 0.5 * (found_.high - found_.low) * glm::dvec2(seen_.width, seen_.height);
+    return found_.anyFacing && std::max(pixels.x, pixels.y) >= 1.0;
+  }
+
   void addDraw(const Draw& draw) {
     const Mesh& mesh = scene_.meshes[draw.mesh];
     const Material& material = scene_.materials[draw.material];
@@ -115,7 +122,7 @@ class Search {
     mirror_ = glm::determinant(glm::dmat3(model)) < 0.0 ? -1.0 : 1.0;
     const std::size_t corners = cornersOf(mesh.primitive);
     std::array<glm::dvec3, 3> places;
-    for (std::size_t first = 0; first + corners <= mesh.indices.size(); first += corners) {
+    for (std::size_t first = 0; first + corners <= mesh.indices.size() && !isSeen(); first += corners) {
       for (std::size_t i = 0; i < corners; ++i) {
         const glm::vec3& position = mesh.positions[mesh.indices[first + i]];
         places[i] = glm::dvec3(model * glm::dvec4(glm::dvec3(position), 1.0));
