@@ -47,6 +47,13 @@ Json jsonOf(const FrameReport& report) {
   };
 }
 
+// What is known of how right the picture is.
+std::string exactness(const FrameReport& report) {
+  if (isExact(report)) return "exact";
+  if (!report.complete) return "not exact";
+  return fmt::format("complete, within {:.0f}/255", std::ceil(report.errorBound));
+}
+
 } // namespace
 
 std::string toJson(const FrameReport& report) {
@@ -65,30 +72,6 @@ std::string toJson(std::span<const NamedFrame> frames, std::span<const std::stri
   return documentOf({{"frames", list}, {names::kWarnings, std::vector(warnings.begin(), warnings.end())}});
 }
 
-std::string toSummary(std::span<const NamedFrame> frames) {
-  const FrameReport& first = frames.front().report;
-  bool exact = true;
-  std::uint32_t deepest = 0;
-  double milliseconds = 0.0;
-  for (const NamedFrame& frame : frames) {
-    exact = exact && frame.report.exact;
-    deepest = std::max(deepest, frame.report.layersMax);
-    milliseconds += frame.report.frameMs / static_cast<double>(frames.size());
-  }
-  std::string text = fmt::format("{} pictures of {}x{}, ", frames.size(), first.width, first.height);
-  if (first.samples > 1) text += fmt::format("{} samples, ", first.samples);
-  text += first.counted ? fmt::format("up to {} deep, {}exact, ", deepest, exact ? "" : "not ")
-                        : fmt::format("{}, not exact, ", first.method);
-  return text + fmt::format("{:.1f} ms each on {}", milliseconds, first.device);
-}
-
-// What is known of how right the picture is.
-std::string exactness(const FrameReport& report) {
-  if (isExact(report)) return "exact";
-  if (!report.complete) return "not exact";
-  return fmt::format("complete, within {:.0f}/255", std::ceil(report.errorBound));
-}
-
 std::string toSummary(const FrameReport& report) {
   std::string text = fmt::format("{}x{}, ", report.width, report.height);
   if (report.samples > 1) text += fmt::format("{} samples, ", report.samples);
@@ -100,6 +83,24 @@ std::string toSummary(const FrameReport& report) {
   }
   if (report.tiles > 1) text += fmt::format("{} tiles, ", report.tiles);
   return text + fmt::format("{:.1f} ms on {}", report.frameMs, report.device);
+}
+
+std::string toSummary(std::span<const NamedFrame> frames) {
+  const FrameReport& first = frames.front().report;
+  FrameReport worst = first;
+  std::uint32_t deepest = 0;
+  double milliseconds = 0.0;
+  for (const NamedFrame& frame : frames) {
+    worst.complete = worst.complete && frame.report.complete;
+    worst.errorBound = std::max(worst.errorBound, frame.report.errorBound);
+    deepest = std::max(deepest, frame.report.layersMax);
+    milliseconds += frame.report.frameMs / static_cast<double>(frames.size());
+  }
+  std::string text = fmt::format("{} pictures of {}x{}, ", frames.size(), first.width, first.height);
+  if (first.samples > 1) text += fmt::format("{} samples, ", first.samples);
+  text += first.counted ? fmt::format("up to {} deep, {}, ", deepest, exactness(worst))
+                        : fmt::format("{}, not exact, ", first.method);
+  return text + fmt::format("{:.1f} ms each on {}", milliseconds, first.device);
 }
 
 } // namespace vitrail::tool
