@@ -19,8 +19,7 @@ struct Seen {
 
 // What is sure to leave a picture empty, in words that follow "nothing of the model is seen: "; nothing where the scene
 // alone gives no reason. Of several reasons, each for other parts of the scene, the last that a part could meet is
-// named. Looks at what is drawn until some of it is
-// surely seen.
+// named. Looks at what is drawn until some of it is surely seen.
 std::optional<std::string> whyNothingIsSeen(const Scene& scene, const Seen& seen);
 
 // The warning of a picture in which no pixel differs from the background.
