@@ -20,12 +20,13 @@ constexpr const char* kHelp =
     R"(Vitrail draws transparent models exactly: every pixel's surfaces are blended in depth order.
 
 Usage:
-  vitrail render MODEL -o picture.png     draw a glTF, OBJ, PLY or STL model
+  vitrail render MODEL -o picture.png     draw glTF, OBJ, PLY and STL models
   vitrail render --scene NAME -o pic.png  draw a built-in scene
   vitrail scenes                          list the built-in scenes
   vitrail compare MODEL -o DIR            compare transparency methods: their pictures and their costs
   vitrail compare A.png B.png             compare two pictures
   vitrail bench                           measure what transparency costs on a device
+  vitrail info MODEL                      tell what is in a model's file
   vitrail info                            list the Vulkan devices and what they can do for Vitrail
 
   vitrail COMMAND --help                  all about one command

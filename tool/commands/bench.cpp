@@ -149,6 +149,10 @@ BenchReport measure(const BenchArguments& arguments) {
   std::vector<std::string> warnings;
   for (const Subject& subject : subjects) {
     warnings.insert(warnings.end(), subject.scene.warnings.begin(), subject.scene.warnings.end());
+    SceneArguments view;
+    view.width = arguments.width != 0 ? arguments.width : view.width;
+    view.height = arguments.height != 0 ? arguments.height : view.height;
+    warnIfUnseen(subject.scene, seenOf(pictureOf(view, subject.scene), arguments.opacity), warnings);
   }
   reportWarnings(warnings, arguments);
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -28,26 +29,33 @@ namespace {
 Comparison measure(const CompareArguments& arguments) {
   const Progress progress(!arguments.quiet);
   progress.show("preparing");
-  const Scene scene = openScene(arguments);
+  const Scene scene = openScene(arguments, progress);
   progress.show("");
-  reportWarnings(scene.warnings, arguments);
+  const RenderOptions picture = pictureOf(arguments, scene);
+  std::vector<std::string> warnings = scene.warnings;
+  const bool isUnseen = warnIfUnseen(scene, seenOf(picture, arguments.opacity), warnings);
+  reportWarnings(warnings, arguments);
   Gpu gpu({arguments.device, arguments.validate});
   const Machine machine = machineOf(gpu);
   ComparisonRun run;
   run.methods = arguments.methods;
   run.samples = arguments.samples;
   run.limits = arguments.limits;
-  run.picture = pictureOf(arguments, scene);
+  run.picture = picture;
   run.opacity = arguments.opacity;
   run.repeats = roundsOn(machine, arguments.repeats);
   run.warmups = warmupsOn(machine, arguments.warmups);
   run.progress = [&](const std::string& step) { progress.show(step); };
   Comparison comparison = compareMethods(gpu, scene, run);
-  comparison.scene =
-      arguments.scene.empty() ? std::filesystem::path(arguments.model).filename().string() : arguments.scene;
+  comparison.scene = nameOfScene(arguments);
   comparison.count = arguments.count;
-  comparison.warnings = scene.warnings;
   closeValidated(gpu);
+  if (comparison.isEmpty && !isUnseen) { // for a reason that the scene alone does not show
+    progress.show("");
+    warnings.push_back(nothingSeenWarning(scene, seenOf(picture, arguments.opacity)));
+    reportWarnings(std::span(warnings).last(1), arguments);
+  }
+  comparison.warnings = std::move(warnings);
   return comparison;
 }
 

@@ -1,6 +1,10 @@
 #include "compare_options.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <filesystem>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -13,7 +17,7 @@ const char* const kCompareHelp =
     R"(Compares transparency methods with the exact picture, or one picture with another.
 
 Usage:
-  vitrail compare MODEL [options]
+  vitrail compare MODEL... [options]
   vitrail compare --scene NAME [options]
   vitrail compare EXPECTED.png PICTURE.png [--heatmap FILE] [--json FILE] [--quiet]
 
@@ -58,12 +62,30 @@ namespace {
 
 bool isPng(const std::string& file) { return std::filesystem::path(file).extension() == ".png"; }
 
+bool isModel(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  constexpr std::array<std::string_view, 5> kModels{".gltf", ".glb", ".obj", ".ply", ".stl"};
+  return std::ranges::find(kModels, extension) != kModels.end();
+}
+
+void takeModels(CompareArguments& arguments) {
+  const auto picture = std::ranges::find_if(arguments.files, isPng);
+  if (picture != arguments.files.end()) {
+    throw UsageError(arguments.files.size() == 1
+                         ? fmt::format("{} is a picture: name the picture to compare it with as well", *picture)
+                         : fmt::format("{} is a picture: two pictures are compared, or models drawn", *picture));
+  }
+  arguments.models = arguments.files;
+}
+
 // Refuses options that only drawing has.
 void checkFileOptions(const CLI::App& command) {
   for (const char* name :
-       {"--scene",      "--count",   "--seed",     "--size",   "--camera",    "--orbit",  "--opacity",
-        "--background", "--methods", "--samples",  "--layers", "--passes",    "--repeat", "--warmup",
-        "--output",     "--device",  "--validate", "--time",   "--animation", "--variant"}) {
+       {"--scene",    "--count",   "--seed",      "--size",       "--up",        "--camera",     "--orbit",
+        "--eye",      "--look-at", "--fov",       "--clip-plane", "--opacity",   "--background", "--methods",
+        "--samples",  "--layers",  "--passes",    "--repeat",     "--warmup",    "--output",     "--device",
+        "--validate", "--time",    "--animation", "--variant",    "--point-size"}) {
     if (command.count(name) > 0) {
       throw UsageError(fmt::format("{} is for comparing methods: two pictures are compared as they are", name));
     }
@@ -72,8 +94,10 @@ void checkFileOptions(const CLI::App& command) {
 
 } // namespace
 
+bool CompareArguments::pictures() const { return files.size() == 2 && std::ranges::none_of(files, isModel); }
+
 void addCompareOptions(CLI::App& command, CompareArguments& arguments) {
-  command.add_option("FILES", arguments.files)->expected(0, 2);
+  command.add_option("FILES", arguments.files);
   addSceneOptions(command, arguments);
   addMethods(command, arguments.methods);
   addPositive(command, "--samples", arguments.samples);
@@ -90,10 +114,7 @@ void addCompareOptions(CLI::App& command, CompareArguments& arguments) {
 
 void checkCompareArguments(const CLI::App& command, CompareArguments& arguments) {
   if (arguments.pictures()) return checkFileOptions(command);
-  if (!arguments.files.empty()) arguments.model = arguments.files[0];
-  if (isPng(arguments.model)) {
-    throw UsageError(fmt::format("{} is a picture: name the picture to compare it with as well", arguments.model));
-  }
+  takeModels(arguments);
   checkSceneArguments(arguments, "compare");
   if (arguments.samples != 1 && arguments.samples != 2 && arguments.samples != 4 && arguments.samples != 8) {
     throw UsageError(fmt::format("a pixel has 1, 2, 4 or 8 samples, not {}", arguments.samples));

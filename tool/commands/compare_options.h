@@ -14,7 +14,7 @@
 namespace vitrail::tool {
 
 struct CompareArguments : SceneArguments {
-  std::vector<std::string> files;   // two pictures, one model, or none: a built-in scene
+  std::vector<std::string> files;   // two pictures, models, or none: a built-in scene
   std::vector<std::string> methods; // none: all
   std::uint32_t samples = 1;
   MethodLimits limits;
@@ -26,13 +26,13 @@ struct CompareArguments : SceneArguments {
   std::string device;
   bool validate = false;
 
-  bool pictures() const { return files.size() == 2; }
+  bool pictures() const; // whether two of them are compared
 };
 
 // Adds the options to a command. Texts that cannot be understood end the parse with a CLI::ValidationError.
 void addCompareOptions(CLI::App& command, CompareArguments& arguments);
 
-// Checks what one option alone does not show, and takes the model from the files. Throws UsageError.
+// Checks what one option alone does not show, and takes the models from the files. Throws UsageError.
 void checkCompareArguments(const CLI::App& command, CompareArguments& arguments);
 
 // Has the mark of withSceneHelp().

@@ -1,28 +1,53 @@
-// `vitrail info`: the Vulkan devices of this machine and what each can do for Vitrail.
+// `vitrail info`: what is in model files; or the Vulkan devices of this machine and what each can do for Vitrail.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "../gpu/device.h"
+#include "../report/model_info.h"
+#include "../scene/message.h"
 #include "commands.h"
+#include "errors.h"
+#include "progress.h"
+#include "scene_options.h"
 
 namespace vitrail::tool {
 
 namespace {
 
 constexpr const char* kInfoHelp =
-    R"(Lists the Vulkan devices of this machine, their drivers, the limits that bound a picture,
-and what each device can and cannot do for Vitrail.
+    R"(Tells what is in model files; without one, lists the Vulkan devices of this machine.
 
 Usage:
+  vitrail info MODEL... [--json]
   vitrail info
 
-The number in front of a device, or a part of its name, is what --device takes.
+Of a model: its format and size, its box in the file's own coordinates, meshes, materials, images,
+extensions and which of them are drawn, lights, cameras, animations, variants, and what a picture of
+it lacks. It needs no Vulkan device.
+
+  --json                the same as JSON, on standard output
+
+Of each device: its driver, the limits that bound a picture, and what it can and cannot do for
+Vitrail. The number in front of a device, or a part of its name, is what --device takes.
+
+Examples:
+  vitrail info car.glb
+  vitrail info *.gltf --json
 )";
 
+struct InfoArguments {
+  std::vector<std::string> models;
+  bool json = false;
+};
+
 constexpr double kMebibyte = 1024.0 * 1024.0;
-constexpr double kNodeBytes = 12.0; // the standard node format
+constexpr double kNodeBytes = 16.0; // of the default node format
 
 std::string sizeText(std::uint64_t bytes) {
   const double mebibytes = static_cast<double>(bytes) / kMebibyte;
@@ -55,15 +80,57 @@ void printDevice(const DeviceSummary& device) {
   line("pass times", device.timestamps ? "yes" : "no, the queue has no timestamps");
 }
 
-void runInfo() {
+void runDevices() {
   fmt::print("Vulkan devices\n");
   for (const DeviceSummary& device : listDevices()) printDevice(device);
+}
+
+// Of formats whose readers leave it to the name: OBJ.
+std::string formatByName(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  for (char& c : extension) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+ModelInfo openInfo(const std::string& file) {
+  ModelInfo model{file, 0, openModel(file, {})};
+  std::error_code error;
+  model.bytes = std::filesystem::file_size(file, error);
+  if (error) model.bytes = 0;
+  if (model.scene.file.format.empty()) model.scene.file.format = formatByName(file);
+  return model;
+}
+
+void runInfo(const InfoArguments& arguments) {
+  if (arguments.models.empty()) {
+    if (arguments.json) throw UsageError("--json is of models: name one");
+    return runDevices();
+  }
+  std::vector<ModelInfo> models;
+  {
+    const Progress progress(true, Progress::Shown::AfterASecond);
+    for (const std::string& file : arguments.models) {
+      progress.show(fmt::format("loading {}", printable(file)));
+      models.push_back(openInfo(file));
+    }
+  }
+  if (arguments.json) {
+    fmt::print("{}", toJson(models));
+  } else {
+    for (const ModelInfo& model : models) fmt::print("{}", toText(model));
+  }
 }
 
 } // namespace
 
 void addInfoCommand(CLI::App& app, std::function<void()>& run) {
-  addPlainCommand(app, run, "info", kInfoHelp, runInfo);
+  CLI::App* command = app.add_subcommand("info");
+  setHelpPage(*command, kInfoHelp);
+  const auto arguments = std::make_shared<InfoArguments>();
+  command->add_option("MODEL", arguments->models);
+  command->add_flag("--json", arguments->json);
+  command->callback([arguments, &run] { run = [arguments] { runInfo(*arguments); }; });
 }
 
 } // namespace vitrail::tool

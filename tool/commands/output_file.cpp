@@ -96,6 +96,8 @@ OutputFile::OutputFile(fs::path path) : path_(std::move(path)), target_(path_) {
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(path_, std::strerror(errno));
 }
 
+OutputFile OutputFile::standardOutput() { return OutputFile(Standard{}); }
+
 OutputFile::~OutputFile() {
   if (temporary_.empty()) return;
   ::unlink(temporary_.c_str());
@@ -107,6 +109,10 @@ void OutputFile::write(std::span<const std::byte> content) {
     special_ = content;
     return;
   }
+  writeAll(create(), content, path_);
+}
+
+int OutputFile::create() {
   const fs::path name = target_.parent_path() / fmt::format(".{}.{}.part", target_.filename().string(), ::getpid());
   watch(name); // before the file exists: a signal in between finds nothing to remove
   const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); // never through a link
@@ -116,7 +122,7 @@ void OutputFile::write(std::span<const std::byte> content) {
     fail(path_, std::strerror(reason));
   }
   temporary_ = name;
-  writeAll(file, content, path_);
+  return file;
 }
 
 bool OutputFile::isSameAs(const OutputFile& other) const {
@@ -127,9 +133,10 @@ bool OutputFile::isSameAs(const OutputFile& other) const {
 
 void OutputFile::commit() {
   if (isSpecial_) {
-    const int file = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
-    if (file < 0) fail(path_, std::strerror(errno));
-    writeAll(file, special_, path_);
+    const int file =
+        isStandardOutput_ ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0) : ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file < 0) fail(name(), std::strerror(errno));
+    writeAll(file, special_, name());
     return;
   }
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(path_, std::strerror(errno));

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace vitrail::tool {
 
@@ -14,6 +15,8 @@ class OutputFile {
   // Checks that the file can be made, so that nobody waits for a picture that cannot be kept: throws
   // std::runtime_error with a one-line reason.
   explicit OutputFile(std::filesystem::path path);
+  // What this program was started with as standard output.
+  static OutputFile standardOutput();
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -22,11 +25,18 @@ class OutputFile {
   // /dev/stdout, has no temporary file and is written by commit(). Throws std::runtime_error.
   void write(std::span<const std::byte> content);
 
+  // Makes the temporary file, empty, for another program to write, in place of write(): a descriptor of it, which the
+  // caller closes. Not for special files. Throws std::runtime_error.
+  int create();
+
   // Gives the file its name. Throws std::runtime_error.
   void commit();
 
   // Whether the name stands for something other than a regular file.
   [[nodiscard]] bool isSpecial() const { return isSpecial_; }
+
+  // What messages call it.
+  [[nodiscard]] std::string name() const { return isStandardOutput_ ? "standard output" : path_.string(); }
 
   // Whether both would write one regular file, under whatever names.
   [[nodiscard]] bool isSameAs(const OutputFile& other) const;
@@ -37,6 +47,10 @@ class OutputFile {
   std::filesystem::path temporary_;
   std::span<const std::byte> special_; // what commit() writes to a special file
   bool isSpecial_ = false;
+  bool isStandardOutput_ = false;
+
+  struct Standard {};
+  explicit OutputFile(Standard /*output*/) : isSpecial_(true), isStandardOutput_(true) {}
 };
 
 // Has a signal remove a folder too, where it is empty by then. Watch it before the files in it.

@@ -1,58 +1,160 @@
-// `vitrail render`: a model or a built-in scene in, a picture out.
+// `vitrail render`: models or a built-in scene in, a picture out, or those of a turn.
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
-#include "../image/png_encode.h"
 #include "../render/still.h"
 #include "../report/frame.h"
 #include "commands.h"
 #include "errors.h"
 #include "output_file.h"
+#include "output_format.h"
+#include "progress.h"
 #include "render_options.h"
+#include "turntable_output.h"
 
 namespace vitrail::tool {
 
 namespace {
 
-RenderResult renderScene(const RenderArguments& arguments, Scene scene) {
-  RenderOptions options = pictureOf(arguments, scene);
-  if (arguments.memoryBudget) options.memoryBudget = std::uint64_t{*arguments.memoryBudget} << 20U;
+// What is drawn, and how all of its pictures are.
+struct Job {
+  const RenderArguments& arguments;
+  OutputFormat format;
+  const Progress& progress;
+  Scene scene; // given away when it is drawn
+  RenderOptions options;
+  std::vector<View> views{}; // of a turn
+  std::vector<std::string> warnings{};
+  std::string emptyWarning{}; // of a picture that shows nothing
+};
 
-  Gpu gpu({arguments.device, arguments.validate});
+Job prepare(const RenderArguments& arguments, const Progress& progress) {
+  Job job{arguments, outputFormatOf(arguments), progress, openScene(arguments, progress), {}};
+  job.options = pictureOf(arguments, job.scene);
+  job.options.encoding = encodingOf(job.format);
+  if (arguments.memoryBudget) job.options.memoryBudget = std::uint64_t{*arguments.memoryBudget} << 20U;
+  if (job.format.kind == FileKind::Mp4 && job.options.background.kind == Background::Kind::Transparent) {
+    throw UsageError("a film has no alpha: choose another --background, or write pictures: -o frame_%04d.png");
+  }
+  job.options.onTile = [&progress](std::uint32_t tiles) {
+    progress.show(fmt::format("drawing: {} tiles done", tiles));
+  };
+  if (arguments.turntable) {
+    const float aspect = static_cast<float>(arguments.width) / static_cast<float>(arguments.height);
+    job.views = turntableOf(arguments, job.scene, aspect, *arguments.turntable);
+    job.options.view = job.views.front();
+  }
+  job.warnings = job.scene.warnings;
+  job.emptyWarning = nothingSeenWarning(job.scene, seenOf(job.options, arguments.opacity));
+  progress.show("preparing");
+  return job;
+}
+
+RenderResult renderOne(Job& job) {
+  Gpu gpu({job.arguments.device, job.arguments.validate});
   RenderResult result;
   {
-    StillRenderer renderer(gpu, std::move(scene), arguments.opacity, arguments.method);
-    result = renderer.render(options);
+    StillRenderer renderer(gpu, std::move(job.scene), job.arguments.opacity, job.arguments.method);
+    job.progress.show("drawing");
+    result = renderer.render(job.options);
   }
   closeValidated(gpu);
   return result;
 }
 
-void runRender(const RenderArguments& arguments) {
-  checkRenderArguments(arguments);
-  OutputFile picture(arguments.output);
-  std::optional<OutputFile> report;
-  if (!arguments.json.empty()) report.emplace(arguments.json);
+std::vector<NamedFrame> renderTurn(Job& job, TurntableOutput& output) {
+  const RenderArguments& arguments = job.arguments;
+  const std::uint32_t count = *arguments.turntable;
+  Gpu gpu({arguments.device, arguments.validate});
+  std::vector<NamedFrame> frames;
+  {
+    StillRenderer renderer(gpu, std::move(job.scene), arguments.opacity, arguments.method);
+    RenderOptions options = job.options;
+    options.onTile = nullptr;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      job.progress.show(fmt::format("picture {} of {}", i + 1, count), i, count);
+      options.view = job.views[i];
+      const RenderResult result = renderer.render(options);
+      output.add(result);
+      frames.push_back({output.nameOf(i), result.report});
+    }
+  }
+  closeValidated(gpu);
+  return frames;
+}
+
+// Why all pictures are empty goes to the warnings, which are told.
+std::vector<std::string> warn(const Job& job, bool isEmpty) {
+  std::vector<std::string> warnings = job.warnings;
+  if (isEmpty) warnings.push_back(job.emptyWarning);
+  job.progress.show("");
+  reportWarnings(warnings, job.arguments);
+  return warnings;
+}
+
+// To standard output, unless that is taken.
+void tell(const RenderArguments& arguments, bool outputIsTaken, const std::string& name, const std::string& summary) {
+  if (arguments.quiet) return;
+  if (isStandardOutput(arguments)) {
+    fmt::print(stderr, "{}: {}\n", name, summary);
+  } else if (!outputIsTaken) {
+    fmt::print("{}: {}\n", name, summary);
+  }
+}
+
+void runStill(const RenderArguments& arguments, std::optional<OutputFile>& report) {
+  if (isStandardOutput(arguments) && ::isatty(STDOUT_FILENO) != 0) {
+    throw UsageError(
+        "standard output is a terminal: send the picture to a program, as in -o - | display, or name a file");
+  }
+  OutputFile picture = isStandardOutput(arguments) ? OutputFile::standardOutput() : OutputFile(arguments.output);
   if (report && report->isSameAs(picture)) throw UsageError("-o and --json name the same file");
 
-  Scene scene = openScene(arguments);
-  const std::vector<std::string> warnings = scene.warnings;
-  RenderResult result = renderScene(arguments, std::move(scene));
-  result.report.warnings.insert(result.report.warnings.begin(), warnings.begin(), warnings.end());
-  reportWarnings(result.report.warnings, arguments);
-
-  const std::vector<std::byte> png = encodePng(result.picture);
+  const Progress progress(!arguments.quiet, Progress::Shown::AfterASecond);
+  Job job = prepare(arguments, progress);
+  RenderResult result = renderOne(job);
+  result.report.warnings = warn(job, result.isEmpty);
+  progress.show("writing");
+  const std::vector<std::byte> bytes = encodePicture(result, job.format);
   const std::string json = toJson(result.report);
-  picture.write(png);
+  progress.show("");
+  picture.write(bytes);
   if (report) report->write(std::as_bytes(std::span(json)));
   picture.commit();
   if (report) report->commit();
-  const bool outputIsTaken = picture.isSpecial() || (report && report->isSpecial()); // it may be standard output
-  if (!arguments.quiet && !outputIsTaken) fmt::print("{}: {}\n", arguments.output, toSummary(result.report));
+  tell(arguments, picture.isSpecial() || (report && report->isSpecial()), picture.name(), toSummary(result.report));
+}
+
+void runTurn(const RenderArguments& arguments, std::optional<OutputFile>& report) {
+  TurntableOutput output(arguments, outputFormatOf(arguments), arguments.width, arguments.height);
+  if (report && output.has(*report)) throw UsageError("-o and --json name the same file");
+
+  const Progress progress(!arguments.quiet, Progress::Shown::AfterASecond);
+  Job job = prepare(arguments, progress);
+  // What is known before the first picture: the files of a turn appear one by one.
+  if (arguments.strict) reportWarnings(job.warnings, arguments);
+  const std::vector<NamedFrame> frames = renderTurn(job, output);
+  const std::vector<std::string> warnings = warn(job, output.isEmpty());
+  const std::string json = toJson(frames, warnings);
+  if (report) report->write(std::as_bytes(std::span(json)));
+  output.finish();
+  if (report) report->commit();
+  tell(arguments, report && report->isSpecial(), output.name(), toSummary(frames));
+}
+
+void runRender(const RenderArguments& arguments) {
+  checkRenderArguments(arguments);
+  std::optional<OutputFile> report;
+  if (!arguments.json.empty()) report.emplace(arguments.json);
+  arguments.turntable ? runTurn(arguments, report) : runStill(arguments, report);
 }
 
 } // namespace

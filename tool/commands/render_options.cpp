@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
-#include <filesystem>
 #include <stdexcept>
 
 #include "../methods/methods.h"
@@ -15,10 +13,10 @@ namespace vitrail::tool {
 namespace {
 
 constexpr const char* kRenderHelp =
-    R"(Draws a model with exact transparency and writes a PNG.
+    R"(Draws models with exact transparency and writes a picture, or the pictures of a turn around them.
 
 Usage:
-  vitrail render MODEL -o FILE [options]
+  vitrail render MODEL... -o FILE [options]
   vitrail render --scene NAME -o FILE [options]
 
 @scene@
@@ -47,8 +45,9 @@ How to blend it:
                         same picture (default: what the device can give)
 
 Where to:
-  -o, --output FILE     the picture, .png; it appears whole or not at all
-  --json FILE           a report: fragments, layers, memory, GPU time of each pass
+@output@
+  --json FILE           a report: fragments, layers, memory, GPU time of each pass; of a
+                        turn one for each picture
   --quiet               print nothing but errors
   --strict              fail where there would be a warning: where the picture lacks something
                         that the file has, or shows nothing
@@ -62,6 +61,9 @@ Examples:
   vitrail render engine.glb -o engine.png --opacity 0.25
   vitrail render car.gltf -o car.png --size 1920x1080 --orbit 30,15 --background '#202028'
   vitrail render --scene interlocked -o rings.png
+  vitrail render scan.ply --up z --clip-plane 0,0,-1,-1.2 -o below_1.2_metres.png
+  vitrail render house.glb garden.obj --eye 4,1.7,9 --look-at 0,1.5,0 --fov 60 -o view.exr
+  vitrail render engine.glb --opacity 0.25 --turntable 120 -o turn.mp4
 )";
 
 void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
@@ -88,12 +90,14 @@ void checkMethod(const RenderArguments& arguments) {
 
 } // namespace
 
-std::string renderHelp() { return withText(withSceneHelp(kRenderHelp), "@methods@", methodsHelp()); }
+std::string renderHelp() {
+  return withText(withText(withSceneHelp(kRenderHelp), "@methods@", methodsHelp()), "@output@", kOutputHelp);
+}
 
 void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
-  command.add_option("MODEL", arguments.model);
+  command.add_option("MODEL", arguments.models);
   addSceneOptions(command, arguments);
-  command.add_option("-o,--output", arguments.output);
+  addOutputOptions(command, arguments);
   command.add_option("--json", arguments.json);
   command.add_option("--device", arguments.device);
   command.add_flag("--validate", arguments.validate);
@@ -104,13 +108,7 @@ void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
 void checkRenderArguments(const RenderArguments& arguments) {
   checkSceneArguments(arguments, "render");
   checkMethod(arguments);
-  if (arguments.output.empty()) throw UsageError("no output: add -o picture.png");
-  const std::filesystem::path output(arguments.output);
-  std::string extension = output.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (extension != ".png" && !output.native().starts_with("/dev/")) {
-    throw UsageError(fmt::format("{}: pictures are written as .png", arguments.output));
-  }
+  static_cast<void>(outputFormatOf(arguments));
 }
 
 } // namespace vitrail::tool

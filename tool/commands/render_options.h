@@ -8,12 +8,12 @@
 #include <CLI/CLI.hpp>
 
 #include "../methods/method_options.h"
+#include "output_format.h"
 #include "scene_options.h"
 
 namespace vitrail::tool {
 
-struct RenderArguments : SceneArguments {
-  std::string output;
+struct RenderArguments : SceneArguments, OutputArguments {
   MethodOptions method;
   std::optional<std::uint32_t> memoryBudget; // MiB
   std::string device;

@@ -1,14 +1,17 @@
 #include "scene_options.h"
 
-#include <array>
 #include <charconv>
-#include <cmath>
+#include <filesystem>
 #include <stdexcept>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "../scene/load.h"
+#include "../scene/merge.h"
+#include "../scene/message.h"
 #include "errors.h"
 #include "option_values.h"
 
@@ -18,7 +21,8 @@ namespace {
 
 constexpr std::string_view kSceneHelp =
     R"(What to draw:
-  MODEL                 a .gltf, .glb, .obj, .ply or .stl file
+  MODEL...              .gltf, .glb, .obj, .ply and .stl files; several are drawn in one picture,
+                        each where its own coordinates put it
   --scene NAME          a built-in scene (vitrail scenes lists them)
   --count N             how many spheres, planes, ... the scene has
   --seed S              another arrangement of the same scene (default 1)
@@ -26,32 +30,10 @@ constexpr std::string_view kSceneHelp =
 
 How to look at it:
   --size WxH            pixels (default 1280x720)
-  --camera N            camera N of the file, from 0 (default: the file's first camera;
-                        without one the whole model is seen from a three-quarter view)
-  --orbit AZ,EL[,ZOOM]  look from azimuth and elevation in degrees: 0,0 is the front, 90,0 the right,
-                        0,90 the top; ZOOM 2 shows it twice as large
+@camera@
   --point-size N        how many pixels the points of point clouds are across (default 3)
   --opacity A           X-ray: makes every material translucent, 0.004 to 1
-  --background B        a colour as #rrggbb (sRGB), sky, or transparent (a PNG with alpha))";
-
-Orbit orbitOf(const std::string& text) {
-  const std::vector<std::string> parts = split(text, ',');
-  std::array<float, 3> values = {0.0F, 0.0F, 1.0F};
-  bool good = parts.size() == 2 || parts.size() == 3;
-  for (std::size_t i = 0; good && i < parts.size(); ++i) {
-    const auto value = numberOf<float>(parts[i]);
-    good = value.has_value() && std::isfinite(*value);
-    if (good) values[i] = *value;
-  }
-  if (!good) {
-    throw CLI::ValidationError("--orbit",
-                               fmt::format("'{}' is not AZIMUTH,ELEVATION[,ZOOM], such as 35,20 or 0,90,2", text));
-  }
-  if (std::abs(values[1]) > 90.0F) throw CLI::ValidationError("--orbit", "the elevation is between -90 and 90");
-  if (values[2] < 0.01F || values[2] > 100.0F)
-    throw CLI::ValidationError("--orbit", "the zoom is between 0.01 and 100");
-  return {std::remainder(values[0], 360.0F), values[1], values[2]};
-}
+  --background B        a colour as #rrggbb (sRGB), sky, or transparent (a picture with alpha))";
 
 Background backgroundOf(const std::string& text) {
   Background background;
@@ -72,33 +54,17 @@ Background backgroundOf(const std::string& text) {
   return background;
 }
 
-View chooseView(const SceneArguments& arguments, const Scene& scene) {
-  const std::size_t cameras = scene.cameras.size();
-  if (arguments.camera && *arguments.camera >= cameras) {
-    throw UsageError(cameras == 0
-                         ? "--camera: this scene has no cameras"
-                         : fmt::format("--camera {}: this scene has cameras 0 to {}", *arguments.camera, cameras - 1));
-  }
-  if (cameras == 0 || arguments.orbit) {
-    const float aspect = static_cast<float>(arguments.width) / static_cast<float>(arguments.height);
-    return frameScene(scene, arguments.orbit.value_or(Orbit{}), aspect);
-  }
-  return viewOf(scene.cameras[arguments.camera.value_or(0)]);
-}
-
 } // namespace
 
 void addSceneOptions(CLI::App& command, SceneArguments& arguments) {
   command.add_option("--scene", arguments.scene);
   addCount(command, "--count", arguments.count);
   addCount(command, "--seed", arguments.seed);
-  addCount(command, "--camera", arguments.camera);
   addSize(command, arguments.width, arguments.height);
   addOpacity(command, arguments.opacity);
   addPointSize(command, arguments.pointSize);
   addLoadOptions(command, arguments.load);
-  command.add_option_function<std::string>("--orbit",
-                                           [&arguments](const std::string& text) { arguments.orbit = orbitOf(text); });
+  addCameraOptions(command, arguments);
   command.add_option_function<std::string>(
       "--background", [&arguments](const std::string& text) { arguments.background = backgroundOf(text); });
 }
@@ -109,7 +75,7 @@ const std::string_view kLoadHelp =
   --variant NAME        with the materials of one of the file's variants (default: its default ones))";
 
 std::string withSceneHelp(const std::string& page) {
-  return withText(withText(page, "@scene@", kSceneHelp), "@load@", kLoadHelp);
+  return withText(withText(withText(page, "@scene@", kSceneHelp), "@camera@", kCameraHelp), "@load@", kLoadHelp);
 }
 
 void addLoadOptions(CLI::App& command, LoadOptions& options) {
@@ -128,18 +94,17 @@ void checkLoadOptions(const LoadOptions& options, bool model) {
 }
 
 void checkSceneArguments(const SceneArguments& arguments, const std::string& command) {
-  if (arguments.model.empty() == arguments.scene.empty()) {
+  if (arguments.models.empty() == arguments.scene.empty()) {
     throw UsageError(
-        arguments.model.empty()
+        arguments.models.empty()
             ? fmt::format("nothing to draw: name a model file or a --scene (see vitrail {} --help)", command)
             : "a model file and --scene exclude each other: name one of them");
   }
   if (arguments.scene.empty() && (arguments.count || arguments.seed)) {
     throw UsageError("--count and --seed are for built-in scenes: add --scene NAME");
   }
-  checkLoadOptions(arguments.load, !arguments.model.empty());
-  if (arguments.camera && arguments.orbit)
-    throw UsageError("--camera and --orbit exclude each other: give one of them");
+  checkLoadOptions(arguments.load, !arguments.models.empty());
+  checkCameraArguments(arguments);
 }
 
 Scene openModel(const std::string& file, const LoadOptions& options) {
@@ -158,21 +123,48 @@ Scene openBuiltin(const std::string& name, const BuiltinOptions& options) {
   }
 }
 
-Scene openScene(const SceneArguments& arguments) {
-  Scene scene = arguments.scene.empty()
-                    ? openModel(arguments.model, arguments.load)
-                    : openBuiltin(arguments.scene, {arguments.count, arguments.seed.value_or(BuiltinOptions{}.seed)});
+Scene openScene(const SceneArguments& arguments, const Progress& progress) {
+  Scene scene;
+  if (arguments.scene.empty()) {
+    std::vector<Scene> parts;
+    for (const std::string& model : arguments.models) {
+      progress.show(fmt::format("loading {}", printable(model)));
+      parts.push_back(openModel(model, arguments.load));
+    }
+    scene = mergeScenes(std::move(parts), arguments.models);
+  } else {
+    scene = openBuiltin(arguments.scene, {arguments.count, arguments.seed.value_or(BuiltinOptions{}.seed)});
+  }
   scene.pointSize = arguments.pointSize.value_or(scene.pointSize);
+  placeScene(arguments, scene);
   return scene;
+}
+
+std::string nameOfScene(const SceneArguments& arguments) {
+  if (!arguments.scene.empty()) return arguments.scene;
+  std::vector<std::string> names;
+  for (const std::string& model : arguments.models) names.push_back(std::filesystem::path(model).filename().string());
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 RenderOptions pictureOf(const SceneArguments& arguments, const Scene& scene) {
   RenderOptions options;
   options.width = arguments.width;
   options.height = arguments.height;
-  options.view = chooseView(arguments, scene);
+  const float aspect = static_cast<float>(arguments.width) / static_cast<float>(arguments.height);
+  options.view = viewOf(arguments, scene, aspect, arguments.models.size() < 2);
   options.background = arguments.background.value_or(scene.background.value_or(Background{}));
   return options;
+}
+
+Seen seenOf(const RenderOptions& picture, std::optional<float> opacity) {
+  return {picture.view, picture.width, picture.height, opacity};
+}
+
+bool warnIfUnseen(const Scene& scene, const Seen& seen, std::vector<std::string>& warnings) {
+  if (!whyNothingIsSeen(scene, seen)) return false;
+  warnings.push_back(nothingSeenWarning(scene, seen));
+  return true;
 }
 
 void closeValidated(Gpu& gpu) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -13,20 +14,21 @@
 #include "../scene/camera.h"
 #include "../scene/load.h"
 #include "../scene/scene.h"
+#include "../scene/visibility.h"
+#include "camera_options.h"
+#include "progress.h"
 #include "warnings.h"
 
 namespace vitrail::tool {
 
-struct SceneArguments : WarningOptions {
-  std::string model; // empty: a built-in scene
+struct SceneArguments : WarningOptions, CameraArguments {
+  std::vector<std::string> models; // none: a built-in scene
   LoadOptions load;
   std::string scene;
   std::optional<std::uint32_t> count;
   std::optional<std::uint32_t> seed;
   std::uint32_t width = 1280;
   std::uint32_t height = 720;
-  std::optional<std::uint32_t> camera;
-  std::optional<Orbit> orbit;
   std::optional<float> pointSize; // pixels
   std::optional<float> opacity;
   std::optional<Background> background;
@@ -53,10 +55,21 @@ void checkSceneArguments(const SceneArguments& arguments, const std::string& com
 // Throws std::runtime_error that names the file, or UsageError.
 Scene openModel(const std::string& file, const LoadOptions& options);
 Scene openBuiltin(const std::string& name, const BuiltinOptions& options);
-Scene openScene(const SceneArguments& arguments);
+
+// All that is drawn, upright and cut, with its warnings. Throws the same.
+Scene openScene(const SceneArguments& arguments, const Progress& progress);
+
+// What is drawn, in words: the names of its files, or that of a built-in scene.
+std::string nameOfScene(const SceneArguments& arguments);
 
 // Size, view and background. Throws UsageError where the scene does not have the camera.
 RenderOptions pictureOf(const SceneArguments& arguments, const Scene& scene);
+
+// How visibility.h sees such a picture.
+Seen seenOf(const RenderOptions& picture, std::optional<float> opacity);
+
+// Adds the warning of a picture that is sure to show nothing. Whether it is.
+bool warnIfUnseen(const Scene& scene, const Seen& seen, std::vector<std::string>& warnings);
 
 // Destroys the device once all that was made on it is gone. Throws std::runtime_error where the validation layer has
 // reported errors.

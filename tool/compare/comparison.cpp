@@ -87,6 +87,7 @@ Comparison compareMethods(Gpu& gpu, const Scene& scene, const ComparisonRun& run
   tell(run, "the exact picture");
   RenderResult exact = drawExact(gpu, scene, run);
   result.exact = std::move(exact.picture);
+  result.isEmpty = exact.isEmpty;
   result.exactFrame = std::move(exact.report);
   requireFragments(result.exactFrame.fragmentsRequested);
   tell(run, "depth complexity");

@@ -39,6 +39,7 @@ struct Comparison : Machine {
   std::uint64_t triangles = 0;
   std::vector<std::string> warnings; // of the scene
   Picture exact;
+  bool isEmpty = false; // it shows the background alone
   FrameReport exactFrame;
   // The fragments of each pixel at its centre, whatever the samples, and the most that a pixel has.
   Plane layers;

@@ -374,6 +374,7 @@ void Gpu::Impl::createDevice() {
   enabled.features.geometryShader = features.primitiveNumbers ? VK_TRUE : VK_FALSE;
   enabled.features.shaderInt64 = features.int64Atomics ? VK_TRUE : VK_FALSE;
   enabled.features.independentBlend = features.independentBlending ? VK_TRUE : VK_FALSE;
+  enabled.features.shaderClipDistance = features.clipPlanes > 0 ? VK_TRUE : VK_FALSE;
   enabled.features.fullDrawIndexUint32 = supported.fullDrawIndexUint32; // for meshes beyond 16.7 M vertices
 
   std::vector<const char*> extensions;

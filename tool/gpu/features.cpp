@@ -87,6 +87,7 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   result.floatBlending = blends(device, VK_FORMAT_R32_SFLOAT) && blends(device, VK_FORMAT_R32G32B32A32_SFLOAT);
   result.int64Atomics = features.features.shaderInt64 == VK_TRUE && features12.shaderBufferInt64Atomics == VK_TRUE;
   result.fragmentInterlock = interlock.fragmentShaderPixelInterlock == VK_TRUE;
+  if (features.features.shaderClipDistance == VK_TRUE) result.clipPlanes = limits.maxClipDistances;
   result.postDepthCoverage = hasExtension(device, VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
   result.sampleCounts = pictureSampleCounts(device, limits);
   result.middleSamples = result.sampleCounts & middleSampleCounts(device);

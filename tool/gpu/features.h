@@ -24,6 +24,7 @@ struct GpuFeatures {
   bool fragmentInterlock = false;       // VK_EXT_fragment_shader_interlock, of pixels
   bool postDepthCoverage = false;       // VK_EXT_post_depth_coverage
   VkSampleCountFlags middleSamples = 0; // counts of samples that can all be in the middle (VK_EXT_sample_locations)
+  std::uint32_t clipPlanes = 0;         // that cut surfaces (shaderClipDistance); 0: none can
   bool stencil = false;                 // images of D32_SFLOAT_S8_UINT
   VkSampleCountFlags sampleCounts = VK_SAMPLE_COUNT_1_BIT; // of a picture's images
 };

@@ -2,6 +2,7 @@
 
 #include <png.h>
 
+#include <bit>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -32,28 +33,39 @@ struct Writer {
   Writer& operator=(const Writer&) = delete;
 };
 
-} // namespace
-
-std::vector<std::byte> encodePng(const Picture& picture) {
+// Encodes rows of `channelBits` bits a channel in the machine's order of bytes.
+std::vector<std::byte> encode(std::uint32_t width, std::uint32_t height, bool hasAlpha, int channelBits,
+                              const std::uint8_t* rows) {
   Writer writer;
   if (writer.info == nullptr) throw std::runtime_error("the PNG could not be encoded: no memory for libpng");
   png_structp png = writer.png;
 
   std::vector<std::byte> bytes;
   png_set_write_fn(png, &bytes, append, nullptr);
-  png_set_user_limits(png, picture.width, picture.height);
-  png_set_IHDR(png, writer.info, picture.width, picture.height, 8,
-               picture.hasAlpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_user_limits(png, width, height);
+  png_set_IHDR(png, writer.info, width, height, channelBits, hasAlpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   // Nearly as small as the default level 6 on rendered pictures, in a third of the time.
   png_set_compression_level(png, 4);
   png_write_info(png, writer.info);
-  if (!picture.hasAlpha) png_set_filler(png, 0, PNG_FILLER_AFTER); // drops the fourth byte of each pixel
-  const std::size_t pitch = std::size_t{picture.width} * 4;
-  for (std::uint32_t y = 0; y < picture.height; ++y) png_write_row(png, picture.rgba.data() + y * pitch);
+  if (!hasAlpha) png_set_filler(png, 0, PNG_FILLER_AFTER); // drops the fourth channel of each pixel
+  if (channelBits == 16 && std::endian::native == std::endian::little) png_set_swap(png);
+  const std::size_t pitch = std::size_t{width} * 4 * (static_cast<std::size_t>(channelBits) / 8);
+  for (std::uint32_t y = 0; y < height; ++y) png_write_row(png, rows + y * pitch);
   png_write_end(png, writer.info);
   return bytes;
+}
+
+} // namespace
+
+std::vector<std::byte> encodePng(const Picture& picture) {
+  return encode(picture.width, picture.height, picture.hasAlpha, 8, picture.rgba.data());
+}
+
+std::vector<std::byte> encodePng(const DeepPicture& picture) {
+  return encode(picture.width, picture.height, picture.hasAlpha, 16,
+                reinterpret_cast<const std::uint8_t*>(picture.rgba.data()));
 }
 
 } // namespace vitrail::tool

@@ -12,4 +12,7 @@ namespace vitrail::tool {
 // same bytes. Throws std::runtime_error with libpng's reason.
 std::vector<std::byte> encodePng(const Picture& picture);
 
+// The same with 16 bits: of Encoding::Srgb16.
+std::vector<std::byte> encodePng(const DeepPicture& picture);
+
 } // namespace vitrail::tool

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include <volk.h>
@@ -32,7 +33,8 @@ struct MethodTarget {
   VkImageView stencil = VK_NULL_HANDLE; // and the stencil beside it, where ImageNeeds::stencil has one
   // Bytes that the method may keep for fragments. Default: what the device can give. For methods that have it.
   std::optional<std::uint64_t> memoryBudget;
-  bool surfaces = true; // whether there is anything transparent
+  bool surfaces = true;                            // whether there is anything transparent
+  std::function<void(std::uint32_t tiles)> onTile; // where not empty, told how many tiles of a picture are done
 };
 
 class Method {

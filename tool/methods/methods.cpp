@@ -195,7 +195,10 @@ void checkMethodOptions(const MethodOptions& options) {
 
 std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions& options) {
   const MethodOptions defaults;
-  if ((options.name == defaults.name && options.maxLayers == 0) || !Solids(scene).any()) return {};
+  const bool cut = !scene.clipPlanes.empty();
+  const bool walks = options.name == defaults.name && options.maxLayers == 0;
+  if ((walks && !cut) || !Solids(scene, false).any()) return {};
+  if (cut) return {"volumes are attenuated by the file's thickness, not by the true path: --clip-plane cuts them open"};
   return {options.name == defaults.name
               ? "volumes are attenuated by the file's thickness, not by the true path: leave --layers out"
               : "volumes are attenuated by the file's thickness, not by the true path: use --method linked-list"};

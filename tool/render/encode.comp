@@ -1,7 +1,13 @@
-// The finished picture: linear premultiplied colour to 8-bit sRGB with straight alpha (IEC 61966-2-1).
+// The finished picture: linear premultiplied colour to 8-bit or 16-bit sRGB with straight alpha (IEC 61966-2-1), or
+// handed on as it is.
 #version 460
 
 layout(local_size_x = 8, local_size_y = 8) in;
+
+// Of image/picture.h's Encoding.
+layout(constant_id = 0) const uint kEncoding = 0u;
+const uint SRGB_8 = 0u;
+const uint SRGB_16 = 1u;
 
 layout(set = 0, binding = 0, rgba16f) uniform readonly image2D colorImage;
 layout(set = 0, binding = 1, std430) writeonly buffer PixelBlock { uint pixels[]; }; // one band of rows
@@ -21,15 +27,22 @@ float encode(float linear) {
   return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
 }
 
-uint quantize(float v) { return uint(min(v, 1.0) * 255.0 + 0.5); }
+uint quantize(float v, float most) { return uint(v * most + 0.5); }
 
 void main() {
   uvec2 local = gl_GlobalInvocationID.xy;
   uvec2 pixel = uvec2(local.x, firstRow + local.y);
   if (pixel.x >= width || local.y >= rows || pixel.y >= height) return;
   vec4 color = imageLoad(colorImage, ivec2(pixel));
+  uint at = local.y * width + pixel.x;
+  if (kEncoding > SRGB_16) {
+    pixels[2u * at] = packHalf2x16(color.rg);
+    pixels[2u * at + 1u] = packHalf2x16(color.ba);
+    return;
+  }
   float alpha = saturate(color.a);
   vec3 straight = alpha > 0.0 ? color.rgb / alpha : vec3(0.0);
+  float most = kEncoding == SRGB_16 ? 65535.0 : 255.0;
   vec3 coded = vec3(encode(straight.r), encode(straight.g), encode(straight.b));
   // Light beyond alpha, of a reflection on glass or a flame, shines from what alpha leaves free. What rounding puts
   // between the two is not beyond.
@@ -37,10 +50,15 @@ void main() {
   vec3 light = vec3(encode(beyond.r), encode(beyond.g), encode(beyond.b));
   float brightest = max(light.r, max(light.g, light.b));
   if (brightest > 0.0) {
-    float raised = ceil(mix(alpha, 1.0, brightest) * 255.0) / 255.0;
+    float raised = ceil(mix(alpha, 1.0, brightest) * most) / most;
     coded = mix(light, coded, alpha) / raised;
     alpha = raised;
   }
-  pixels[local.y * width + pixel.x] = quantize(coded.r) | quantize(coded.g) << 8 | quantize(coded.b) << 16 |
-                                      quantize(alpha) << 24;
+  if (kEncoding == SRGB_16) {
+    pixels[2u * at] = quantize(coded.r, most) | quantize(coded.g, most) << 16;
+    pixels[2u * at + 1u] = quantize(coded.b, most) | quantize(alpha, most) << 16;
+  } else {
+    pixels[at] = quantize(coded.r, most) | quantize(coded.g, most) << 8 | quantize(coded.b, most) << 16 |
+                 quantize(alpha, most) << 24;
+  }
 }

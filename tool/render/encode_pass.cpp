@@ -23,6 +23,8 @@ constexpr std::uint32_t kGroupSide = 8;
 // A band's offset in the buffer is a multiple of 256 bytes, the largest alignment that a device may ask for.
 constexpr std::uint32_t kRowAlignment = 64;
 
+std::uint32_t pixelBytes(Encoding encoding) { return encoding == Encoding::Srgb8 ? 4 : 8; }
+
 std::uint32_t bandGroups(std::uint32_t pixels) { return (pixels + kGroupSide - 1) / kGroupSide; }
 
 } // namespace
@@ -36,19 +38,32 @@ EncodePass::EncodePass(Gpu& gpu)
       layout_(makePipelineLayout(gpu, {set_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(Band)}, "encode")),
       pipeline_(makeComputePipeline(gpu, layout_.get(), shaders::encode_comp, "encode")) {}
 
+std::uint64_t EncodePass::rowBytes() const { return std::uint64_t{extent_.width} * pixelBytes(encoding_); }
+
 void EncodePass::setSource(const GpuImage& color) {
   extent_ = color.info().extent;
-  const std::uint64_t rowBytes = std::uint64_t{extent_.width} * 4;
-  const std::uint64_t fitting = gpu_.properties().limits.maxStorageBufferRange / rowBytes;
+  makeOutput();
+  set_.writeImage(0, color.view(), VK_IMAGE_LAYOUT_GENERAL);
+}
+
+void EncodePass::setEncoding(Encoding encoding) {
+  if (encoding == encoding_) return;
+  encoding_ = encoding;
+  pipeline_ = makeComputePipeline(gpu_, layout_.get(), shaders::encode_comp, "encode",
+                                  {{0, static_cast<std::uint32_t>(encoding)}});
+  if (extent_.width > 0) makeOutput();
+}
+
+void EncodePass::makeOutput() {
+  const std::uint64_t fitting = gpu_.properties().limits.maxStorageBufferRange / rowBytes();
   bandRows_ = extent_.height;
   if (fitting < extent_.height) bandRows_ = static_cast<std::uint32_t>(fitting / kRowAlignment * kRowAlignment);
   const std::uint64_t bands = (extent_.height + bandRows_ - 1) / bandRows_;
 
   output_ = GpuBuffer(); // first: the old picture and the new one need not fit together
-  output_ = GpuBuffer(gpu_, bands * bandRows_ * rowBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryKind::Readback,
+  output_ = GpuBuffer(gpu_, bands * bandRows_ * rowBytes(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryKind::Readback,
                       "encoded picture");
-  set_.writeImage(0, color.view(), VK_IMAGE_LAYOUT_GENERAL);
-  set_.writeBuffer(1, output_.get(), bandRows_ * rowBytes);
+  set_.writeBuffer(1, output_.get(), bandRows_ * rowBytes());
 }
 
 void EncodePass::cmdEncode(VkCommandBuffer commands) const {
@@ -56,7 +71,7 @@ void EncodePass::cmdEncode(VkCommandBuffer commands) const {
   const VkDescriptorSet set = set_.set();
   for (std::uint32_t row = 0; row < extent_.height; row += bandRows_) {
     const Band band{extent_.width, extent_.height, row, std::min(bandRows_, extent_.height - row)};
-    const std::uint64_t offset = std::uint64_t{row} * extent_.width * 4;
+    const std::uint64_t offset = row * rowBytes();
     const auto dynamicOffset = static_cast<std::uint32_t>(offset);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 1, &dynamicOffset);
     vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(band), &band);
@@ -70,6 +85,12 @@ void EncodePass::cmdEncode(VkCommandBuffer commands) const {
 std::vector<std::uint8_t> EncodePass::pixels() const {
   std::vector<std::uint8_t> result(std::size_t{extent_.width} * extent_.height * 4);
   std::memcpy(result.data(), output_.mapped(), result.size());
+  return result;
+}
+
+std::vector<std::uint16_t> EncodePass::deepPixels() const {
+  std::vector<std::uint16_t> result(std::size_t{extent_.width} * extent_.height * 4);
+  std::memcpy(result.data(), output_.mapped(), result.size() * sizeof(std::uint16_t));
   return result;
 }
 

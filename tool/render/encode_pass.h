@@ -1,4 +1,4 @@
-// The last pass: the linear picture to 8-bit sRGB pixels that the host reads.
+// The last pass: the linear picture to pixels that the host reads.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 
 #include "../gpu/descriptors.h"
 #include "../gpu/resources.h"
+#include "../image/picture.h"
 
 namespace vitrail::tool {
 
@@ -16,18 +17,26 @@ class EncodePass {
   // Makes the output of a picture. `color` is R16G16B16A16_SFLOAT with storage usage and outlives its frames.
   void setSource(const GpuImage& color);
 
+  // How the next frames are encoded; Encoding::Srgb8 without it. No frame is pending.
+  void setEncoding(Encoding encoding);
+
   // Reads the source by compute in VK_IMAGE_LAYOUT_GENERAL and makes the pixels visible to the host. Outside a
   // rendering scope.
   void cmdEncode(VkCommandBuffer commands) const;
 
-  // The pixels of the last finished frame, 4 bytes each, rows top to bottom without padding.
+  // The pixels of the last finished frame, rows top to bottom without padding: of Encoding::Srgb8, or of the others.
   std::vector<std::uint8_t> pixels() const;
+  std::vector<std::uint16_t> deepPixels() const;
 
  private:
+  void makeOutput();
+  std::uint64_t rowBytes() const;
+
   Gpu& gpu_;
   SingleSet set_;
   Unique<VkPipelineLayout> layout_;
   Unique<VkPipeline> pipeline_;
+  Encoding encoding_ = Encoding::Srgb8;
   VkExtent2D extent_{};
   std::uint32_t bandRows_ = 0; // a shader reaches a limited part of a buffer: large pictures are encoded in bands
   GpuBuffer output_;

@@ -34,6 +34,7 @@ struct StillRenderer::Impl {
   void prepare(const RenderOptions& picture);
   bool draw(const Background& background, bool encoded);
   FrameReport drawUntilComplete(const RenderOptions& picture, bool encoded);
+  bool isBackgroundAlone(const RenderOptions& picture, const RenderResult& drawn);
   FrameReport report(const RenderOptions& picture, const FrameStats& stats);
 };
 
@@ -63,6 +64,7 @@ void StillRenderer::Impl::prepare(const RenderOptions& picture) {
     stage.setSize(extent);
     encode.setSource(images.color().get());
   }
+  encode.setEncoding(picture.encoding);
   stage.setView(picture.view);
   MethodTarget target;
   target.extent = images.extent();
@@ -71,6 +73,7 @@ void StillRenderer::Impl::prepare(const RenderOptions& picture) {
   target.depth = images.sampledDepth();
   target.stencil = images.sampledStencil();
   target.memoryBudget = picture.memoryBudget;
+  target.onTile = picture.onTile;
   target.surfaces = !stage.surfaces().scene().transparentDraws().empty();
   method->setTarget(target);
 }
@@ -108,6 +111,28 @@ FrameReport StillRenderer::Impl::drawUntilComplete(const RenderOptions& picture,
       fmt::format("{} counts the picture's fragments differently in each of {} frames", device, kMaxAttempts));
 }
 
+// Whether the background, drawn in the same way without the scene, is the same picture.
+bool StillRenderer::Impl::isBackgroundAlone(const RenderOptions& picture, const RenderResult& drawn) {
+  // A background without a gradient: most pictures show at once that there is more.
+  const auto isPlain = [](const auto& rgba) {
+    for (std::size_t i = 4; i < rgba.size(); ++i) {
+      if (rgba[i] != rgba[i - 4]) return false;
+    }
+    return true;
+  };
+  const bool mayBe =
+      picture.background.kind == Background::Kind::Sky || (isPlain(drawn.picture.rgba) && isPlain(drawn.deep.rgba));
+  if (!mayBe) return false;
+  Frame frame(submitter, timers, stage.images(), stage.surfaces());
+  stage.drawBackground(frame, picture.background);
+  stage.images().cmdToEncode(frame.commands());
+  encode.cmdEncode(frame.commands());
+  frame.endPass("encode");
+  frame.finish();
+  return picture.encoding == Encoding::Srgb8 ? encode.pixels() == drawn.picture.rgba
+                                             : encode.deepPixels() == drawn.deep.rgba;
+}
+
 FrameReport StillRenderer::Impl::report(const RenderOptions& picture, const FrameStats& stats) {
   FrameReport report;
   static_cast<FrameStats&>(report) = stats;
@@ -140,10 +165,13 @@ StillRenderer::~StillRenderer() = default;
 RenderResult StillRenderer::render(const RenderOptions& options) {
   RenderResult result;
   result.report = impl_->drawUntilComplete(options, true);
-  result.picture.width = options.width;
-  result.picture.height = options.height;
-  result.picture.hasAlpha = options.background.kind == Background::Kind::Transparent;
-  result.picture.rgba = impl_->encode.pixels();
+  const bool hasAlpha = options.background.kind == Background::Kind::Transparent;
+  if (options.encoding == Encoding::Srgb8) {
+    result.picture = {options.width, options.height, hasAlpha, impl_->encode.pixels()};
+  } else {
+    result.deep = {options.width, options.height, hasAlpha, options.encoding, impl_->encode.deepPixels()};
+  }
+  result.isEmpty = impl_->isBackgroundAlone(options, result);
   return result;
 }
 

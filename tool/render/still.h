@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -26,10 +27,14 @@ struct RenderOptions {
   // Bytes that the method may keep for fragments, at least 64 KiB: a frame that needs more is drawn in tiles. The
   // picture is the same. Default: what the device can give.
   std::optional<std::uint64_t> memoryBudget;
+  Encoding encoding = Encoding::Srgb8;
+  std::function<void(std::uint32_t tiles)> onTile; // told how many tiles are done, for people who wait
 };
 
 struct RenderResult {
-  Picture picture;
+  Picture picture;      // of Encoding::Srgb8
+  DeepPicture deep;     // of the others
+  bool isEmpty = false; // no pixel differs from the background alone
   FrameReport report;
 };
 

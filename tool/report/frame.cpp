@@ -4,16 +4,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "../bench/short_count.h"
 #include "json.h"
 #include "names.h"
 
 namespace vitrail::tool {
 
-std::string toJson(const FrameReport& report) {
+namespace {
+
+// All but the warnings.
+Json jsonOf(const FrameReport& report) {
   Json passes = Json::object();
   for (const auto& [name, milliseconds] : report.passesMs) passes[name] = milliseconds;
-  return documentOf({
+  return {
       {names::kDevice, report.device},
       {names::kApi, report.api},
       {names::kMethod, report.method},
@@ -37,8 +44,7 @@ std::string toJson(const FrameReport& report) {
         {"peak_bytes", report.peakBytes}}},
       {names::kPassesMs, passes},
       {names::kFrameMs, report.frameMs},
-      {names::kWarnings, report.warnings},
-  });
+  };
 }
 
 // What is known of how right the picture is.
@@ -46,6 +52,24 @@ std::string exactness(const FrameReport& report) {
   if (isExact(report)) return "exact";
   if (!report.complete) return "not exact";
   return fmt::format("complete, within {:.0f}/255", std::ceil(report.errorBound));
+}
+
+} // namespace
+
+std::string toJson(const FrameReport& report) {
+  Json json = jsonOf(report);
+  json[names::kWarnings] = report.warnings;
+  return documentOf(json);
+}
+
+std::string toJson(std::span<const NamedFrame> frames, std::span<const std::string> warnings) {
+  Json list = Json::array();
+  for (const NamedFrame& frame : frames) {
+    Json json{{"file", frame.file}};
+    json.update(jsonOf(frame.report));
+    list.push_back(std::move(json));
+  }
+  return documentOf({{"frames", list}, {names::kWarnings, std::vector(warnings.begin(), warnings.end())}});
 }
 
 std::string toSummary(const FrameReport& report) {
@@ -59,6 +83,24 @@ std::string toSummary(const FrameReport& report) {
   }
   if (report.tiles > 1) text += fmt::format("{} tiles, ", report.tiles);
   return text + fmt::format("{:.1f} ms on {}", report.frameMs, report.device);
+}
+
+std::string toSummary(std::span<const NamedFrame> frames) {
+  const FrameReport& first = frames.front().report;
+  FrameReport worst = first;
+  std::uint32_t deepest = 0;
+  double milliseconds = 0.0;
+  for (const NamedFrame& frame : frames) {
+    worst.complete = worst.complete && frame.report.complete;
+    worst.errorBound = std::max(worst.errorBound, frame.report.errorBound);
+    deepest = std::max(deepest, frame.report.layersMax);
+    milliseconds += frame.report.frameMs / static_cast<double>(frames.size());
+  }
+  std::string text = fmt::format("{} pictures of {}x{}, ", frames.size(), first.width, first.height);
+  if (first.samples > 1) text += fmt::format("{} samples, ", first.samples);
+  text += first.counted ? fmt::format("up to {} deep, {}, ", deepest, exactness(worst))
+                        : fmt::format("{}, not exact, ", first.method);
+  return text + fmt::format("{:.1f} ms each on {}", milliseconds, first.device);
 }
 
 } // namespace vitrail::tool

@@ -9,7 +9,6 @@
 namespace vitrail::tool {
 namespace {
 
-constexpr double fovAtZoom1 = 0.78539816339744831; // 45 degrees
 constexpr double margin = 1.05;
 
 // The orbiting camera's axes as columns: right, up, backward. Azimuth fixes "right" on its own, so that looking
@@ -30,8 +29,8 @@ class Fit {
  public:
   Fit(const Orbit& orbit, float aspect)
       : axes_(orbitAxes(orbit)),
-        slopeX_(std::tan(0.5 * fovAtZoom1) * static_cast<double>(aspect)),
-        slopeY_(std::tan(0.5 * fovAtZoom1)) {}
+        slopeX_(std::tan(0.5 * glm::radians(static_cast<double>(orbit.fov))) * static_cast<double>(aspect)),
+        slopeY_(std::tan(0.5 * glm::radians(static_cast<double>(orbit.fov)))) {}
 
   void add(const glm::dvec3& point) {
     const glm::dvec3 place = point * axes_; // a row vector: the transpose of axes, times the column
@@ -79,6 +78,47 @@ class Fit {
   double remoteness_ = 0.0; // from the origin of the world
 };
 
+// A camera that looks at a place, as columns.
+glm::dmat3 lookingAxes(const LookAt& look) {
+  const glm::dvec3 backward = glm::normalize(look.eye - look.target);
+  const double across = std::hypot(backward.x, backward.z);
+  // Straight up or down "right" is where it is for an azimuth of 0.
+  const glm::dvec3 right =
+      across > 1e-9 ? glm::dvec3(backward.z, 0.0, -backward.x) / across : glm::dvec3(1.0, 0.0, 0.0);
+  return {right, glm::cross(backward, right), backward};
+}
+
+// Finds the planes of a camera between which all points lie that it can see.
+class Looking {
+ public:
+  explicit Looking(const LookAt& look) : look_(look), axes_(lookingAxes(look)) {}
+
+  void add(const glm::dvec3& point) {
+    const double distance = glm::dot(look_.eye - point, axes_[2]);
+    nearest_ = std::min(nearest_, distance);
+    farthest_ = std::max(farthest_, distance);
+  }
+
+  View view() const {
+    View view;
+    for (int column = 0; column < 3; ++column) view.cameraToWorld[column] = glm::vec4(glm::vec3(axes_[column]), 0.0F);
+    view.cameraToWorld[3] = glm::vec4(glm::vec3(look_.eye), 1.0F);
+    view.verticalFov = glm::radians(look_.fov);
+    // All may be behind the camera: some planes there must be.
+    const double farthest = farthest_ > 0.0 ? farthest_ : glm::length(look_.eye - look_.target);
+    // Inside the scene the near plane is where it cuts little away and depths are still apart.
+    view.nearPlane = static_cast<float>(std::max(0.5 * nearest_, 1e-4 * farthest));
+    view.farPlane = static_cast<float>(1.05 * farthest);
+    return view;
+  }
+
+ private:
+  LookAt look_;
+  glm::dmat3 axes_;
+  double nearest_ = std::numeric_limits<double>::max();
+  double farthest_ = std::numeric_limits<double>::lowest();
+};
+
 } // namespace
 
 View viewOf(const SceneCamera& camera) {
@@ -108,6 +148,26 @@ View frameScene(const Bounds& bounds, const Orbit& orbit, float aspect) {
     fit.add(glm::dvec3(corner));
   }
   return fit.view(orbit.zoom);
+}
+
+View frameScene(std::span<const glm::dvec3> points, const Orbit& orbit, float aspect) {
+  Fit fit(orbit, aspect);
+  for (const glm::dvec3& point : points) fit.add(point);
+  return fit.view(orbit.zoom);
+}
+
+View lookFrom(const Scene& scene, const LookAt& look) {
+  Looking looking(look);
+  visitPositions(scene, [&looking](std::span<const glm::vec3> positions) {
+    for (const glm::vec3& position : positions) looking.add(glm::dvec3(position));
+  });
+  return looking.view();
+}
+
+View lookFrom(std::span<const glm::dvec3> points, const LookAt& look) {
+  Looking looking(look);
+  for (const glm::dvec3& point : points) looking.add(point);
+  return looking.view();
 }
 
 glm::mat4 viewMatrix(const View& view) { return glm::mat4(glm::inverse(glm::dmat4(view.cameraToWorld))); }

@@ -246,7 +246,11 @@ struct Scene {
   std::vector<std::string> warnings;    // see warn()
   float pointSize = 3.0F;               // how many pixels a point is across
   std::optional<Background> background; // what the scene asks for where the user does not choose
+  // What of it is drawn: points with dot(xyz, point) >= w of every plane. At most kMostClipPlanes. Cameras ignore them.
+  std::vector<glm::dvec4> clipPlanes;
 };
+
+constexpr std::size_t kMostClipPlanes = 8; // what every device that has any has
 
 // Notes what the picture of a scene lacks, or shows otherwise than the file says: one line that names what it is by the
 // file's own name for it and says what is lost, as in "image 0: missing.png: no such file; the material is drawn

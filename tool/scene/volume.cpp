@@ -82,8 +82,9 @@ Facing facingOf(const Mesh& mesh) {
   return volume > 0.0 ? Facing::Outward : Facing::Inward;
 }
 
-Solids::Solids(const Scene& scene)
+Solids::Solids(const Scene& scene, bool cut)
     : absorbing_(scene.materials.size()), meshes_(scene.meshes.size(), Facing::Open), boxes_(scene.meshes.size()) {
+  if (cut) return;
   std::vector<bool> known(scene.meshes.size());
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& material = scene.materials[i];

@@ -28,7 +28,10 @@ Facing facingOf(const Mesh& mesh);
 class Solids {
  public:
   Solids() = default;
-  explicit Solids(const Scene& scene);
+  // What planes cut open encloses nothing any more.
+  explicit Solids(const Scene& scene) : Solids(scene, !scene.clipPlanes.empty()) {}
+  // `cut`: whether something cuts all of it.
+  Solids(const Scene& scene, bool cut);
 
   // A mesh of the scene with a material that some draw shows it with. Open also where the material absorbs nothing, or
   // is masked: its surface may have holes.

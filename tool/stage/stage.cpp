@@ -78,13 +78,25 @@ void Stage::setView(const View& view) {
   surfaces_.setView(makeFrameData(view, extent.width, extent.height, surfaces_.scene().origin()));
 }
 
-void Stage::drawOpaque(Frame& frame, const Background& background) {
-  VkCommandBuffer commands = frame.commands();
+// Begins the opaque scope and draws the background.
+void Stage::cmdBegin(VkCommandBuffer commands, const Background& background) {
   images_.cmdBeginOpaque(commands, clearColor(background));
   if (background.kind == Background::Kind::Sky) {
     surfaces_.cmdBindView(commands, opaque_->surfaces.layout());
     cmdDrawScreen(commands, opaque_->sky.get());
   }
+}
+
+void Stage::drawBackground(Frame& frame, const Background& background) {
+  cmdBegin(frame.commands(), background);
+  vkCmdEndRendering(frame.commands());
+  if (imagesInfo_.samples > VK_SAMPLE_COUNT_1_BIT) images_.cmdBoxFilter(frame.commands());
+  frame.endPass("background");
+}
+
+void Stage::drawOpaque(Frame& frame, const Background& background) {
+  VkCommandBuffer commands = frame.commands();
+  cmdBegin(commands, background);
   const std::vector<GpuDraw>& draws = surfaces_.scene().opaqueDraws();
   surfaces_.cmdDraw(commands, draws, Surfaces::runsOf(draws), opaque_->surfaces);
   vkCmdEndRendering(commands);

@@ -42,6 +42,8 @@ class Stage {
 
   // Draws the background, opaque and alpha-masked surfaces, as the pass "opaque".
   void drawOpaque(Frame& frame, const Background& background);
+  // Draws the background alone and finishes the picture.
+  void drawBackground(Frame& frame, const Background& background);
   // With several samples that are blended by themselves, takes their mean, as the pass "box_filter".
   void finishPicture(Frame& frame);
 
@@ -50,6 +52,8 @@ class Stage {
     SurfacePipelines surfaces;
     Unique<VkPipeline> sky;
   };
+
+  void cmdBegin(VkCommandBuffer commands, const Background& background);
 
   Gpu& gpu_;
   PictureImagesInfo imagesInfo_;

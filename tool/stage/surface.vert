@@ -32,6 +32,16 @@ layout(location = 15) flat out uint outObject; // the number of the instance
 // Both passes must give one vertex the same bits, or transparent decals on opaque surfaces would flicker.
 invariant gl_Position;
 
+#ifdef SURFACE_CLIPPED
+out float gl_ClipDistance[CLIP_PLANE_COUNT];
+
+void clip(vec3 position) {
+  for (uint i = 0u; i < CLIP_PLANE_COUNT; ++i) {
+    gl_ClipDistance[i] = dot(frame.clipPlanes[i], vec4(position, 1.0));
+  }
+}
+#endif
+
 // Here and not in the fragment shader: what textures are sampled with is then interpolated and nothing else, and its
 // derivatives do not rest on what a driver loads for helper invocations.
 vec2 slotCoordinates(uint slot) {
@@ -56,6 +66,9 @@ void main() {
   // Along the edge between two rows or columns of pixels a line is drawn in the lower or right one, on every device.
   if ((kFeatures & FEATURE_SOLID) == FEATURE_LINES) gl_Position.xy += gl_Position.w * frame.depth.zw;
   if ((kFeatures & FEATURE_SOLID) == FEATURE_POINTS) gl_PointSize = kPointSize;
+#ifdef SURFACE_CLIPPED
+  clip(position.xyz);
+#endif
   outPosition = position.xyz;
 
   // Normals turn as planes do: by the cofactors, which exist even where the transform has no inverse, scaled so that

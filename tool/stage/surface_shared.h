@@ -58,6 +58,8 @@ const uint FEATURE_POINTS = 0x40000000u; // points
 const uint FEATURE_SOLID = 0x60000000u;  // both: triangles that enclose a volume (below)
 const uint FEATURE_VOLUME = 0x80000000u; // there is something behind it that absorbs light
 
+const uint CLIP_PLANE_COUNT = 8u;
+
 // What all draws of a frame share (std140).
 struct FrameData {
   mat4 viewProjection;
@@ -66,6 +68,8 @@ struct FrameData {
   vec4 toLight; // xyz: unit vector in the world; w: how many lights the scene has of its own
   vec4 ray;     // a pixel at (x, y) looks along (x * ray.x - ray.z, ray.w - y * ray.y, -1) in camera axes
   vec4 depth;   // a perspective camera's depths are depth.x + depth.y * gl_FragCoord.w; zw: 1/256 pixel in clip space
+  // Points with dot(xyz, point) + w >= 0 are kept. Those that are not there keep everything.
+  vec4 clipPlanes[CLIP_PLANE_COUNT];
 };
 
 const uint LIGHT_DIRECTIONAL = 0u;
@@ -112,7 +116,7 @@ struct MaterialData {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameData) == 192);
+static_assert(sizeof(FrameData) == 320);
 static_assert(sizeof(SlotData) == 32);
 static_assert(sizeof(LightData) == 64);
 static_assert(sizeof(MaterialData) == 688);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "shaders/surface.vert.h"
+#include "shaders/surface_clipped.vert.h"
 
 namespace vitrail::tool {
 
@@ -25,6 +26,23 @@ VkPrimitiveTopology topologyOf(std::uint32_t features) {
   return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
 }
 
+// The scene's clip planes in the GPU's space, filled up with planes that keep everything.
+void setClipPlanes(const Scene& scene, const glm::dvec3& origin, shaders::FrameData& view) {
+  for (std::size_t i = 0; i < shaders::CLIP_PLANE_COUNT; ++i) {
+    view.clipPlanes[i] = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
+    if (i >= scene.clipPlanes.size()) continue;
+    const glm::dvec4& plane = scene.clipPlanes[i];
+    view.clipPlanes[i] = glm::vec4(glm::dvec3(plane), glm::dot(glm::dvec3(plane), origin) - plane.w);
+  }
+}
+
+void checkClipPlanes(const Gpu& gpu, const Scene& scene) {
+  static_assert(kMostClipPlanes == shaders::CLIP_PLANE_COUNT);
+  if (scene.clipPlanes.empty() || gpu.features().clipPlanes >= shaders::CLIP_PLANE_COUNT) return;
+  throw GpuError(
+      fmt::format("{} cannot cut a model: it lacks clip distances (see --clip-plane)", gpu.properties().deviceName));
+}
+
 } // namespace
 
 float drawnPointSize(const Gpu& gpu, float wanted) {
@@ -39,7 +57,8 @@ SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const Gpu
   for (const GpuDraw& draw : draws) {
     if (pipelines_.contains(draw.features)) continue;
     GraphicsPipelineInfo info;
-    info.vertexShader = shaders::surface_vert;
+    info.vertexShader = surfaces.isClipped() ? std::span<const std::uint32_t>(shaders::surface_clipped_vert)
+                                             : std::span<const std::uint32_t>(shaders::surface_vert);
     info.vertices = surfaceVertexLayout();
     info.topology = topologyOf(draw.features);
     info.depthTest = VK_COMPARE_OP_GREATER_OR_EQUAL; // of surfaces in one plane the one that is drawn last is seen
@@ -57,6 +76,7 @@ Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
       scene_(gpu, scene, opacity, order, released),
       pointSize_(drawnPointSize(gpu, scene.pointSize)),
       transparentRuns_(runsOf(scene_.transparentDraws())),
+      isClipped_(!scene.clipPlanes.empty()),
       viewBuffer_(gpu, sizeof(shaders::FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::Upload,
                   "frame data"),
       frameSet_(gpu,
@@ -64,6 +84,8 @@ Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
                  {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT},
                  {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_FRAGMENT_BIT}},
                 "frame") {
+  checkClipPlanes(gpu, scene);
+  setClipPlanes(scene, scene_.origin(), view_);
   frameSet_.writeBuffer(0, viewBuffer_.get(), viewBuffer_.size());
   frameSet_.writeBuffer(1, scene_.materials().get(), sizeof(shaders::MaterialData));
   frameSet_.writeBuffer(2, scene_.lights().get(), scene_.lights().size());
@@ -80,8 +102,10 @@ std::vector<SurfaceRun> Surfaces::runsOf(std::span<const GpuDraw> draws) {
 }
 
 void Surfaces::setView(const shaders::FrameData& view) {
+  const shaders::FrameData last = view_;
   view_ = view;
   view_.toLight.w = static_cast<float>(scene_.lightCount());
+  std::ranges::copy(last.clipPlanes, view_.clipPlanes);
   std::memcpy(viewBuffer_.mapped(), &view_, sizeof(view_));
 }
 

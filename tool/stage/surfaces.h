@@ -70,7 +70,10 @@ class Surfaces {
   static std::vector<SurfaceRun> runsOf(std::span<const GpuDraw> draws);
   const std::vector<SurfaceRun>& transparentRuns() const { return transparentRuns_; }
 
-  // No frame is pending.
+  // Whether planes cut some of the scene away.
+  bool isClipped() const { return isClipped_; }
+
+  // Its clip planes are the scene's, whatever `view` says. No frame is pending.
   void setView(const shaders::FrameData& view);
   const shaders::FrameData& view() const { return view_; }
 
@@ -91,6 +94,7 @@ class Surfaces {
   GpuScene scene_;
   float pointSize_;
   std::vector<SurfaceRun> transparentRuns_;
+  bool isClipped_;
   shaders::FrameData view_{};
   GpuBuffer viewBuffer_; // shaders::FrameData
   SingleSet frameSet_;

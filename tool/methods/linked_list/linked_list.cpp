@@ -268,7 +268,10 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
 
 void LinkedList::setTarget(const MethodTarget& target) {
   if (media_) media_->setView(source_.view());
-  if (wanted_.color != VK_NULL_HANDLE && sameTarget(target, wanted_)) return makeSurfaces();
+  if (wanted_.color != VK_NULL_HANDLE && sameTarget(target, wanted_)) {
+    wanted_.onTile = target.onTile;
+    return makeSurfaces();
+  }
   releaseTarget();
   wanted_ = target;
   if (media_) media_->setTarget(target);
@@ -354,6 +357,7 @@ void LinkedList::drawTiles(Frame& frame) {
     check(resultOf(plan_.finish(stats)), "vitrailFinishTile");
     if (stats.fragmentsMissing == 0) add(stats); // else its parts come next
     expected_ = stats_.fragmentsRequested;
+    if (wanted_.onTile) wanted_.onTile(stats_.tiles);
   }
 }
 
