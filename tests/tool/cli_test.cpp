@@ -129,7 +129,7 @@ TEST(Cli, WrongUsageIsOneLineAndExitCode2) {
       {with({"--layers", "-1"}), "--layers"},
       {with({"--memory-budget", "0"}), "--memory-budget"},
       {with({"--memory-budget", "0.5"}), "--memory-budget"},
-      {with({"--method", "unsorted", "--nodes", "hdr"}), "unsorted has no choice"},
+      {with({"--method", "unsorted", "--nodes", "standard"}), "unsorted has no choice"},
       {with({"--method", "unsorted", "--layers", "4"}), "unsorted has no choice"},
       {with({"--method", "sorted", "--passes", "4"}), "sorted has no choice"},
       {with({"--method", "sorted-triangles", "--memory-budget", "4"}), "sorted-triangles has no choice"},

@@ -271,11 +271,6 @@ TEST(LoadPly, NormalsThatAreAllZeroAreMadeFromTheFaces) {
   expectNear(vertexAt(scene.meshes.at(0), 0).normal, {0.0F, 0.0F, 1.0F});
 }
 
-TEST(LoadPly, ColorsWithoutAnyAlphaAreNamed) {
-  const Scene scene = plyOf(triangle(rgb("uchar") + "property uchar alpha\n", {"1 1 1 0", "1 1 1 0", "1 1 1 0"}));
-  EXPECT_EQ(scene.warnings, Lines{"every colour has alpha 0: nothing of the model is seen"});
-}
-
 // Text keeps every digit, since float and double both hold them.
 TEST(LoadPly, NumbersOfText) {
   const auto x = [](const std::string& word) {

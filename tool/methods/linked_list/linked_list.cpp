@@ -115,6 +115,8 @@ class LinkedList final : public Method {
   bool createWholeTarget(std::uint64_t nodeCapacity);
   void countMemory();
   std::uint64_t wordsOf(std::uint64_t bytes) const;
+  // Whether the resolve makes the picture out of several samples.
+  bool writesEveryPixel() const { return options_.samples > 1 && !needs_.perSample; }
   void planTiles(std::span<const VitrailBounds> bounds);
   void drawTiles(Frame& frame);
   void drawCollecting(Frame& frame);
@@ -147,6 +149,7 @@ class LinkedList final : public Method {
   VitrailVkTargetDesc made_{}; // what target_ was made for; its pointers are not kept
   MethodTarget wanted_;
   std::uint64_t budget_ = 0;   // bytes for a tile
+  bool nothing_ = false;       // there is nothing transparent, and nothing that a resolve has to write
   bool inTiles_ = false;       // the next picture is
   bool wasInTiles_ = false;    // the present picture is
   std::uint64_t expected_ = 0; // the fragments of the last picture, 0 where that is not known
@@ -276,6 +279,8 @@ void LinkedList::setTarget(const MethodTarget& target) {
   wanted_ = target;
   if (media_) media_->setTarget(target);
   makeSurfaces();
+  nothing_ = !target.surfaces && !writesEveryPixel();
+  if (nothing_) return; // what a target would take, its kernels too, is spared
   expected_ = 0;
   budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
   const bool buildsAll = pipelines_.listBuild == VITRAIL_LIST_BUILD_FRAGMENT ||
@@ -335,7 +340,9 @@ void LinkedList::draw(Frame& frame) {
   stats_.tiles = 0;
   stats_.complete = true;
   coveredPixels_ = 0;
-  wasInTiles_ = inTiles_;
+  if (nothing_) stats_.tiles = 1;
+  wasInTiles_ = inTiles_ || nothing_; // what there was to count has been counted
+  if (nothing_) return;
   if (inTiles_) return drawTiles(frame);
   if (wanted_.memoryBudget) {
     check(target_.update(frame_ + 1), "vitrailVkUpdateTarget"); // frees the pool that grow() replaced
@@ -402,8 +409,8 @@ std::uint64_t LinkedList::wordsOf(std::uint64_t bytes) const {
 
 void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
   plan_ = TilePlan();
-  const bool everyPixel = options_.samples > 1 && !needs_.perSample; // is written by the resolve
-  if (bounds.empty() && !everyPixel) return;                         // nothing to draw
+  const bool everyPixel = writesEveryPixel();
+  if (bounds.empty() && !everyPixel) return; // nothing to draw
   VitrailTilePlanDesc desc{};
   desc.width = wanted_.extent.width;
   desc.height = wanted_.extent.height;

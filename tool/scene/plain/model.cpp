@@ -80,15 +80,6 @@ void addUnlitMesh(Scene& scene, Mesh mesh, Material material) {
   if (!mesh.indices.empty()) addDraw(scene, std::move(mesh), std::move(material));
 }
 
-void warnIfInvisible(Scene& scene) {
-  const auto invisible = [](const Mesh& mesh) {
-    return !mesh.colors.empty() &&
-           std::ranges::all_of(mesh.colors, [](std::uint64_t color) { return unpackColor(color).a <= 0.0F; });
-  };
-  if (!scene.meshes.empty() && std::ranges::all_of(scene.meshes, invisible))
-    warn(scene, "every colour has alpha 0: nothing of the model is seen");
-}
-
 TextureSlot TextureFiles::read(Scene& scene, const std::string& name) {
   TextureSlot slot;
   const auto known = images_.find(name);

@@ -36,9 +36,6 @@ void addPlainMesh(Scene& scene, Mesh mesh, NormalsFrom normals, Material materia
 // Adds a mesh of lines or points, which are not lit, likewise. One without any adds nothing.
 void addUnlitMesh(Scene& scene, Mesh mesh, Material material);
 
-// Warns where every vertex has a colour of alpha 0, as some programs write by mistake.
-void warnIfInvisible(Scene& scene);
-
 // Reads textures beside a model, each once. One that is missing or damaged gives no texture, and so the plain colour,
 // and a warning: such files are often passed on without their textures.
 class TextureFiles {

@@ -63,7 +63,6 @@ class PlyScene {
     if (!anyFace && data_.edges.empty()) addPoints();
     if (scene_.draws.empty() && data_.notFinite > 0)
       throw LoadError("everything in it has a vertex that is not finite");
-    warnIfInvisible(scene_);
     return std::move(scene_);
   }
 

@@ -167,7 +167,6 @@ void addFacets(Scene& scene, StlFacets facets, const FacetColors* colors) {
   const bool colored = takeVertices(mesh, facets.vertices.take(), colors);
   // Facets of two colours share places, but no vertices.
   addPlainMesh(scene, std::move(mesh), colored ? NormalsFrom::Places : NormalsFrom::OwnPlaces, plainMaterial(colored));
-  warnIfInvisible(scene);
 }
 
 // Reads with `read(origin)`: models that turn out to be far from their origin a second time, relative to their middle.
