@@ -320,7 +320,7 @@ void expectHostileColoursApart(Backend& backend, VitrailNodeFormat format, Vitra
       {2, 0, 0.5F, {kInfinity, 0.0F, 0.0F, 1.0F}},
       {3, 0, 0.5F, {-kInfinity, -1.0F, kInfinity, 7.0F}},
       {4, 0, 0.5F, {0.5F, 0.5F, 0.5F, -3.0F}},
-      {5, 0, 0.5F, {0.5F, 0.5F, 0.5F, 0.000007F}},
+      {5, 0, 0.5F, {0.5F, 0.5F, 0.5F, format == VITRAIL_NODE_HDR ? 5e-11F : 0.000007F}},
       {6, 0, 0.5F, {kNan, -1.0F, 0.0F, 0.0F}, VITRAIL_BLEND_PREMULTIPLIED},
       {7, 0, 0.5F, {0.0F, format != VITRAIL_NODE_HDR ? kFaint : 0.0F, 0.0F, 0.0F}, VITRAIL_BLEND_PREMULTIPLIED},
   };

@@ -76,8 +76,7 @@ const std::vector<MethodRow>& rows() {
       {.name = "linked-list",
        .exact = Exact::Everywhere,
        .orderFree = true,
-       .options = {"--nodes", "--resolve", "--msaa-resolve", "--layers", "--memory-budget"},
-       .nodes = VITRAIL_NODE_STANDARD},
+       .options = {"--nodes", "--resolve", "--msaa-resolve", "--layers", "--memory-budget"}},
       {.name = "unsorted", .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "sorted", .exact = Exact::ParallelPanes, .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "sorted-triangles", .exact = Exact::ParallelParts, .options = {}, .wrongWhereSurfacesCross = true},
@@ -524,7 +523,7 @@ TEST_P(MethodsTest, SeveralSamplesAreRightOrRefused) {
 TEST_P(MethodsTest, OptionsAreTakenOrRefused) {
   using Set = std::function<void(MethodOptions&)>;
   const std::vector<std::pair<std::string, Set>> choices = {
-      {"--nodes", [](MethodOptions& o) { o.nodes = VITRAIL_NODE_HDR; }},
+      {"--nodes", [](MethodOptions& o) { o.nodes = VITRAIL_NODE_STANDARD; }},
       {"--resolve", [](MethodOptions& o) { o.resolve = VITRAIL_RESOLVE_FRAGMENT; }},
       {"--msaa-resolve",
        [](MethodOptions& o) {

@@ -71,7 +71,7 @@ MethodOptions named(const std::string& name) {
 MethodOptions exactLists(const std::string& method = {}) {
   MethodOptions lists;
   lists.listBuild = VITRAIL_LIST_BUILD_FRAGMENT; // colours are rounded once
-  if (method != "a-buffer") lists.nodes = VITRAIL_NODE_HDR;
+  if (method == "a-buffer") lists.nodes = VITRAIL_NODE_STANDARD;
   return lists;
 }
 

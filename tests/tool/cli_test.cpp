@@ -262,12 +262,13 @@ struct Drawn {
 };
 
 // Draws a small picture with some options, under the validation layer.
-Drawn draw(const Words& options, const std::string& scene = "interlocked", const std::string& size = "96x64") {
+Drawn draw(const Words& options, const std::string& scene = "interlocked", const std::string& size = "96x64",
+           const std::string& background = "transparent") {
   std::string command;
   for (const std::string& option : options) command += " " + option;
   SCOPED_TRACE(scene + command);
   const TemporaryFolder folder;
-  Words arguments = {"render", "--scene", scene, "--size", size, "--background", "transparent", "--validate"};
+  Words arguments = {"render", "--scene", scene, "--size", size, "--background", background, "--validate"};
   arguments.insert(arguments.end(), {"-o", "a.png", "--json", "a.json"});
   arguments.insert(arguments.end(), options.begin(), options.end());
   const ProcessResult result = vitrail(folder, arguments);
@@ -419,8 +420,10 @@ TEST(Cli, UnsortedBlendsInTheOrderOfSubmission) {
     EXPECT_FALSE(passes.contains("collect")) << passes;
     EXPECT_GT(largestDifference(unsorted.png, exact.png), 20) << "the scene has no right order";
   }
-  // Where the order does not matter it is the same picture, up to the rounding of what is stored.
-  EXPECT_LE(largestDifference(draw({"--method", "unsorted"}, "flames").png, draw({"--nodes", "hdr"}, "flames").png), 1);
+  // Where the order does not matter it is the same picture, up to the rounding of what is stored: unsorted rounds the
+  // picture to 16-bit floats at each surface.
+  const auto flames = [](const Words& options) { return draw(options, "flames", "96x64", "#000000").png; };
+  EXPECT_LE(largestDifference(flames({"--method", "unsorted"}), flames({"--nodes", "hdr"})), 2);
 }
 
 // Sample counts are the device's: those of lavapipe are 1 and 4.

@@ -49,7 +49,9 @@ bool hasLists(const Measurement& measured) { return traitsOf(measured.options.na
 
 void addFloor(Measurement& measured, double bytesPerSecond) {
   if (!hasLists(measured) || !measured.report.counted || bytesPerSecond <= 0.0) return;
-  const std::uint64_t bytes = leastBytes(shapeOf(measured.report, measured.options.nodes));
+  const bool choice = traitsOf(measured.options.name).takes(kTakesNodes); // insertion has none: its nodes are these
+  const VitrailNodeFormat nodes = choice ? measured.options.nodes : VITRAIL_NODE_STANDARD;
+  const std::uint64_t bytes = leastBytes(shapeOf(measured.report, nodes));
   measured.floorBytes = bytes;
   measured.floorMs = static_cast<double>(bytes) / bytesPerSecond * 1e3;
   if (measured.costMs.median > 0.0) measured.bandwidthShare = *measured.floorMs / measured.costMs.median;

@@ -166,7 +166,7 @@ void ObjMaterials::setMetallicRoughnessTexture(Material& material) {
   Picture* const roughness = load(source_->roughnessMap, "map_Pr");
   Picture* const metallic = load(source_->metallicMap, "map_Pm");
   if (roughness == nullptr && metallic == nullptr) return;
-  const auto channelOf = [this](const Picture* picture, const MtlMap& map) {
+  const auto channelOf = [](const Picture* picture, const MtlMap& map) {
     return picture == nullptr ? '\0' : map.channel == '\0' ? 'l' : map.channel;
   };
   const char roughnessChannel = channelOf(roughness, source_->roughnessMap);
