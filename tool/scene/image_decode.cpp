@@ -129,7 +129,8 @@ std::string_view unreadKind(std::span<const std::byte> file) {
 Image decodeWithStb(std::span<const std::byte> file) {
   if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw LoadError("the image file is larger than 2 GiB");
-  if (startsWith(file, jpegSignature) && !hasSoundHuffmanTables(file))
+  // stb_image passes over any number of these bytes before a JPEG.
+  if (startsWith(file, "\xff") && !hasSoundHuffmanTables(file))
     throw LoadError("the image cannot be decoded: a Huffman table of the JPEG has too many symbols");
   const auto* bytes = reinterpret_cast<const stbi_uc*>(file.data());
   const int size = static_cast<int>(file.size());

@@ -118,6 +118,8 @@ bool convert(const draco::Mesh& mesh, const draco::PointAttribute& attribute, in
 // The attribute of each point, in the accessor's type.
 std::vector<std::byte> attributeBytes(const draco::Mesh& mesh, const draco::PointAttribute& attribute,
                                       const tinygltf::Accessor& accessor) {
+  // The library reads bytes as truth values, which damaged ones are not; glTF has no such attributes.
+  if (attribute.data_type() == draco::DT_BOOL) throw LoadError("the data are damaged (an attribute of truth values)");
   const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
   std::vector<std::byte> bytes;
   bool sound = false;
