@@ -65,6 +65,7 @@ int runProgram(int argc, char** argv) {
     return kUsage;
   }
   run();
+  if (std::fflush(stdout) != 0) return report(kFailed, "cannot write to standard output");
   return kDone;
 }
 

@@ -216,6 +216,8 @@ VITRAIL_API uint64_t vitrailNodePoolSize(VitrailNodeFormat format, uint32_t node
  * is not. HDR       0.56 + 0.007 * sqrt(layers): exact up to 3,900 layers STANDARD  1 + 255 * srgb(min(1, layers *
  * 0.5/255)): a surface as faint as half a step of alpha is lost, which shows where it is bright before darkness. Of
  * common pictures few pixels are off by more than 2. COMPACT   likewise, with its coarser steps of colour and alpha
+ * Fragments that are rounded to nothing are among the `layers` here, and not among VitrailStats::layersMax: with the
+ * last two formats a frame is never exact, and its bound is for fragments of at least half a step of alpha.
  * Derived in docs/resolve.md. */
 VITRAIL_API float vitrailNodeErrorBound(VitrailNodeFormat format, uint32_t samples, uint32_t layers);
 

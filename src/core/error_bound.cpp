@@ -30,9 +30,11 @@ float nodeErrorBound(std::uint32_t format, std::uint32_t samples, std::uint32_t 
   if (maxNodeIndexCount(format, samples) == 0) return static_cast<float>(kSteps);
   double bound = kPicture;
   if (layers > 0 && format == layout::VITRAIL_FORMAT_HDR) bound += 0.06 + 0.007 * std::sqrt(layers);
-  if (layers > 0 && format == layout::VITRAIL_FORMAT_STANDARD) bound = ofSteps(255.0, 255.0, layers);
-  if (layers > 0 && format == layout::VITRAIL_FORMAT_COMPACT)
-    bound = samples == 1 ? ofSteps(63.0, 31.0, layers) : ofSteps(31.0, 31.0, layers);
+  // Fragments that are rounded to nothing are not counted: where there seem to be none, there may be one.
+  const std::uint32_t least = std::max(layers, 1U);
+  if (format == layout::VITRAIL_FORMAT_STANDARD) bound = ofSteps(255.0, 255.0, least);
+  if (format == layout::VITRAIL_FORMAT_COMPACT)
+    bound = samples == 1 ? ofSteps(63.0, 31.0, least) : ofSteps(31.0, 31.0, least);
   return static_cast<float>(std::min(bound, kSteps));
 }
 

@@ -172,6 +172,9 @@ void runBench(const CLI::App& command, BenchArguments arguments) {
   std::optional<OutputFolder> folder;
   if (!arguments.json.empty()) jsonFile.emplace(arguments.json);
   if (!arguments.csv.empty()) csvFile.emplace(arguments.csv);
+  const std::vector<std::string> read{arguments.model};
+  if (jsonFile) checkNotRead(*jsonFile, read);
+  if (csvFile) checkNotRead(*csvFile, read);
   if (jsonFile && csvFile && jsonFile->isSameAs(*csvFile)) {
     throw UsageError("--json and --csv name one file: give each its own");
   }

@@ -44,7 +44,7 @@ What grows, step by step (one scene, default spheres):
 What to compare with method unsorted, which is always measured:
   --methods NAME,...    methods of vitrail render (default: all)
   --nodes F,...         node formats of methods that have a choice: standard, compact, hdr
-                        (default standard)
+                        (default hdr)
   --samples N,...       1, 2, 4, 8 (default 1)
   --resolve R,...       resolves of such methods: compute, fragment (default: the library's choice)
   --list-build L,...    list builds of such methods: fragment, compute (default: the library's choice)

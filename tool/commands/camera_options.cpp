@@ -172,8 +172,11 @@ View viewOf(const CameraArguments& arguments, const Scene& scene, float aspect, 
                          : fmt::format("--camera {}: this scene has cameras 0 to {}", *arguments.camera, cameras - 1));
   }
   if (arguments.eye) return lookFrom(scene, chosenLook(arguments, scene));
-  const bool hasItsOwn = cameras > 0 && isOneFile && !arguments.orbit && !arguments.fov;
-  return hasItsOwn ? viewOf(scene.cameras.front()) : frameScene(scene, chosenOrbit(arguments), aspect);
+  const bool hasItsOwn = cameras > 0 && isOneFile && !arguments.orbit;
+  if (!hasItsOwn) return frameScene(scene, chosenOrbit(arguments), aspect);
+  View view = viewOf(scene.cameras.front());
+  if (arguments.fov) view.verticalFov = glm::radians(*arguments.fov);
+  return view;
 }
 
 std::vector<View> turntableOf(const CameraArguments& arguments, const Scene& scene, float aspect, std::uint32_t count) {

@@ -92,6 +92,7 @@ void compareOnDevice(const CompareArguments& arguments) {
   std::optional<OutputFile> report;
   std::optional<OutputFolder> folder;
   if (!arguments.json.empty()) report.emplace(arguments.json);
+  if (report) checkNotRead(*report, arguments.models);
   if (!arguments.folder.empty()) folder.emplace(arguments.folder);
   if (folder) folder->check(namesInFolder(arguments.methods));
   if (folder && report) checkApart(*folder, namesInFolder({}), "--json", *report);

@@ -13,6 +13,8 @@
 #include <string>
 #include <utility>
 
+#include "errors.h"
+
 namespace vitrail::tool {
 
 namespace {
@@ -81,6 +83,8 @@ void writeAll(int file, std::span<const std::byte> content, const fs::path& path
 } // namespace
 
 OutputFile::OutputFile(fs::path path) : path_(std::move(path)), target_(path_) {
+  isStandardOutput_ = isSpecial_ = path_ == "-";
+  if (isSpecial_) return;
   std::error_code error;
   const fs::file_status status = fs::status(path_, error);
   if (fs::is_directory(status)) fail(path_, "it is a folder");
@@ -128,7 +132,20 @@ int OutputFile::create() {
 bool OutputFile::isSameAs(const OutputFile& other) const {
   std::error_code error;
   const auto place = [&](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path, error), error); };
+  if (isStandardOutput_ && other.isStandardOutput_) return true;
   return !isSpecial_ && !other.isSpecial_ && place(target_) == place(other.target_);
+}
+
+bool OutputFile::overwrites(const std::filesystem::path& file) const {
+  std::error_code error;
+  return !isSpecial_ && fs::equivalent(target_, file, error) && !error;
+}
+
+void checkNotRead(const OutputFile& output, std::span<const std::string> files) {
+  for (const std::string& file : files) {
+    if (!output.overwrites(file)) continue;
+    throw UsageError(fmt::format("{}: a file that is read would be written over: choose another name", output.name()));
+  }
 }
 
 void OutputFile::commit() {

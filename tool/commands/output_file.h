@@ -13,7 +13,7 @@ namespace vitrail::tool {
 class OutputFile {
  public:
   // Checks that the file can be made, so that nobody waits for a picture that cannot be kept: throws
-  // std::runtime_error with a one-line reason.
+  // std::runtime_error with a one-line reason. "-" is standard output.
   explicit OutputFile(std::filesystem::path path);
   // What this program was started with as standard output.
   static OutputFile standardOutput();
@@ -38,7 +38,10 @@ class OutputFile {
   // What messages call it.
   [[nodiscard]] std::string name() const { return isStandardOutput_ ? "standard output" : path_.string(); }
 
-  // Whether both would write one regular file, under whatever names.
+  // Whether this would write over that file, under whatever name.
+  [[nodiscard]] bool overwrites(const std::filesystem::path& file) const;
+
+  // Whether both would write one regular file, under whatever names, or standard output.
   [[nodiscard]] bool isSameAs(const OutputFile& other) const;
 
  private:
@@ -52,6 +55,9 @@ class OutputFile {
   struct Standard {};
   explicit OutputFile(Standard /*output*/) : isSpecial_(true), isStandardOutput_(true) {}
 };
+
+// Throws UsageError where an output would be written over one of the files that are read.
+void checkNotRead(const OutputFile& output, std::span<const std::string> files);
 
 // Has a signal remove a folder too, where it is empty by then. Watch it before the files in it.
 void watchFolder(const std::filesystem::path& folder);

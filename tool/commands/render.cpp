@@ -91,9 +91,10 @@ std::vector<NamedFrame> renderTurn(Job& job, TurntableOutput& output) {
   return frames;
 }
 
-// Why all pictures are empty goes to the warnings, which are told.
-std::vector<std::string> warn(const Job& job, bool isEmpty) {
+// Tells the warnings: of the scene, of how it was drawn, and why all pictures are empty, if they are.
+std::vector<std::string> warn(const Job& job, const std::vector<std::string>& drawn, bool isEmpty) {
   std::vector<std::string> warnings = job.warnings;
+  warnings.insert(warnings.end(), drawn.begin(), drawn.end());
   if (isEmpty) warnings.push_back(job.emptyWarning);
   job.progress.show("");
   reportWarnings(warnings, job.arguments);
@@ -116,12 +117,13 @@ void runStill(const RenderArguments& arguments, std::optional<OutputFile>& repor
         "standard output is a terminal: send the picture to a program, as in -o - | display, or name a file");
   }
   OutputFile picture = isStandardOutput(arguments) ? OutputFile::standardOutput() : OutputFile(arguments.output);
+  checkNotRead(picture, arguments.models);
   if (report && report->isSameAs(picture)) throw UsageError("-o and --json name the same file");
 
   const Progress progress(!arguments.quiet, Progress::Shown::AfterASecond);
   Job job = prepare(arguments, progress);
   RenderResult result = renderOne(job);
-  result.report.warnings = warn(job, result.isEmpty);
+  result.report.warnings = warn(job, result.report.warnings, result.isEmpty);
   progress.show("writing");
   const std::vector<std::byte> bytes = encodePicture(result, job.format);
   const std::string json = toJson(result.report);
@@ -142,7 +144,7 @@ void runTurn(const RenderArguments& arguments, std::optional<OutputFile>& report
   // What is known before the first picture: the files of a turn appear one by one.
   if (arguments.strict) reportWarnings(job.warnings, arguments);
   const std::vector<NamedFrame> frames = renderTurn(job, output);
-  const std::vector<std::string> warnings = warn(job, output.isEmpty());
+  const std::vector<std::string> warnings = warn(job, frames.front().report.warnings, output.isEmpty());
   const std::string json = toJson(frames, warnings);
   if (report) report->write(std::as_bytes(std::span(json)));
   output.finish();
@@ -154,6 +156,7 @@ void runRender(const RenderArguments& arguments) {
   checkRenderArguments(arguments);
   std::optional<OutputFile> report;
   if (!arguments.json.empty()) report.emplace(arguments.json);
+  if (report) checkNotRead(*report, arguments.models);
   arguments.turntable ? runTurn(arguments, report) : runStill(arguments, report);
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "../scene/message.h"
 #include "../scene/volume.h"
 #include "method.h"
 
@@ -197,7 +198,15 @@ std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions&
   const MethodOptions defaults;
   const bool cut = !scene.clipPlanes.empty();
   const bool walks = options.name == defaults.name && options.maxLayers == 0;
-  if ((walks && !cut) || !Solids(scene, false).any()) return {};
+  const Solids solids(scene, false);
+  if (walks && !cut && solids.open()) {
+    const std::uint32_t material = *solids.open();
+    return {
+        fmt::format("{}: an object of it is not closed, so that light is absorbed there by the file's thickness, not "
+                    "by its true way",
+                    objectName("material", material, scene.materials[material].name))};
+  }
+  if ((walks && !cut) || !solids.any()) return {};
   if (cut) return {"volumes are attenuated by the file's thickness, not by the true path: --clip-plane cuts them open"};
   return {options.name == defaults.name
               ? "volumes are attenuated by the file's thickness, not by the true path: leave --layers out"

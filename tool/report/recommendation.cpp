@@ -38,7 +38,7 @@ struct Run {
 // A setting's name: its sample count is the step of a sweep over samples.
 std::string nameOf(const Measurement& measured) { return describeWithoutSamples(measured.options); }
 
-bool isExact(const Measurement& measured) { return measured.report.complete; }
+bool isExact(const Measurement& measured) { return isExact(measured.report); }
 
 // A promise rather than what the frames happened to hold: no frame has too many layers for it.
 bool isAlwaysExact(const Measurement& measured) {

@@ -67,6 +67,19 @@ bool plausiblePng(std::span<const std::byte> file, std::uint64_t pixels) {
   return pixels * depth * channels / 8 / 1032 <= file.size();
 }
 
+// Whether all chunks of a PNG lie within the file: the decoder takes memory for one as long as it says that it is.
+bool pngChunksFit(std::span<const std::byte> file) {
+  constexpr std::size_t frame = 12; // length, kind and checksum
+  for (std::size_t i = pngSignature.size(); file.size() - i >= frame;) {
+    std::size_t length = 0;
+    for (std::size_t byte = 0; byte < 4; ++byte) length = length << 8U | std::to_integer<std::size_t>(file[i + byte]);
+    if (length > file.size() - i - frame) return false;
+    if (startsWith(file.subspan(i + 4), "IEND")) return true;
+    i += frame + length;
+  }
+  return true;
+}
+
 LoadError tooLarge(std::int64_t width, std::int64_t height, std::size_t fileSize) {
   return LoadError(
       fmt::format("the image states {} x {} pixels, but its file has only {} bytes", width, height, fileSize));
@@ -129,6 +142,7 @@ std::string_view unreadKind(std::span<const std::byte> file) {
 Image decodeWithStb(std::span<const std::byte> file) {
   if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw LoadError("the image file is larger than 2 GiB");
+  if (isPng(file) && !pngChunksFit(file)) throw LoadError("the image cannot be decoded: the PNG is cut off");
   // stb_image passes over any number of these bytes before a JPEG.
   if (startsWith(file, "\xff") && !hasSoundHuffmanTables(file))
     throw LoadError("the image cannot be decoded: a Huffman table of the JPEG has too many symbols");

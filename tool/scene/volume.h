@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "scene.h"
@@ -21,7 +22,8 @@ enum class Facing : std::uint8_t {
 };
 
 // A mesh is closed where each edge is as often passed from a to b as from b to a, places being the same where their
-// coordinates are: then every ray enters it as often as it leaves it. Vertices may be shared or not.
+// coordinates are, to within a 4096th of the mesh: then every ray enters it as often as it leaves it. Vertices may be
+// shared or not.
 Facing facingOf(const Mesh& mesh);
 
 // What of a scene encloses a volume that absorbs light.
@@ -39,6 +41,8 @@ class Solids {
     return any_ && absorbing_[material] ? meshes_[mesh] : Facing::Open;
   }
   bool any() const { return any_; }
+  // The first material whose volume some open mesh shows, if any: no true way through it is known.
+  std::optional<std::uint32_t> open() const { return open_; }
   // The box around such a mesh, in its own space: it is known here when the mesh itself is let go of.
   const Bounds& boxOf(std::uint32_t mesh) const { return boxes_[mesh]; }
 
@@ -47,6 +51,7 @@ class Solids {
   std::vector<Facing> meshes_;  // those that are not shown with an absorbing material are not looked at
   std::vector<Bounds> boxes_;   // by mesh, of those that are closed
   bool any_ = false;
+  std::optional<std::uint32_t> open_;
 };
 
 } // namespace vitrail::tool
