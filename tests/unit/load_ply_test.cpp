@@ -334,6 +334,16 @@ TEST(LoadPly, FilesThatAreCutOffAreDrawnAsFarAsTheyGo) {
   EXPECT_EQ(cut.warnings, Lines{"the file ends in vertex 3 of 3: what is there before is drawn"});
   EXPECT_EQ(plyOf(points("4000000000")).meshes.at(0).indices.size(), 3U);
 
+  std::string damaged = withoutLast(points("3"), 1);
+  damaged.replace(damaged.size() - 35, 4, "\x7e\x7e\x7e\x7e");
+  try {
+    plyOf(damaged);
+    ADD_FAILURE();
+  } catch (const LoadError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "the file ends in vertex 3 of 3, and what is there before reaches farther than 1e+15: it is damaged");
+  }
+
   const Scene number = plyOf("ply\nformat ascii 1.0\nelement vertex 2\n" + places + "end_header\n0 0 0\n1 0 -");
   EXPECT_EQ(number.meshes.at(0).indices.size(), 1U);
   const std::string facesFirst =

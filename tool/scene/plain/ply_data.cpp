@@ -101,6 +101,11 @@ class PlyReader {
     });
     const bool drawable = anything ? data_.positions.size() == vertexCount_ : pointsAlone && !data_.positions.empty();
     if (!drawable) throw LoadError(body_.end());
+    // Bytes that were lost or changed on the way, as line ends are, leave numbers that are none.
+    constexpr double farthest = 1e15;
+    const glm::dvec3 far = glm::max(glm::abs(data_.bounds.min), glm::abs(data_.bounds.max));
+    if (std::max({far.x, far.y, far.z}) > farthest)
+      throw LoadError(body_.end() + ", and what is there before reaches farther than 1e+15: it is damaged");
     data_.warnings.push_back(body_.end() + ": what is there before is drawn");
   }
 
