@@ -1510,7 +1510,7 @@ def write_bad():
     corners = b"0 0 0\n1 0 0\n0 1 0\n"
     three = f"element vertex 3\n{xyz}"
     ply("vertex_count_2_64", f"{ascii_format}element vertex 18446744073709551615\n{xyz}", corners)
-    ply("vertex_count_large", f"{little}element vertex 4000000000\n{xyz}", b"\0" * 36)
+    ply("vertex_count_large", f"{little}element vertex 4000000000\n{xyz}element face 1\n{face}", b"\0" * 36)
     ply("vertex_count_negative", f"{ascii_format}element vertex -3\n{xyz}", corners)
     ply("vertex_truncated", f"{little}{three}element face 1\n{face}", struct.pack("<8f", *TRIANGLE[:8]))
     ply("vertex_nan", f"{ascii_format}{three}element face 1\n{face}", b"0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n")

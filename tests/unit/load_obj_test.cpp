@@ -207,6 +207,25 @@ TEST(LoadObj, StatementsThatAreLeftOutAreNamed) {
 
 // ---- Shapes
 
+TEST(LoadObj, VerticesThatAreNotFiniteAreLeftOutWithWhatTheyAreOf) {
+  for (const std::string word : {"nan", "-inf", "1.#QNAN", "1e999", "1e39"}) {
+    SCOPED_TRACE(word);
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 " + word + " 0\n";
+    const Scene scene = load(vertices + "f 1 2 3\nf 2 3 4\nl 1 4\nl 1 2\np 1 4\n");
+    EXPECT_EQ(scene.meshes.at(0).indices.size(), 3U);
+    EXPECT_EQ(scene.warnings,
+              Lines{"left out, since a vertex is not finite: 1 of 2 faces, 1 of 2 lines, 1 of 2 points"});
+    const Scene cloud = load(vertices);
+    EXPECT_EQ(cloud.meshes.at(0).indices.size(), 3U);
+    EXPECT_EQ(cloud.warnings, Lines{"left out, since a vertex is not finite: 1 of 4 points"});
+  }
+  EXPECT_EQ(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nf 1 2 3\n").warnings, Lines{}) << "of nothing";
+}
+
+TEST(LoadObj, ZerosAtTheEndAreNoStatement) {
+  EXPECT_EQ(load("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + std::string(9, '\0')).warnings, Lines{});
+}
+
 TEST(LoadObj, LinesAndPointsBecomeMeshesOfTheirKind) {
   const Scene scene = load(quad + "usemtl a\nf 1 2 3\nl 1 2 3\nl -1 -2\np 1 4\nusemtl b\nl 2/1 3/1\n");
   ASSERT_EQ(scene.meshes.size(), 4U);
@@ -380,9 +399,24 @@ TEST(ReadMtl, SaysWhatIsNotDrawn) {
       "disp d.png\nKa 1 1 1\nsharpness 60\naniso 0\nanisor 0.5\n");
   EXPECT_EQ(library.find("b")->dissolve, 0.25F);
   EXPECT_EQ(library.warnings,
-            (Lines{"d -halo is drawn as d: what should fade towards its edges is as opaque everywhere",
-                   "map_Ns of the material \"a\" is not drawn: its surfaces are as rough everywhere",
+            (Lines{"d -halo is drawn as d: what should fade towards its edges is equally opaque everywhere",
+                   "map_Ns of the material \"a\" is not drawn: its surfaces are equally rough everywhere",
                    "disp of the material \"b\" is not drawn: its surfaces lack that relief"}));
+}
+
+TEST(ReadMtl, NumbersMayHaveDecimalCommas) {
+  EXPECT_EQ(opacityIn("newmtl a\nd 0,5\n"), 0.5F);
+  const MtlLibrary library = readMtl("newmtl a\nKd 0,25, 0.5, 1\n");
+  EXPECT_EQ(library.find("a")->diffuse, glm::vec3(0.25F, 0.5F, 1.0F));
+}
+
+TEST(ReadMtl, SaysWhichColorsAreNotRead) {
+  const MtlLibrary library =
+      readMtl("newmtl a\nKd xyz 0.5 0.5 0.5\nmap_Ka a.png\nnewmtl b\nKd spectral b.rfl\nmap_Ka b.png\nKa xyz 1 1 1\n");
+  EXPECT_EQ(library.warnings,
+            (Lines{"a colour stated as xyz is not read: material \"a\" has the default one",
+                   "map_Ka of the material \"a\" is not drawn: its surfaces are lit by their surroundings without that "
+                   "picture"}));
 }
 
 TEST(ReadMtl, OptionsOfPicturesAndNamesWithSpaces) {

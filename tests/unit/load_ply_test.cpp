@@ -293,5 +293,91 @@ TEST(LoadPly, NumbersOfText) {
   EXPECT_THROW(x("+-1"), LoadError);
 }
 
+std::string withoutLast(const std::string& text, std::size_t bytes) { return text.substr(0, text.size() - bytes); }
+
+const std::string places = "property float x\nproperty float y\nproperty float z\n";
+
+TEST(LoadPly, CornersOfFacesHaveManyNames) {
+  const auto file = [](const std::string& element, const std::string& lists, const std::string& values) {
+    return "ply\nformat ASCII 1.0\nelement vertex 3\n" + places + "element " + element + " 1\n" + lists +
+           "end_header\n0 0 0\n1 0 0\n0 1 0\n" + values + "\n";
+  };
+  for (const std::string& name : Lines{"vertex_indexes", "indices", "corners"}) {
+    const Scene scene = plyOf(file("Polygons", "property list uchar int " + name + "\n", "3 0 1 2"));
+    EXPECT_EQ(scene.meshes.at(0).primitive, Primitive::Triangles) << name;
+    EXPECT_EQ(scene.warnings, Lines{}) << name;
+  }
+  const std::string several = "property list uchar int one\nproperty list uchar int other\n";
+  EXPECT_EQ(plyOf(file("face", several, "3 0 1 2 3 0 1 2")).warnings,
+            Lines{"left out: 1 elements named face, since none of their lists is known to hold their vertices"});
+  EXPECT_EQ(plyOf(file("patch", several, "3 0 1 2 3 0 1 2")).warnings,
+            Lines{"left out: 1 elements named patch, since it is not known what their lists are"});
+  const std::string indices = "property list uchar int other\nproperty list uchar int indices\n";
+  EXPECT_EQ(plyOf(file("face", indices, "1 9 3 0 1 2")).meshes.at(0).indices.size(), 3U);
+}
+
+TEST(LoadPly, FilesThatAreCutOffAreDrawnAsFarAsTheyGo) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\n" + places +
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+  const Scene faces = plyOf(header + "3 0 1 2\n3 0 1");
+  EXPECT_EQ(faces.meshes.at(0).indices.size(), 3U);
+  EXPECT_EQ(faces.warnings, Lines{"the file ends in face 2 of 2: what is there before is drawn"});
+  EXPECT_THROW(plyOf(header + "3 0 1"), LoadError) << "vertices alone do not show a model of faces";
+
+  const auto points = [](const std::string& count) {
+    return "ply\nformat binary_little_endian 1.0\nelement vertex " + count + "\n" + places + "end_header\n" +
+           std::string(36, '\0');
+  };
+  const Scene cut = plyOf(withoutLast(points("3"), 1));
+  EXPECT_EQ(cut.meshes.at(0).indices.size(), 2U);
+  EXPECT_EQ(cut.warnings, Lines{"the file ends in vertex 3 of 3: what is there before is drawn"});
+  EXPECT_EQ(plyOf(points("4000000000")).meshes.at(0).indices.size(), 3U);
+
+  std::string damaged = withoutLast(points("3"), 1);
+  damaged.replace(damaged.size() - 35, 4, "\x7e\x7e\x7e\x7e");
+  try {
+    plyOf(damaged);
+    ADD_FAILURE();
+  } catch (const LoadError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "the file ends in vertex 3 of 3, and what is there before reaches farther than 1e+15: it is damaged");
+  }
+
+  const Scene number = plyOf("ply\nformat ascii 1.0\nelement vertex 2\n" + places + "end_header\n0 0 0\n1 0 -");
+  EXPECT_EQ(number.meshes.at(0).indices.size(), 1U);
+  const std::string facesFirst =
+      "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "element vertex 3\n" +
+      places + "end_header\n3 0 1 2\n0 0 0\n1 0 0\n";
+  EXPECT_THROW(plyOf(facesFirst), LoadError);
+  EXPECT_EQ(plyOf(facesFirst + "0 1 0\n").meshes.at(0).indices.size(), 3U);
+}
+
+TEST(LoadPly, AlphaWithoutColorsIsThatOfThePlainColor) {
+  const Scene vertices = plyOf(triangle("property uchar alpha\n", {"51", "51", "51"}));
+  const glm::vec4 color = cornerAt(vertices.meshes.at(0), 0).color;
+  expectNear(glm::vec3(color), glm::vec3(0.8F), 2e-3F);
+  EXPECT_NEAR(color.a, 0.2F, 1e-3F);
+  EXPECT_EQ(vertices.materials.at(0).alphaMode, AlphaMode::Blend);
+  const Scene faces = plyOf(triangle("", {"", "", ""}, "property float alpha\n", "0.25"));
+  EXPECT_NEAR(cornerAt(faces.meshes.at(0), 0).color.a, 0.25F, 1e-3F);
+  const Scene both = plyOf(triangle("property uchar alpha\n", {"51", "51", "51"}, rgb("uchar"), "255 0 0"));
+  expectNear(glm::vec3(cornerAt(both.meshes.at(0), 0).color), {1.0F, 0.0F, 0.0F}, 1e-3F);
+  EXPECT_EQ(both.warnings, Lines{"the alpha of vertices is not drawn: the colours of faces are"});
+}
+
+TEST(LoadPly, LinesOfTextMayHoldMoreThanIsStated) {
+  const Scene scene = plyOf(triangle("", {"7 7", "7 7", "7 7"}, "", "255 0 0"));
+  expectNear(cornerAt(scene.meshes.at(0), 1).position, {1.0F, 0.0F, 0.0F});
+  EXPECT_EQ(scene.warnings, Lines{"passed over: what 4 lines hold behind the values that the header states"});
+  std::string oneLine = triangle("", {"", "", ""});
+  std::replace(oneLine.begin() + static_cast<std::ptrdiff_t>(oneLine.find("end_header") + 11), oneLine.end(), '\n',
+               ' ');
+  const Scene joined = plyOf(oneLine);
+  expectNear(cornerAt(joined.meshes.at(0), 1).position, {1.0F, 0.0F, 0.0F});
+  EXPECT_EQ(joined.warnings, Lines{});
+}
+
 } // namespace
 } // namespace vitrail::tool::test

@@ -139,5 +139,25 @@ TEST(LoadStl, TextIsReadInPartsAsInOne) {
   }
 }
 
+TEST(LoadStl, FilesThatAreCutOffInTheirLastFacetAreDrawnWithoutIt) {
+  const std::string facet =
+      "facet normal 0 0 1\nouterloop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  for (const std::string& end : Lines{"facet normal 0", "facet\nouter loop\nvertex 0 0 1\nvertex 1",
+                                      "facet\nouter loop\nvertex 0 0 1\nvertex 1 0 -"}) {
+    const Scene scene = stlOf("solid a\n" + facet + end);
+    EXPECT_EQ(scene.meshes.at(0).indices.size(), 3U) << end;
+    EXPECT_EQ(scene.warnings, Lines{"the file ends inside a facet: the 1 before it are drawn"}) << end;
+  }
+  EXPECT_EQ(stlOf("solid a\n" + facet + "endsolid a\n").warnings, Lines{});
+  std::string binary(80, ' ');
+  binary += std::string("\2\0\0\0", 4) + std::string(99, '\0');
+  const std::string one("\0\0\x80\x3f", 4);
+  binary.replace(84 + 24, 4, one);
+  binary.replace(84 + 40, 4, one);
+  const Scene scene = stlOf(binary);
+  EXPECT_EQ(scene.meshes.at(0).indices.size(), 3U);
+  EXPECT_EQ(scene.warnings, Lines{"the STL header states 2 facets, but the file has room for 1: those are drawn"});
+}
+
 } // namespace
 } // namespace vitrail::tool::test

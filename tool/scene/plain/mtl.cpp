@@ -14,16 +14,25 @@
 namespace vitrail::tool {
 namespace {
 
+// Decimals may follow a comma, and a comma the number.
+bool parseMtlNumber(std::string_view word, float& value) {
+  if (parseFloat(word, value)) return true;
+  std::string text(word);
+  if (text.ends_with(',')) text.pop_back();
+  if (std::ranges::count(text, ',') == 1 && text.find('.') == std::string::npos) std::ranges::replace(text, ',', '.');
+  return !text.empty() && parseFloat(text, value);
+}
+
 std::optional<float> readNumber(TextLines& lines) {
   float value = 0.0F;
-  if (!parseFloat(lines.word(), value)) return std::nullopt;
+  if (!parseMtlNumber(lines.word(), value)) return std::nullopt;
   return value;
 }
 
 bool nextIsNumber(const TextLines& lines) {
   const std::string_view rest = lines.rest();
   float number = 0.0F;
-  return parseFloat(rest.substr(0, rest.find_first_of(" \t")), number);
+  return parseMtlNumber(rest.substr(0, rest.find_first_of(" \t")), number);
 }
 
 // One number stands for all three. None for other ways to state a colour, such as a spectral curve.
@@ -90,7 +99,13 @@ class MtlReader {
                                       : word == "tf" ? &material_->filter
                                                      : nullptr;
     if (color == nullptr) return false;
-    if (const auto value = readColor(lines_)) *color = value;
+    const std::string way = lowerCase(lines_.rest());
+    if (const auto value = readColor(lines_))
+      *color = value;
+    else if (way.starts_with("xyz") || way.starts_with("spectral"))
+      warn(fmt::format("a colour stated as {} is not read: material \"{}\" has the default one",
+                       way.starts_with("xyz") ? "xyz" : "spectral", oneLine(material_->name)),
+           "xyz or spectral");
     return true;
   }
 
@@ -114,7 +129,7 @@ class MtlReader {
     if (found == numbers.end()) return false;
     if (lines_.rest().starts_with("-halo")) {
       lines_.word();
-      warn("d -halo is drawn as d: what should fade towards its edges is as opaque everywhere");
+      warn("d -halo is drawn as d: what should fade towards its edges is equally opaque everywhere");
     }
     if (const auto value = readNumber(lines_)) *found->second = value;
     return true;
@@ -172,16 +187,17 @@ class MtlReader {
   }
 
   void readOther(std::string_view word, std::string_view written) {
-    constexpr std::array<std::pair<std::string_view, const char*>, 10> lost{
-        {{"map_ks", "the highlights of its surfaces are the same everywhere"},
-         {"map_ns", "its surfaces are as rough everywhere"},
+    constexpr std::array<std::pair<std::string_view, const char*>, 11> lost{
+        {{"map_ka", "its surfaces are lit by their surroundings without that picture"},
+         {"map_ks", "the highlights of its surfaces are the same everywhere"},
+         {"map_ns", "its surfaces are equally rough everywhere"},
          {"map_ps", "its surfaces lack that part of their rim"},
          {"map_refl", "its surfaces lack that reflection"},
          {"refl", "its surfaces lack that reflection"},
          {"disp", "its surfaces lack that relief"},
          {"map_disp", "its surfaces lack that relief"},
          {"decal", "its surfaces lack that picture"},
-         {"map_tr", "its surfaces are as opaque everywhere"},
+         {"map_tr", "its surfaces are equally opaque everywhere"},
          {"aniso", "its highlights are round"}}};
     const auto* found = std::ranges::find(lost, word, &std::pair<std::string_view, const char*>::first);
     if (found == lost.end() || !lines_.more() || lines_.rest().starts_with("0 ") || lines_.rest() == "0") return;

@@ -55,6 +55,8 @@ class ObjReader {
       addUnlitMesh(scene_, maker.cloud(), plainMaterial(!text_.colors.empty()));
     if (maker.hasSlivers()) warn(scene_, "faces of fewer than three corners are left out");
     reportUndefined();
+    if (scene_.draws.empty() && text_.notFinite > 0)
+      throw LoadError("everything in it has a vertex that is not finite");
     requireDrawable(scene_);
     return std::move(scene_);
   }

@@ -10,7 +10,8 @@
 
 namespace vitrail::tool::obj {
 
-inline bool isBlank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+// Zeros are what some files are padded with.
+inline bool isBlank(char c) { return c == ' ' || (c >= '\t' && c <= '\r') || c == '\0'; }
 
 // Walks over the lines of a text. One that ends in a backslash goes on in the next.
 class Lines {

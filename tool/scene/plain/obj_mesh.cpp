@@ -2,6 +2,7 @@
 #include "obj_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -38,7 +39,8 @@ Mesh ObjMeshMaker::points(const std::vector<ObjRun>& runs) {
   begin(0);
   raw_.mesh.primitive = Primitive::Points;
   forEach(runs, objPoints, [this](const ObjCorner* corner, std::uint32_t count) {
-    for (std::uint32_t i = 0; i < count; ++i) addIndices({vertexOf(corner[i])});
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (text_.isFinite(corner[i])) addIndices({vertexOf(corner[i])});
   });
   return end().mesh;
 }
@@ -49,7 +51,7 @@ Mesh ObjMeshMaker::cloud() {
   for (std::size_t i = 0; i < text_.positions.size(); ++i) {
     ObjCorner corner;
     corner.position = static_cast<std::int32_t>(i);
-    addIndices({vertexOf(corner)});
+    if (text_.isFinite(corner)) addIndices({vertexOf(corner)});
   }
   return end().mesh;
 }
@@ -153,6 +155,7 @@ glm::dvec3 originOfObj(const ObjText& text) {
   glm::dvec3 min(infinity);
   glm::dvec3 max(-infinity);
   const auto include = [&](const glm::dvec3& position) {
+    if (std::isnan(position.x)) return;
     min = glm::min(min, position);
     max = glm::max(max, position);
   };

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -47,7 +48,7 @@ class ObjMeshMaker {
       const ObjElements& elements = text_.parts[run.part].elements[kind];
       const ObjCorner* corner = elements.corners.data() + run.firstCorner;
       for (std::size_t i = run.first; i < run.first + run.count; ++i) {
-        visit(corner, elements.sizes[i]);
+        if (kind == objPoints || text_.isFinite(std::span(corner, elements.sizes[i]))) visit(corner, elements.sizes[i]);
         corner += elements.sizes[i];
       }
     }

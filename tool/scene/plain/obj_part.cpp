@@ -8,6 +8,7 @@
 
 #include "../message.h"
 #include "number.h"
+#include "number_or_nan.h"
 
 namespace vitrail::tool::obj {
 
@@ -71,17 +72,25 @@ std::optional<double> PartReader::tryNumber(std::string_view& line) const {
   return value;
 }
 
-double PartReader::number(std::string_view& line) const {
+double PartReader::coordinate(std::string_view& line) const {
   if (!more(line)) fail("a number is missing");
   const std::string_view before = line;
   if (const auto value = tryNumber(line)) return *value;
   std::string_view rest = before;
-  fail(fmt::format("{} is not a finite number", oneLine(takeWord(rest))));
+  const std::string_view word = takeWord(rest);
+  double value = 0.0;
+  if (parseNumberOrNan(word.data(), word.data() + word.size(), value) == word.data() + word.size())
+    return std::numeric_limits<double>::quiet_NaN();
+  fail(fmt::format("{} is not a finite number", oneLine(word)));
 }
 
 void PartReader::readPosition(std::string_view line) {
   glm::dvec3 position;
-  for (int c = 0; c < 3; ++c) position[c] = number(line);
+  for (int c = 0; c < 3; ++c) position[c] = coordinate(line);
+  if (std::isnan(position.x) || std::isnan(position.y) || std::isnan(position.z)) {
+    position = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    ++notFinite;
+  }
   positions.push_back(position);
   if (!more(line)) return;
   glm::vec4 color(1.0F);

@@ -68,8 +68,9 @@ class PartReader {
   void read();
 
   ObjPart part;
-  std::vector<glm::dvec3> positions;
-  std::vector<glm::vec4> colors; // as they stand in the file; may be fewer than the positions
+  std::vector<glm::dvec3> positions; // of NaN where one is not finite
+  std::size_t notFinite = 0;         // how many are not
+  std::vector<glm::vec4> colors;     // as they stand in the file; may be fewer than the positions
   std::vector<glm::vec2> texCoords;
   std::vector<glm::vec3> normals;
   std::vector<std::uint32_t> polypaint; // ZBrush's colours of the vertices so far
@@ -92,7 +93,8 @@ class PartReader {
 
   // The next word as a number; none where it is another word or not a finite 32-bit float.
   std::optional<double> tryNumber(std::string_view& line) const;
-  double number(std::string_view& line) const;
+  // Not a number where the file has one that is not finite.
+  double coordinate(std::string_view& line) const;
   void readPosition(std::string_view line);
 
   // Some programs write "nan" for what they cannot compute.

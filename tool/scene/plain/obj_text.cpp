@@ -240,13 +240,42 @@ class TextReader {
     if (painted_) text.colors = painted(text.positions.size());
     for (std::size_t i = 0; i < readers_.size(); ++i) {
       PartReader& reader = readers_[i];
+      text.notFinite += reader.notFinite;
       if (text.generator.empty()) text.generator = std::move(reader.generator);
       for (const auto& [note, line] : reader.notes)
         if (isNew(note)) warnings_.push_back(fmt::format("line {}: {}", linesBefore(i) + line, note));
       text.parts.push_back(std::move(reader.part));
     }
+    if (text.notFinite > 0) reportNotFinite(text);
     text.warnings = std::move(warnings_);
     return text;
+  }
+
+  void reportNotFinite(const ObjText& text) {
+    constexpr std::array<const char*, objKindCount> names{"faces", "lines", "points"};
+    bool any = false;
+    std::string list;
+    for (std::size_t kind = 0; kind < objKindCount; ++kind) {
+      std::size_t all = 0;
+      std::size_t left = 0;
+      for (const ObjPart& part : text.parts) {
+        const ObjCorner* corner = part.elements[kind].corners.data();
+        for (const std::uint32_t size : part.elements[kind].sizes) {
+          const std::span corners(corner, size);
+          all += kind == objPoints ? size : 1;
+          if (kind == objPoints)
+            left += static_cast<std::size_t>(
+                std::ranges::count_if(corners, [&](const ObjCorner& point) { return !text.isFinite(point); }));
+          else
+            left += text.isFinite(corners) ? 0 : 1;
+          corner += size;
+        }
+      }
+      any = any || all > 0;
+      if (left > 0) list += fmt::format("{}{} of {} {}", list.empty() ? "" : ", ", left, all, names[kind]);
+    }
+    if (!any) list = fmt::format("{} of {} points", text.notFinite, text.positions.size());
+    if (!list.empty()) warnings_.push_back("left out, since a vertex is not finite: " + list);
   }
 
   std::vector<glm::vec4> painted(std::size_t count) {

@@ -1,10 +1,13 @@
 // What the text of an OBJ file states, before anything is made of it. Large texts are read in parts by several threads.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,13 +47,21 @@ struct ObjPart {
 };
 
 struct ObjText {
-  std::vector<glm::dvec3> positions;
-  std::vector<glm::vec4> colors;    // linear; as many as positions, or none at all
-  std::vector<glm::vec2> texCoords; // v grows downwards, as in glTF
-  std::vector<glm::vec3> normals;   // zero where the file has what is none
-  std::vector<ObjPart> parts;       // in the text's order; their corners name what there is
-  std::string generator;            // the first comment
+  std::vector<glm::dvec3> positions; // of NaN where one is not finite
+  std::size_t notFinite = 0;         // how many are not
+  std::vector<glm::vec4> colors;     // linear; as many as positions, or none at all
+  std::vector<glm::vec2> texCoords;  // v grows downwards, as in glTF
+  std::vector<glm::vec3> normals;    // zero where the file has what is none
+  std::vector<ObjPart> parts;        // in the text's order; their corners name what there is
+  std::string generator;             // the first comment
   std::vector<std::string> warnings;
+
+  bool isFinite(const ObjCorner& corner) const {
+    return notFinite == 0 || !std::isnan(positions[static_cast<std::size_t>(corner.position)].x);
+  }
+  bool isFinite(std::span<const ObjCorner> corners) const {
+    return notFinite == 0 || std::ranges::all_of(corners, [this](const ObjCorner& corner) { return isFinite(corner); });
+  }
 };
 
 // Reads a text that outlives the result. Throws LoadError with the number of the line that makes no sense. Texture

@@ -55,6 +55,7 @@ class PlyScene {
     scene_.origin = origin;
     scene_.file.format = header_.encoding == PlyEncoding::Text ? "PLY (text)" : "PLY (binary)";
     scene_.file.generator = printable(header_.generator);
+    for (std::string& line : data_.warnings) warn(scene_, std::move(line));
     // Programs write zeros where they have no normals.
     if (std::ranges::none_of(data_.normals, isDirection)) data_.normals.clear();
     const bool anyFace = !data_.corners.empty();
@@ -85,7 +86,9 @@ class PlyScene {
     textured_ = std::ranges::any_of(slots_, [](const TextureSlot& slot) { return slot.image >= 0; });
     const bool anyColors = !data_.colors.empty() || !data_.faceColors.empty() || !data_.cornerColors.empty();
     if (textured_ && anyColors) warn(scene_, "the colours of vertices and faces are not drawn: the texture is");
-    vertexColors_ = !textured_ && !data_.colors.empty();
+    const bool fainter = data_.onlyAlpha && (!data_.faceColors.empty() || !data_.cornerColors.empty());
+    if (!textured_ && fainter) warn(scene_, "the alpha of vertices is not drawn: the colours of faces are");
+    vertexColors_ = !textured_ && !data_.colors.empty() && !fainter;
     cornerColors_ = !textured_ && !vertexColors_ && !data_.cornerColors.empty();
     faceColors_ = !textured_ && !vertexColors_ && !cornerColors_ && !data_.faceColors.empty();
     if (vertexColors_ && (!data_.faceColors.empty() || !data_.cornerColors.empty()))

@@ -102,22 +102,68 @@ PlyLayout::PlyLayout(const PlyElement& element) {
     if (slot != PlySlot::None) fields_.push_back({slot, property.type, leastBytes_});
     leastBytes_ += sizeOf(property.isList ? property.countType : property.type);
   }
+  if (isFaces(element) && !has(PlyList::Corners)) findCorners(element);
 }
 
-PlyBody::PlyBody(std::span<const std::byte> bytes, PlyEncoding encoding)
-    : bytes_(bytes),
-      encoding_(encoding),
-      swapped_((encoding == PlyEncoding::BigEndian) == (std::endian::native == std::endian::little)) {}
+// Some writers have other names for the corners of faces.
+void PlyLayout::findCorners(const PlyElement& element) {
+  std::size_t found = element.properties.size();
+  std::size_t candidates = 0;
+  for (std::size_t p = 0; p < element.properties.size(); ++p) {
+    const PlyProperty& property = element.properties[p];
+    if (!property.isList || lists_[p] != PlyList::None) continue;
+    if (property.name == "vertex_indexes" || property.name == "indices") {
+      found = p;
+      candidates = 1;
+      break;
+    }
+    if (!isInteger(property.type)) continue;
+    found = p;
+    ++candidates;
+  }
+  if (candidates != 1) return;
+  lists_[found] = PlyList::Corners;
+  listPresent_[static_cast<std::size_t>(PlyList::Corners)] = true;
+}
 
-void PlyBody::require(std::uint64_t count, std::size_t bytes, std::string_view what) const {
+PlyBody::PlyBody(std::span<const std::byte> bytes, const PlyHeader& header)
+    : bytes_(bytes),
+      encoding_(header.encoding),
+      swapped_((encoding_ == PlyEncoding::BigEndian) == (std::endian::native == std::endian::little)) {
+  if (encoding_ != PlyEncoding::Text) return;
+  double stated = 0.0;
+  for (const PlyElement& element : header.elements) stated += static_cast<double>(element.count);
+  const auto lines = std::max(std::ranges::count(bytes, std::byte{'\n'}), std::ranges::count(bytes, std::byte{'\r'}));
+  hasLines_ = static_cast<double>(lines + 1) >= stated;
+}
+
+std::uint64_t PlyBody::roomFor(std::uint64_t count, std::size_t bytes) const {
   const std::size_t left = bytes_.size() - offset_;
   // In text each takes a character and a separator at least; the last one needs no separator.
-  const bool fits =
-      encoding_ == PlyEncoding::Text ? count <= (left + 1) / 2 : count <= left / std::max<std::size_t>(bytes, 1);
-  if (!fits) throw LoadError(fmt::format("{} {} are stated, but only {} bytes are left", count, oneLine(what), left));
+  return std::min<std::uint64_t>(
+      count, encoding_ == PlyEncoding::Text ? (left + 1) / 2 : left / std::max<std::size_t>(bytes, 1));
+}
+
+PlyEnd PlyBody::endIn(const PlyElement& element, std::uint64_t number) {
+  return {fmt::format("the file ends in {} {} of {}", oneLine(element.name), number + 1, element.count)};
+}
+
+// Passes over what is left of the line of a row that began and ended on it.
+void PlyBody::skipLongLine(std::size_t rowBegin) {
+  const auto at = [this](std::size_t i) { return static_cast<char>(bytes_[i]); };
+  std::size_t next = offset_;
+  while (next < bytes_.size() && endsWord(at(next)) && !endsLine(at(next))) ++next;
+  if (next == bytes_.size() || endsLine(at(next))) return;
+  while (endsWord(at(rowBegin))) ++rowBegin;
+  for (std::size_t i = rowBegin; i < offset_; ++i)
+    if (endsLine(at(i))) return;
+  while (next < bytes_.size() && !endsLine(at(next))) ++next;
+  offset_ = next;
+  ++longLines_;
 }
 
 void PlyBody::readRow(const PlyElement& element, const PlyLayout& layout, std::uint64_t number, PlyRow& row) {
+  const std::size_t begin = offset_;
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
     const PlyProperty& property = element.properties[p];
     if (property.isList) {
@@ -127,6 +173,7 @@ void PlyBody::readRow(const PlyElement& element, const PlyLayout& layout, std::u
       row.values[static_cast<std::size_t>(layout.slotOf(p))] = next(element, property.type, number);
     }
   }
+  if (hasLines_) skipLongLine(begin);
 }
 
 void PlyBody::readList(const PlyElement& element, const PlyProperty& property, std::uint64_t number,
@@ -136,7 +183,7 @@ void PlyBody::readList(const PlyElement& element, const PlyProperty& property, s
     throw LoadError(fmt::format("{} {}: a list has the length {}", oneLine(element.name), number, length));
   const auto count = static_cast<std::uint64_t>(length);
   const std::size_t size = sizeOf(property.type);
-  require(count, size, "list values");
+  if (roomFor(count, size) < count) throw endIn(element, number);
   if (values != nullptr) values->resize(count);
   if (encoding_ == PlyEncoding::Text) {
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -153,8 +200,7 @@ void PlyBody::readList(const PlyElement& element, const PlyProperty& property, s
 double PlyBody::next(const PlyElement& element, PlyType type, std::uint64_t number) {
   if (encoding_ == PlyEncoding::Text) return nextWord(element, number);
   const std::size_t size = sizeOf(type);
-  if (bytes_.size() - offset_ < size)
-    throw LoadError(fmt::format("the file ends in {} {}", oneLine(element.name), number));
+  if (bytes_.size() - offset_ < size) throw endIn(element, number);
   const double value = decode(type, &bytes_[offset_]);
   offset_ += size;
   return value;
@@ -165,10 +211,11 @@ double PlyBody::nextWord(const PlyElement& element, std::uint64_t number) {
   const char* const end = text + bytes_.size();
   const char* begin = text + offset_;
   while (begin != end && endsWord(*begin)) ++begin;
-  if (begin == end) throw LoadError(fmt::format("the file ends in {} {}", oneLine(element.name), number));
+  if (begin == end) throw endIn(element, number);
   double value = 0.0;
   const char* const after = parseNumberOrNan(begin, end, value);
   if (after == nullptr || (after != end && !endsWord(*after))) {
+    if (std::find_if(begin, end, endsWord) == end) throw endIn(element, number); // cut off in a number
     const std::string_view word(begin, static_cast<std::size_t>(std::find_if(begin, end, endsWord) - begin));
     throw LoadError(fmt::format("{} {}: \"{}\" is not a number", oneLine(element.name), number, oneLine(word)));
   }

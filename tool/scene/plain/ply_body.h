@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -81,6 +82,8 @@ class PlyLayout {
   std::span<const Field> fields() const { return fields_; }
 
  private:
+  void findCorners(const PlyElement& element);
+
   std::vector<PlySlot> slots_; // one a property
   std::vector<PlyList> lists_;
   std::array<bool, plySlotCount> present_{};
@@ -91,28 +94,45 @@ class PlyLayout {
   std::vector<Field> fields_;
 };
 
+// The body ends before what its header states.
+struct PlyEnd {
+  std::string problem; // "the file ends in vertex 3 of 4"
+};
+
 // Walks over the body of a file.
 class PlyBody {
  public:
-  PlyBody(std::span<const std::byte> bytes, PlyEncoding encoding);
+  PlyBody(std::span<const std::byte> bytes, const PlyHeader& header);
 
-  // Throws LoadError where there is no room for `count` things of at least `bytes` bytes each, before memory is taken
-  // for them.
-  void require(std::uint64_t count, std::size_t bytes, std::string_view what) const;
+  // How many of `count` things of at least `bytes` bytes each there is room for, before memory is taken for them.
+  std::uint64_t roomFor(std::uint64_t count, std::size_t bytes) const;
 
-  // Reads all of an element and gives each row and its number to `use`. Throws LoadError.
+  // Where the body ended before all that is stated had been read; empty: it did not.
+  const std::string& end() const { return end_; }
+  // Lines of text that hold more numbers than is stated; those are passed over.
+  std::size_t longLines() const { return longLines_; }
+
+  // Reads all of an element, or as many as there are whole, and gives each row and its number to `use`. Throws
+  // LoadError.
   template <typename Use>
   void readRows(const PlyElement& element, const PlyLayout& layout, Use use) {
+    if (element.properties.empty()) return;
     PlyRow row;
     if (encoding_ == PlyEncoding::Text || layout.hasLists()) {
       for (std::uint64_t i = 0; i < element.count; ++i) {
-        readRow(element, layout, i, row);
+        try {
+          readRow(element, layout, i, row);
+        } catch (const PlyEnd& end) {
+          end_ = end.problem;
+          return;
+        }
         use(row, i);
       }
       return;
     }
-    require(element.count, layout.leastBytes(), element.name);
-    for (std::uint64_t i = 0; i < element.count; ++i) {
+    const std::uint64_t count = roomFor(element.count, layout.leastBytes());
+    if (count < element.count) end_ = endIn(element, count).problem;
+    for (std::uint64_t i = 0; i < count; ++i) {
       for (const PlyLayout::Field& field : layout.fields())
         row.values[static_cast<std::size_t>(field.slot)] = decode(field.type, &bytes_[offset_ + field.offset]);
       offset_ += layout.leastBytes();
@@ -121,6 +141,8 @@ class PlyBody {
   }
 
  private:
+  static PlyEnd endIn(const PlyElement& element, std::uint64_t number);
+  void skipLongLine(std::size_t rowBegin);
   void readRow(const PlyElement& element, const PlyLayout& layout, std::uint64_t number, PlyRow& row);
   void readList(const PlyElement& element, const PlyProperty& property, std::uint64_t number,
                 std::vector<double>* values);
@@ -132,6 +154,9 @@ class PlyBody {
   PlyEncoding encoding_;
   bool swapped_; // the bytes of a number run the other way than this machine's
   std::size_t offset_ = 0;
+  bool hasLines_ = false; // of text: there is a line for each element
+  std::string end_;
+  std::size_t longLines_ = 0;
 };
 
 } // namespace vitrail::tool

@@ -49,17 +49,18 @@ std::uint64_t packedFromSrgb(const glm::vec4& srgb) {
 }
 
 PlyColors::PlyColors(const PlyLayout& layout, std::vector<std::uint64_t>& packed)
-    : type_(layout.typeOf(PlySlot::Red)),
+    : hasHue_(layout.has(PlySlot::Red) && layout.has(PlySlot::Green) && layout.has(PlySlot::Blue)),
+      type_(hasHue_ ? layout.typeOf(PlySlot::Red) : PlyType::Uint8),
       alphaType_(layout.typeOf(PlySlot::Alpha)),
-      any_(layout.has(PlySlot::Red) && layout.has(PlySlot::Green) && layout.has(PlySlot::Blue)),
       hasAlpha_(layout.has(PlySlot::Alpha)),
       packed_(packed) {}
 
 void PlyColors::add(const PlyRow& row) {
   static const ByteTables tables;
-  const double red = row[PlySlot::Red];
-  const double green = row[PlySlot::Green];
-  const double blue = row[PlySlot::Blue];
+  constexpr double plain = 231.0; // the byte whose light is nearest to plainMaterial()'s
+  const double red = hasHue_ ? row[PlySlot::Red] : plain;
+  const double green = hasHue_ ? row[PlySlot::Green] : plain;
+  const double blue = hasHue_ ? row[PlySlot::Blue] : plain;
   if (type_ == PlyType::Uint8 && (!hasAlpha_ || alphaType_ == PlyType::Uint8)) {
     packed_.push_back(tables.color[asByte(red)] | tables.color[asByte(green)] << 16U |
                       tables.color[asByte(blue)] << 32U |

@@ -17,18 +17,20 @@ std::uint64_t packedFromSrgb(const glm::vec4& srgb);
 // when all have been seen.
 class PlyColors {
  public:
-  // Without red, green and blue there is nothing to gather.
+  // Without red, green and blue an alpha alone makes colours of the plain one. Without either there is nothing to
+  // gather.
   PlyColors(const PlyLayout& layout, std::vector<std::uint64_t>& packed);
 
-  bool any() const { return any_; }
+  bool any() const { return hasHue_ || hasAlpha_; }
+  bool hasHue() const { return hasHue_; }
   void add(const PlyRow& row);
   // Adds those that waited.
   void finish();
 
  private:
+  bool hasHue_;
   PlyType type_;
   PlyType alphaType_;
-  bool any_;
   bool hasAlpha_;
   std::vector<glm::vec4> stated_;
   std::vector<std::uint64_t>& packed_;

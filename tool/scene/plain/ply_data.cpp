@@ -34,7 +34,7 @@ std::uint64_t splatColor(const PlyRow& row) {
 class PlyReader {
  public:
   PlyReader(const PlyHeader& header, std::span<const std::byte> body, const glm::dvec3& origin)
-      : header_(header), body_(body, header.encoding), origin_(origin) {
+      : header_(header), body_(body, header), origin_(origin) {
     for (const PlyElement& element : header.elements) {
       if (element.name != "vertex") continue;
       if (vertexCount_ != 0) throw LoadError("the PLY header states two elements named vertex");
@@ -47,10 +47,9 @@ class PlyReader {
   PlyData read() {
     for (const PlyElement& element : header_.elements) {
       const PlyLayout layout(element);
-      body_.require(element.count, layout.leastBytes(), "elements named " + element.name);
       if (element.name == "vertex")
         readVertices(element, layout);
-      else if (element.name == "face")
+      else if (isFaces(element) && layout.has(PlyList::Corners))
         readFaces(element, layout);
       else if (element.name == "tristrips")
         body_.readRows(element, layout,
@@ -64,8 +63,13 @@ class PlyReader {
       else if (element.name == "edge")
         readEdges(element, layout);
       else
-        body_.readRows(element, layout, [](const PlyRow&, std::uint64_t) {});
+        skip(element, layout);
+      if (!body_.end().empty()) break;
     }
+    if (!body_.end().empty()) keepWhole();
+    if (body_.longLines() > 0)
+      data_.warnings.push_back(
+          fmt::format("passed over: what {} lines hold behind the values that the header states", body_.longLines()));
     if (!texFaces_.empty()) spreadTexFaces();
     if (!data_.faceColors.empty()) data_.faceColors.resize(data_.faceCount, white);
     if (!data_.faceTextures.empty()) data_.faceTextures.resize(data_.faceCount, 0);
@@ -79,22 +83,51 @@ class PlyReader {
   static constexpr std::uint64_t mostVertices = 0xfffffffe;
   const std::uint64_t white = packColor(glm::vec4(1.0F));
 
+  // Scanners' range grids say where vertices were measured, not what is between them.
+  void skip(const PlyElement& element, const PlyLayout& layout) {
+    if (layout.hasLists() && element.count > 0 && element.name != "range_grid")
+      data_.warnings.push_back(fmt::format("left out: {} elements named {}, since {}", element.count,
+                                           oneLine(element.name),
+                                           isFaces(element) ? "none of their lists is known to hold their vertices"
+                                                            : "it is not known what their lists are"));
+    body_.readRows(element, layout, [](const PlyRow&, std::uint64_t) {});
+  }
+
+  // Of a file that is cut off: what is there. Vertices alone show nothing of a model of faces or edges.
+  void keepWhole() {
+    const bool anything = !data_.corners.empty() || !data_.edges.empty();
+    const bool pointsAlone = std::ranges::none_of(header_.elements, [](const PlyElement& element) {
+      return element.count > 0 && (isFaces(element) || element.name == "tristrips" || element.name == "edge");
+    });
+    const bool drawable = anything ? data_.positions.size() == vertexCount_ : pointsAlone && !data_.positions.empty();
+    if (!drawable) throw LoadError(body_.end());
+    // Bytes that were lost or changed on the way, as line ends are, leave numbers that are none.
+    constexpr double farthest = 1e15;
+    const glm::dvec3 far = glm::max(glm::abs(data_.bounds.min), glm::abs(data_.bounds.max));
+    if (std::max({far.x, far.y, far.z}) > farthest)
+      throw LoadError(body_.end() + ", and what is there before reaches farther than 1e+15: it is damaged");
+    data_.warnings.push_back(body_.end() + ": what is there before is drawn");
+  }
+
   void readVertices(const PlyElement& element, const PlyLayout& layout) {
     using enum PlySlot;
     if (!layout.has(X) || !layout.has(Y) || !layout.has(Z)) refusePlaces(element);
     const bool normals = layout.has(NormalX) && layout.has(NormalY) && layout.has(NormalZ);
     PlyColors colors(layout, data_.colors);
-    data_.splats = !colors.any() && layout.has(SplatRed) && layout.has(SplatGreen) && layout.has(SplatBlue) &&
+    data_.splats = !colors.hasHue() && layout.has(SplatRed) && layout.has(SplatGreen) && layout.has(SplatBlue) &&
                    layout.has(SplatOpacity);
     const bool texCoords = layout.has(U) && layout.has(V);
-    data_.positions.reserve(element.count);
-    if (normals) data_.normals.reserve(element.count);
-    if (colors.any() || data_.splats) data_.colors.reserve(element.count);
-    if (texCoords) data_.texCoords.reserve(element.count);
+    const bool gathered = colors.any() && !data_.splats;
+    data_.onlyAlpha = gathered && !colors.hasHue();
+    const std::uint64_t count = body_.roomFor(element.count, layout.leastBytes());
+    data_.positions.reserve(count);
+    if (normals) data_.normals.reserve(count);
+    if (gathered || data_.splats) data_.colors.reserve(count);
+    if (texCoords) data_.texCoords.reserve(count);
     body_.readRows(element, layout, [&](const PlyRow& row, std::uint64_t) {
       addPosition({row[X], row[Y], row[Z]});
       if (normals) data_.normals.emplace_back(narrowed(row[NormalX]), narrowed(row[NormalY]), narrowed(row[NormalZ]));
-      if (colors.any()) colors.add(row);
+      if (gathered) colors.add(row);
       if (data_.splats) data_.colors.push_back(splatColor(row));
       // v grows upwards in these files and downwards in glTF.
       if (texCoords) data_.texCoords.emplace_back(narrowed(row[U]), 1.0F - narrowed(row[V]));
@@ -129,7 +162,8 @@ class PlyReader {
     if (layout.has(PlySlot::TexNumber)) data_.faceTextures.resize(before, 0);
     if (layout.has(PlyList::TexCoords)) data_.cornerTexCoords.resize(data_.corners.size());
     if (layout.has(PlyList::Colors)) data_.cornerColors.resize(data_.corners.size(), white);
-    if (layout.has(PlyList::Corners)) data_.corners.reserve(data_.corners.size() + 3 * element.count);
+    if (layout.has(PlyList::Corners))
+      data_.corners.reserve(data_.corners.size() + 3 * body_.roomFor(element.count, layout.leastBytes()));
     body_.readRows(element, layout, [&](const PlyRow& row, std::uint64_t i) {
       const std::vector<double>& corners = row[PlyList::Corners];
       if (data_.corners.size() + corners.size() > mostVertices) throw LoadError("the faces have too many corners");

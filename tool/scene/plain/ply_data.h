@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -25,6 +26,7 @@ struct PlyData {
   std::vector<glm::vec2> texCoords; // v grows downwards
   std::size_t notFinite = 0;        // how many positions are not finite
   bool splats = false;              // they are the centres of Gaussian splats
+  bool onlyAlpha = false;           // their colours are an alpha and the plain colour
 
   // Faces.
   std::size_t faceCount = 0;
@@ -39,6 +41,8 @@ struct PlyData {
   // Edges: two vertices each.
   std::vector<std::uint32_t> edges;
   std::vector<std::uint64_t> edgeColors;
+
+  std::vector<std::string> warnings; // what of the file is left out
 };
 
 // Reads the body that follows the header; positions are relative to `origin`. Throws LoadError.

@@ -69,7 +69,7 @@ PlyElement parsePlyElement(TextLines& lines) {
 }
 
 PlyEncoding parsePlyEncoding(TextLines& lines) {
-  const std::string_view name = lines.word();
+  const std::string name = lowerCase(lines.word());
   if (name == "ascii") return PlyEncoding::Text;
   if (name == "binary_little_endian") return PlyEncoding::LittleEndian;
   if (name == "binary_big_endian") return PlyEncoding::BigEndian;

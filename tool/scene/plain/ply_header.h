@@ -29,6 +29,11 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
+// Whether these are faces, by the names that programs give them.
+inline bool isFaces(const PlyElement& element) {
+  return element.name == "face" || element.name == "polygon" || element.name == "polygons";
+}
+
 enum class PlyEncoding { Text, LittleEndian, BigEndian };
 
 struct PlyHeader {

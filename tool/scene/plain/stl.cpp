@@ -158,6 +158,8 @@ bool takeVertices(Mesh& mesh, const std::vector<Welder::Key>& keys, const FacetC
 }
 
 void addFacets(Scene& scene, StlFacets facets, const FacetColors* colors) {
+  if (facets.cutOff)
+    warn(scene, fmt::format("the file ends inside a facet: the {} before it are drawn", facets.indices.size() / 3));
   if (facets.notFinite > 0)
     warn(scene, fmt::format("left out, since a corner is not finite: {} of {} facets", facets.notFinite,
                             facets.notFinite + facets.indices.size() / 3));

@@ -32,6 +32,7 @@ void StlFacets::append(StlFacets part) {
   bounds.min = glm::min(bounds.min, part.bounds.min);
   bounds.max = glm::max(bounds.max, part.bounds.max);
   notFinite += part.notFinite;
+  cutOff = cutOff || part.cutOff;
 }
 
 } // namespace vitrail::tool

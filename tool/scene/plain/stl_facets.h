@@ -19,6 +19,7 @@ struct StlFacets {
   std::vector<std::uint32_t> indices;
   FileBounds bounds;         // in the file's coordinates
   std::size_t notFinite = 0; // facets left out, since a corner is not finite
+  bool cutOff = false;       // the text ends inside a facet, which is left out
 
   // Corners in the file's coordinates.
   void add(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& origin, std::uint32_t color);

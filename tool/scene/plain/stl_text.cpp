@@ -28,16 +28,32 @@ class StlTextParser {
       : whole_(whole), at_(part.data()), end_(part.data() + part.size()), origin_(origin) {}
 
   StlFacets parse() {
+    try {
+      parseWords();
+    } catch (const CutOff&) {
+      inLoop_ = true;
+    }
+    // Whole facets before the end of the file are drawn.
+    const bool last = end_ == whole_.data() + whole_.size();
+    facets_.cutOff = last && (inLoop_ || facetOpen_) && !facets_.indices.empty();
+    if (inLoop_ && !facets_.cutOff) fail("the file ends inside a loop");
+    return std::move(facets_);
+  }
+
+ private:
+  struct CutOff {};
+
+  void parseWords() {
     for (std::string_view word = next(); !word.empty(); word = next()) {
       switch (word[0] | 0x20) {
         case 'v':
           if (isWord(word, "vertex")) addVertex();
           break;
         case 'o':
-          if (isWord(word, "outer")) beginLoop();
+          if (isWord(word, "outer") || isWord(word, "outerloop")) beginLoop();
           break;
         case 'f':
-          if (isWord(word, "facet") && inLoop_) fail("a facet begins inside a loop");
+          if (isWord(word, "facet")) beginFacet();
           break;
         case 'e':
           end(word);
@@ -49,11 +65,8 @@ class StlTextParser {
           break;
       }
     }
-    if (inLoop_) fail("the file ends inside a loop");
-    return std::move(facets_);
   }
 
- private:
   std::string_view next() {
     while (at_ != end_ && endsWord(*at_)) ++at_;
     const char* const begin = at_;
@@ -61,9 +74,15 @@ class StlTextParser {
     return {begin, static_cast<std::size_t>(at_ - begin)};
   }
 
+  void beginFacet() {
+    if (inLoop_) fail("a facet begins inside a loop");
+    facetOpen_ = true;
+  }
+
   void beginLoop() {
     if (inLoop_) fail("a loop begins inside a loop");
     inLoop_ = true;
+    facetOpen_ = false;
     corners_ = 0;
   }
 
@@ -83,6 +102,7 @@ class StlTextParser {
       return value;
     }
     const char* const wordEnd = std::find_if(at_, end_, endsWord);
+    if (wordEnd == end_) throw CutOff();
     const std::string_view word(at_, static_cast<std::size_t>(wordEnd - at_));
     if (word.empty()) fail("a number is missing");
     fail(fmt::format("{} is not a number{}", oneLine(word),
@@ -141,6 +161,7 @@ class StlTextParser {
   std::array<glm::dvec3, 3> places_{};
   std::size_t corners_ = 0; // of the loop that is open
   bool inLoop_ = false;
+  bool facetOpen_ = false; // its loop has not begun
 };
 
 // Where the first facet begins whose line begins behind `from`.
