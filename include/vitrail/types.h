@@ -211,14 +211,16 @@ typedef enum VitrailOverflow {
 VITRAIL_API uint64_t vitrailNodePoolSize(VitrailNodeFormat format, uint32_t nodeCapacity);
 
 /* How far a pixel may be from the real-number answer, all fragments blended in depth order, in steps of an 8-bit
- * picture (1/255 on the sRGB curve, the rounding to such a picture included), where at most so many `layers` with
- * colours up to 1 are in it. At most 1: a frame that is complete is exact (VitrailStats). 255 for a format that there
- * is not. HDR       0.56 + 0.007 * sqrt(layers): exact up to 3,900 layers STANDARD  1 + 255 * srgb(min(1, layers *
- * 0.5/255)): a surface as faint as half a step of alpha is lost, which shows where it is bright before darkness. Of
- * common pictures few pixels are off by more than 2. COMPACT   likewise, with its coarser steps of colour and alpha
+ * picture (1/255 on the sRGB curve, the rounding to such a picture included), with at most so many `layers` and colours
+ * up to 1:
+ *   - HDR: 0.56 + 0.007 * sqrt(layers), which is at most 1 up to 3,900 layers: a complete frame is exact
+ * (VitrailStats).
+ *   - STANDARD: 1 + 255 * srgb(min(1, layers * 0.5/255)). A surface as faint as half a step of alpha is lost, which
+ * shows where it is bright before darkness. Of common pictures few pixels are off by more than 2.
+ *   - COMPACT: likewise, with its coarser steps of colour and alpha.
  * Fragments that are rounded to nothing are among the `layers` here, and not among VitrailStats::layersMax: with the
- * last two formats a frame is never exact, and its bound is for fragments of at least half a step of alpha.
- * Derived in docs/resolve.md. */
+ * last two formats a frame is never exact, and its bound is for fragments of at least half a step of alpha. 255 for a
+ * format that there is not. Derived in docs/resolve.md. */
 VITRAIL_API float vitrailNodeErrorBound(VitrailNodeFormat format, uint32_t samples, uint32_t layers);
 
 /* What a target takes, in bytes. */

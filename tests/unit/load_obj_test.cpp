@@ -508,5 +508,14 @@ TEST_F(ObjMaps, MissingOnesAreNamed) {
                                     "map_Kd gone.png of the material \"missing\": no such file; it is drawn without"}));
 }
 
+// Two corners of a face in one place leave a group of smoothing without any triangle, and its vertices without normals.
+TEST(ObjSmoothingGroups, MayHaveNoTriangleAtAll) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\ns 1\nf 1 1 2\ns 2\nf 1 2 3\n";
+  const Scene scene = loadObj(std::as_bytes(std::span(text)), {});
+  ASSERT_EQ(scene.meshes.size(), 1U);
+  EXPECT_EQ(scene.meshes[0].indices.size(), 3U);
+  EXPECT_EQ(scene.meshes[0].normals.size(), scene.meshes[0].vertexCount());
+}
+
 } // namespace
 } // namespace vitrail::tool::obj_test

@@ -125,6 +125,10 @@ void ObjMeshMaker::addAttributes() {
 void smoothObj(ObjMesh& raw, std::int64_t smoothing) {
   constexpr float crease = std::numbers::pi_v<float> / 4.0F;
   dropDegenerateTriangles(raw.mesh);
+  if (raw.mesh.indices.empty()) { // vertices that nothing shows would have no normals
+    raw = {};
+    return;
+  }
   if (smoothing == ObjSmoothing::off)
     makeFlatNormals(raw.mesh);
   else
