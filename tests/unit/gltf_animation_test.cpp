@@ -98,8 +98,10 @@ TEST(GltfAnimation, IsChosenByNameOrNumber) {
 }
 
 TEST(GltfAnimation, WhatTheFileDoesNotHaveIsRefused) {
-  EXPECT_EQ(refusalOf("animations.gltf", animation("fly")), "has no animation \"fly\"; it has 0 \"walk\", 1 \"rise\"");
-  EXPECT_EQ(refusalOf("animations.gltf", animation("2")), "has no animation \"2\"; it has 0 \"walk\", 1 \"rise\"");
+  EXPECT_EQ(refusalOf("animations.gltf", animation("fly")),
+            "has no animation \"fly\"; it has numbers 0 \"walk\", 1 \"rise\"");
+  EXPECT_EQ(refusalOf("animations.gltf", animation("2")),
+            "has no animation \"2\"; it has numbers 0 \"walk\", 1 \"rise\"");
   EXPECT_EQ(refusalOf("triangle.gltf", at(1.0)), "holds no animations");
   EXPECT_EQ(refusalOf("box.obj", at(1.0)), "holds no animations: files of its format cannot");
 }

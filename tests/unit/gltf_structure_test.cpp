@@ -1,5 +1,6 @@
 // How glTF files hang together: hierarchies, instances, lights, variants, extensions, places far away.
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "load_good.h"
 #include "scene/gltf/extensions.h"
 #include "scene/load.h"
+#include "scene/visibility.h"
 
 namespace vitrail::tool {
 namespace {
@@ -48,6 +50,49 @@ TEST(GltfHierarchy, HiddenNodesHideAllBelowThem) {
   EXPECT_EQ(scene.draws.size(), 1U);
   EXPECT_TRUE(scene.lights.empty());
   EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(GltfHierarchy, AFileThatHidesAllIsAnEmptyPicture) {
+  const Scene scene = loadGood("all_hidden.gltf");
+  EXPECT_TRUE(scene.draws.empty());
+  EXPECT_EQ(scene.warnings, (Lines{"nothing of the model is seen: all of its nodes are hidden"}));
+  const View view = frameScene(scene, Orbit{}, 1.5F);
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(std::isfinite(view.cameraToWorld[3][i]));
+  EXPECT_GT(view.farPlane, view.nearPlane);
+  EXPECT_EQ(whyNothingIsSeen(scene, {view, 64, 64, {}}), "all of its nodes are hidden");
+}
+
+TEST(GltfHierarchy, WhatIsWrongAndCanBeLeftOutRefusesNoFile) {
+  const Scene scene = loadGood("parts_left_out.gltf");
+  EXPECT_EQ(scene.warnings, (Lines{"node 0: rotation is zero, not a quaternion: it is not rotated",
+                                   "KHR_materials_variants: names a material or a variant that is not there",
+                                   "image 1: gone.png: no such file; the material is drawn without it",
+                                   "camera 0: yfov is not between 0 and pi; the camera is left out",
+                                   "camera 1: perspective.znear is missing; the camera is left out"}));
+  ASSERT_EQ(scene.cameras.size(), 1U);
+  EXPECT_EQ(scene.cameras[0].name, "right");
+  expectNear(placed(scene, 0, {1.0F, 2.0F, 3.0F}), {1.0F, 2.0F, 3.0F});
+  EXPECT_EQ(scene.materials.at(0).baseColorTexture.image, 0);
+  EXPECT_EQ(scene.materials[0].emissive, glm::vec3(0.0F)) << "not white all over";
+  LoadOptions options;
+  options.variant = "day";
+  EXPECT_EQ(refusalOf("parts_left_out.gltf", options),
+            "KHR_materials_variants: the variant has material 7, but materials has 1 element");
+}
+
+TEST(LoadOptions, WhatIsOptionalNeedNotBeThere) {
+  LoadOptions options;
+  options.time = 1.0;
+  options.animation = "fly";
+  options.variant = "dusk";
+  options.optional = true;
+  for (const char* file : {"triangle.gltf", "box.obj", "variants.gltf", "animations.gltf"})
+    EXPECT_EQ(refusalOf(file, options), "");
+  const Scene scene = loadGood("animations.gltf", options);
+  EXPECT_FALSE(hasAnimation(scene.file, options));
+  options.animation = "rise";
+  EXPECT_TRUE(hasAnimation(scene.file, options));
+  EXPECT_FALSE(hasVariant(scene.file, options));
 }
 
 TEST(GltfHierarchy, InstancesAreADrawEach) {

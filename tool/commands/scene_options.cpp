@@ -1,5 +1,6 @@
 #include "scene_options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <stdexcept>
@@ -123,15 +124,33 @@ Scene openBuiltin(const std::string& name, const BuiltinOptions& options) {
   }
 }
 
+namespace {
+
+// Several models in one picture: what the options choose need not be in all of them, but in one.
+std::vector<Scene> openModels(const SceneArguments& arguments, const Progress& progress) {
+  LoadOptions options = arguments.load;
+  options.optional = arguments.models.size() > 1;
+  std::vector<Scene> parts;
+  for (const std::string& model : arguments.models) {
+    progress.show(fmt::format("loading {}", printable(model)));
+    parts.push_back(openModel(model, options));
+  }
+  const auto anyHas = [&](bool (*has)(const FileFacts&, const LoadOptions&)) {
+    return std::ranges::any_of(parts, [&](const Scene& part) { return has(part.file, options); });
+  };
+  const bool isAnimated = !(options.time || options.animation) || anyHas(hasAnimation);
+  // The first model alone says best what is missing.
+  if (!isAnimated || (options.variant && !anyHas(hasVariant))) openModel(arguments.models.front(), arguments.load);
+  return parts;
+}
+
+} // namespace
+
 Scene openScene(const SceneArguments& arguments, const Progress& progress) {
   Scene scene;
   if (arguments.scene.empty()) {
-    std::vector<Scene> parts;
-    for (const std::string& model : arguments.models) {
-      progress.show(fmt::format("loading {}", printable(model)));
-      parts.push_back(openModel(model, arguments.load));
-    }
-    scene = mergeScenes(std::move(parts), arguments.models);
+    scene = mergeScenes(openModels(arguments, progress), arguments.models);
+    if (scene.draws.empty()) std::erase(scene.warnings, nothingDrawnWarning()); // the picture's own warning says it
   } else {
     scene = openBuiltin(arguments.scene, {arguments.count, arguments.seed.value_or(BuiltinOptions{}.seed)});
   }

@@ -45,7 +45,8 @@ class Fit {
     remoteness_ = std::max({remoteness_, std::abs(place.x), std::abs(place.y), std::abs(place.z)});
   }
 
-  View view(float zoom) const {
+  View view(float zoom) {
+    if (nearest_ == lowest) add(glm::dvec3(0.0)); // there is nothing: any place will do
     const double fitted = std::max(0.5 * (right_ + left_), 0.5 * (up_ + down_));
     // Lines along the view direction would fit from their own end, and a point has no size to fit. It is seen from a
     // distance that float can still tell from 0 where the point is.
@@ -99,7 +100,8 @@ class Looking {
     farthest_ = std::max(farthest_, distance);
   }
 
-  View view() const {
+  View view() {
+    if (farthest_ < nearest_) add(look_.target); // there is nothing
     View view;
     for (int column = 0; column < 3; ++column) view.cameraToWorld[column] = glm::vec4(glm::vec3(axes_[column]), 0.0F);
     view.cameraToWorld[3] = glm::vec4(glm::vec3(look_.eye), 1.0F);

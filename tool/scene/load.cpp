@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <new>
 #include <span>
 #include <string>
@@ -46,6 +47,27 @@ void giveBackMemory() {
 
 } // namespace
 
+std::optional<std::size_t> chosenAnimation(const std::vector<FileFacts::Animation>& animations,
+                                           const std::optional<std::string>& choice) {
+  if (animations.empty()) return std::nullopt;
+  if (!choice) return 0;
+  const auto named = std::ranges::find(animations, *choice, &FileFacts::Animation::name);
+  if (named != animations.end()) return static_cast<std::size_t>(named - animations.begin());
+  std::size_t number = 0;
+  const char* const end = choice->data() + choice->size();
+  const auto [stop, error] = std::from_chars(choice->data(), end, number);
+  if (error == std::errc{} && stop == end && number < animations.size()) return number;
+  return std::nullopt;
+}
+
+bool hasAnimation(const FileFacts& file, const LoadOptions& options) {
+  return chosenAnimation(file.animations, options.animation).has_value();
+}
+
+bool hasVariant(const FileFacts& file, const LoadOptions& options) {
+  return options.variant && std::ranges::find(file.variants, *options.variant) != file.variants.end();
+}
+
 Scene loadModel(const std::filesystem::path& path, const LoadOptions& options) {
   const std::string extension = extensionOf(path);
   try {
@@ -55,9 +77,9 @@ Scene loadModel(const std::filesystem::path& path, const LoadOptions& options) {
     Scene scene;
     if (extension == "gltf" || extension == "glb")
       scene = loadGltf(std::move(mapped), folderOf(path), options);
-    else if (options.time || options.animation)
+    else if (!options.optional && (options.time || options.animation))
       throw LoadError("holds no animations: files of its format cannot");
-    else if (options.variant)
+    else if (!options.optional && options.variant)
       throw LoadError("has no variants of its materials: files of its format cannot");
     else if (extension == "obj")
       scene = loadObj(file, folderOf(path));

@@ -24,7 +24,15 @@ struct LoadOptions {
   std::optional<double> time;           // seconds into the animation; none: the rest pose, no animation
   std::optional<std::string> animation; // a name, or else a number from 0; none: the first
   std::optional<std::string> variant;   // of KHR_materials_variants; none: the file's default materials
+  bool optional = false;                // a file without that animation, or variant, is loaded as it is
 };
+
+// The index of the animation with that name or number, the first where there is no choice; none: there is no such.
+std::optional<std::size_t> chosenAnimation(const std::vector<FileFacts::Animation>& animations,
+                                           const std::optional<std::string>& choice);
+// Whether a file has what the options choose.
+bool hasAnimation(const FileFacts& file, const LoadOptions& options);
+bool hasVariant(const FileFacts& file, const LoadOptions& options);
 
 // Loads a model by its file's content and extension: .gltf, .glb, .obj, .ply, .stl (any case).
 // Throws LoadError; a file without any triangle, line or point is an error. What is left out of the scene, or drawn

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -17,6 +19,7 @@
 
 #include "load.h"
 #include "message.h"
+#include "plain/find_file.h"
 
 namespace vitrail::tool {
 
@@ -47,10 +50,16 @@ auto openBeside(std::string_view name, const std::filesystem::path& base, Open o
   };
   if (base.empty()) throw fail("external files are not read here");
   if (name.empty() || name.find('\0') != std::string_view::npos) throw fail("is not a file name");
-  const std::filesystem::path path(name);
-  if (path.is_absolute()) throw fail("is not relative to the model");
+  std::filesystem::path path = base / std::filesystem::path(name);
+  std::error_code ignored;
+  const bool isAbsolute = std::filesystem::path(name).is_absolute();
+  if (isAbsolute || !std::filesystem::exists(path, ignored)) {
+    const std::optional<std::filesystem::path> found = findFile(name, std::span(&base, 1));
+    if (isAbsolute && !found) throw fail("is not relative to the model");
+    path = found.value_or(path);
+  }
   try {
-    return open(base / path);
+    return open(path);
   } catch (const LoadError& error) {
     throw fail(error.what());
   }

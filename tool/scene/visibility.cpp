@@ -13,6 +13,8 @@ namespace vitrail::tool {
 
 namespace {
 
+constexpr const char* kAllHidden = "all of its nodes are hidden";
+
 // ---- Alpha
 
 float largestAlpha(const Image& image) {
@@ -189,10 +191,14 @@ std::optional<std::string> sureReason(const Findings& found) {
 } // namespace
 
 std::optional<std::string> whyNothingIsSeen(const Scene& scene, const Seen& seen) {
+  if (scene.draws.empty()) return kAllHidden;
   return sureReason(Search(scene, seen).findings());
 }
 
+std::string nothingDrawnWarning() { return fmt::format("nothing of the model is seen: {}", kAllHidden); }
+
 std::string nothingSeenWarning(const Scene& scene, const Seen& seen) {
+  if (scene.draws.empty()) return nothingDrawnWarning();
   const Findings found = Search(scene, seen).findings();
   const glm::dvec2 pixels = 0.5 * (found.high - found.low) * glm::dvec2(seen.width, seen.height);
   const char* const otherwise = std::max(pixels.x, pixels.y) < 1.0

@@ -22,6 +22,9 @@ struct Seen {
 // named. Looks at what is drawn until some of it is surely seen.
 std::optional<std::string> whyNothingIsSeen(const Scene& scene, const Seen& seen);
 
+// The warning of a model whose nodes are all hidden: no other one without draws is loaded.
+std::string nothingDrawnWarning();
+
 // The warning of a picture in which no pixel differs from the background.
 std::string nothingSeenWarning(const Scene& scene, const Seen& seen);
 

@@ -2,7 +2,6 @@
 #include "animation.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -173,23 +172,17 @@ class Pose {
   std::unordered_map<std::uint32_t, GltfPlace> places_;
 };
 
-// The index of the animation with that name or number.
-std::size_t chosen(const GltfDocument& document, const std::optional<std::string>& choice) {
-  const std::vector<GltfAnimation>& animations = document.animations;
+// The index of the animation with that name or number. There is one.
+std::size_t chosen(const std::vector<FileFacts::Animation>& animations, const std::optional<std::string>& choice) {
   if (animations.empty()) throw LoadError("holds no animations");
-  if (!choice) return 0;
-  const auto named = std::ranges::find(animations, *choice, &GltfAnimation::name);
-  if (named != animations.end()) return static_cast<std::size_t>(named - animations.begin());
-  std::size_t number = 0;
-  const char* const end = choice->data() + choice->size();
-  const auto [stop, error] = std::from_chars(choice->data(), end, number);
-  if (error == std::errc{} && stop == end && number < animations.size()) return number;
+  if (const auto found = chosenAnimation(animations, choice)) return *found;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < std::min<std::size_t>(animations.size(), 20); ++i)
     names.push_back(animations[i].name.empty() ? fmt::format("{}", i)
                                                : fmt::format("{} \"{}\"", i, oneLine(animations[i].name)));
   if (names.size() < animations.size()) names.emplace_back("...");
-  throw LoadError(fmt::format("has no animation \"{}\"; it has {}", oneLine(*choice), fmt::join(names, ", ")));
+  throw LoadError(fmt::format("has no animation \"{}\"; it has {} {}", oneLine(*choice),
+                              names.size() == 1 ? "one, number" : "numbers", fmt::join(names, ", ")));
 }
 
 } // namespace
@@ -221,7 +214,8 @@ std::vector<FileFacts::Animation> listAnimations(const GltfDocument& document) {
 
 void poseAt(GltfDocument& document, const LoadOptions& options, Scene& scene) {
   if (!options.time && !options.animation) return;
-  const std::size_t index = chosen(document, options.animation);
+  if (options.optional && !hasAnimation(scene.file, options)) return;
+  const std::size_t index = chosen(scene.file.animations, options.animation);
   const GltfAnimation animation = document.animations[index];
   Pose pose(document, animation, objectName("animation", index, animation.name), options.time.value_or(0.0));
   for (std::size_t i = 0; i < animation.channels.size(); ++i) pose.add(i, scene);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -183,8 +184,9 @@ constexpr std::array materialFields{nameField,
                                     Field{"doubleSided", Kind::Boolean},
                                     object("extensions", materialExtensionFields)};
 
-constexpr std::array variantMappingFields{required(index("material", "materials")),
-                                          required(index("variants", "variants", Kind::Indices))};
+// Indices of any size: only the chosen variant has to be there.
+constexpr std::array variantMappingFields{required(index("material", "")),
+                                          required(index("variants", "", Kind::Indices))};
 constexpr std::array primitiveVariantsFields{required(object("mappings", variantMappingFields, Kind::Objects))};
 constexpr std::array dracoFields{required(index("bufferView", "bufferViews"))};
 constexpr std::array primitiveExtensionFields{object("KHR_draco_mesh_compression", dracoFields),
@@ -284,7 +286,7 @@ class Checker {
   }
 
   void range(std::uint64_t number, std::string_view target, const std::string& where, const std::string& path) const {
-    if (document_ == nullptr) return;
+    if (document_ == nullptr || target.empty()) return;
     const std::size_t size = sizeOf(target);
     if (number >= size)
       fail(where, path, fmt::format("is {}, but {} has {} element{}", number, target, size, size == 1 ? "" : "s"));
@@ -498,6 +500,26 @@ void checkGltfNode(const nlohmann::json& node, std::size_t index) {
     // Once more with its name, which takes its time where there are millions.
     checker.fields(node, nodeFields, objectName("node", index, nameIn(node)), {});
   }
+}
+
+std::map<std::size_t, std::string> repairGltfCameras(nlohmann::json& document) {
+  std::map<std::size_t, std::string> wrong;
+  if (!document.is_object()) return wrong;
+  const auto cameras = document.find("cameras");
+  if (cameras == document.end() || !cameras->is_array()) return wrong;
+  Checker checker(document, 0);
+  for (std::size_t i = 0; i < cameras->size(); ++i) {
+    Json& camera = (*cameras)[i];
+    const std::string where = objectName("camera", i, nameIn(camera));
+    try {
+      checker.fields(camera, cameraFields, where, "");
+      checkChoices(camera, "cameras", where);
+    } catch (const LoadError& error) {
+      wrong.emplace(i, error.what());
+      camera = {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 1.0}}}};
+    }
+  }
+  return wrong;
 }
 
 void checkGltfJson(const nlohmann::json& document, const GltfNodes& nodes, const std::optional<LoadError>& nodeError) {

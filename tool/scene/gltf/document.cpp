@@ -110,6 +110,7 @@ Json readJson(std::string_view text, GltfDocument& document) {
     releaseBytes(document, std::as_bytes(std::span(begin, end)));
   };
   Json json = parseJson(text, stream);
+  document.wrongCameras = repairGltfCameras(json);
   checkGltfJson(json, document.nodes, nodeError);
   return json;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -57,7 +58,8 @@ struct GltfDocument {
   std::vector<std::optional<Light>> lights; // of KHR_lights_punctual, not yet placed; none: of a kind that is unknown
   std::vector<std::string> variants;        // of KHR_materials_variants
   std::vector<GltfImageSource> images;
-  std::vector<std::string> extensionsUsed; // with those that are only required
+  std::map<std::size_t, std::string> wrongCameras; // what is wrong with those of the model that stand for no camera
+  std::vector<std::string> extensionsUsed;         // with those that are only required
   std::vector<std::string> extensionsRequired;
   std::vector<std::string> extensions; // the names of those that the document itself has
   std::string generator;

@@ -5,6 +5,9 @@
 #include <functional>
 #include <utility>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "extensions.h"
 
 namespace vitrail::tool {
@@ -69,7 +72,11 @@ void GltfExtensionUse::report(Scene& scene) const {
     const bool required = std::ranges::find(document_.extensionsRequired, name) != document_.extensionsRequired.end();
     const bool honoured = extension.support == GltfSupport::Drawn || extension.support == GltfSupport::Partly ||
                           name == "KHR_texture_basisu" || name == "KHR_meshopt_compression";
-    scene.file.extensions.push_back({name, required, honoured, std::string(extension.lost)});
+    const auto losses = losses_.find(name);
+    const std::string lost =
+        losses == losses_.end() ? std::string(extension.lost) : fmt::format("{}", fmt::join(losses->second, "; "));
+    scene.file.extensions.push_back({name, required, honoured, lost});
+    if (losses != losses_.end()) warn(scene, fmt::format("the extension {} is drawn in part: {}", name, lost));
     // Where one that nobody knows may be cannot be told.
     const bool drawn = names_.contains(name) || (required && !extension.known);
     const std::string warning = drawn ? extensionWarning(name) : std::string{};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -17,6 +18,8 @@ class GltfExtensionUse {
 
   // Something that is drawn has them.
   void note(std::string_view extension) { names_.emplace(extension); }
+  // It is drawn but for something.
+  void noteLoss(std::string_view extension, std::string_view lost) { losses_[std::string(extension)].emplace(lost); }
   void notePrimitive(const tinygltf::Primitive& primitive);
   void noteMaterial(std::size_t material);
 
@@ -33,6 +36,7 @@ class GltfExtensionUse {
 
   const GltfDocument& document_;
   std::set<std::string, std::less<>> names_;
+  std::map<std::string, std::set<std::string>, std::less<>> losses_; // of those in the table of what is drawn
 };
 
 } // namespace vitrail::tool

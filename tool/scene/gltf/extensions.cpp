@@ -17,7 +17,7 @@ using enum GltfSupport;
 constexpr GltfExtension kExtensions[] = {
     // The scene.
     {"EXT_mesh_gpu_instancing", Drawn, ""},
-    {"KHR_animation_pointer", Left, "what it animates beside nodes (materials, lights, cameras) stands still"},
+    {"KHR_animation_pointer", Left, "what an animation pointer moves, nodes too, stands still"},
     {"KHR_lights_punctual", Drawn, ""},
     {"KHR_materials_variants", Drawn, ""},
     {"KHR_node_visibility", Drawn, ""},

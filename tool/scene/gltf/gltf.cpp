@@ -16,6 +16,7 @@
 #include "../load.h"
 #include "../mesh_build.h"
 #include "../message.h"
+#include "../visibility.h"
 #include "animation.h"
 #include "document.h"
 #include "extension_use.h"
@@ -105,7 +106,8 @@ class SceneBuilder {
         materials_(document, scene_),
         meshes_(document) {
     for (const std::string& line : document.warnings) warn(scene_, line);
-    if (options.variant) variant_ = variantNamed(*options.variant);
+    if (options.variant && (!options.optional || hasVariant(scene_.file, options)))
+      variant_ = variantNamed(*options.variant);
     for (const std::string& name : document.extensions)
       if (name != "KHR_lights_punctual" && name != "KHR_materials_variants") use_.note(name);
     if (!document.scenes.empty())
@@ -115,11 +117,14 @@ class SceneBuilder {
   Scene build() {
     hierarchy_.visit([this](const GltfPlacedNode& node) { survey(node); });
     requireAny();
-    scene_.origin = box_.farMiddle();
+    if (drawCount_ > 0) scene_.origin = box_.farMiddle();
     scene_.draws.reserve(drawCount_);
     hierarchy_.visit([this](const GltfPlacedNode& node) { place(node); });
     use_.report(scene_);
-    requireDrawable(scene_);
+    if (drawCount_ > 0)
+      requireDrawable(scene_);
+    else
+      warn(scene_, nothingDrawnWarning());
     return std::move(scene_);
   }
 
@@ -156,11 +161,14 @@ class SceneBuilder {
     }
     for (const std::string& name : rare.extensions) use_.note(name);
     if (mesh == GltfNodes::none) return;
-    const std::vector<glm::dmat4> instances = instancesOf(document_, placed);
+    const std::vector<glm::dmat4> instances = instancesOf(document_, placed, scene_);
+    if (rare.instanceColors) use_.noteLoss("EXT_mesh_gpu_instancing", "the colours of copies are missing");
     const std::size_t primitives = document_.model.meshes[mesh].primitives.size();
     for (std::size_t i = 0; i < primitives; ++i) {
       const Shown shown = shownBy(placed.node, i);
       if (!shown.mesh) continue;
+      if (shown.skinned && rare.instanced)
+        use_.noteLoss("EXT_mesh_gpu_instancing", "a mesh that follows a skin is drawn once");
       forEachPlace(placed, shown, instances, [&](const glm::dmat4& transform) {
         if (drawCount_++ == mostDraws())
           throw LoadError(
@@ -189,15 +197,16 @@ class SceneBuilder {
     }
   }
 
+  // A file that hides all that it holds is an empty picture; one that holds nothing is refused.
   void requireAny() const {
-    if (drawCount_ > 0) return;
-    if (hidden_) throw LoadError("all of its meshes are in nodes that KHR_node_visibility hides");
+    if (drawCount_ > 0 || hidden_) return;
     const std::string unreadable = use_.unreadable();
     if (!unreadable.empty())
       throw LoadError(
           fmt::format("it has no mesh that can be read without the extension {}, which Vitrail does not "
                       "implement",
                       oneLine(unreadable)));
+    throw LoadError("the file holds no triangles, lines or points");
   }
 
   void place(const GltfPlacedNode& placed) {
@@ -207,7 +216,7 @@ class SceneBuilder {
     if (rare.light) addLight(placed, *rare.light);
     const std::uint32_t mesh = document_.nodes.mesh(placed.node);
     if (mesh == GltfNodes::none) return;
-    const std::vector<glm::dmat4> instances = instancesOf(document_, placed);
+    const std::vector<glm::dmat4> instances = instancesOf(document_, placed, scene_);
     const std::size_t primitives = document_.model.meshes[mesh].primitives.size();
     for (std::size_t i = 0; i < primitives; ++i) {
       const Shown shown = shownBy(placed.node, i);
@@ -224,8 +233,14 @@ class SceneBuilder {
 
   void addCamera(const GltfPlacedNode& placed, std::size_t index) {
     const tinygltf::Camera& camera = document_.model.cameras[index];
-    scene_.cameras.push_back(
-        convertCamera(camera, objectName("camera", index, camera.name), matrixOf(placed.node, placed.world)));
+    try {
+      const auto wrong = document_.wrongCameras.find(index);
+      if (wrong != document_.wrongCameras.end()) throw LoadError(wrong->second);
+      scene_.cameras.push_back(
+          convertCamera(camera, objectName("camera", index, camera.name), matrixOf(placed.node, placed.world)));
+    } catch (const LoadError& error) {
+      warn(scene_, fmt::format("{}; the camera is left out", error.what()));
+    }
   }
 
   void addLight(const GltfPlacedNode& placed, std::size_t index) {
@@ -265,14 +280,27 @@ class SceneBuilder {
     return shown;
   }
 
-  // The primitive's material, or that of the chosen variant.
+  // The primitive's material, or that of the chosen variant. What other variants name need not be there.
   int materialOf(const tinygltf::Primitive& primitive) {
     const auto extension = primitive.extensions.find("KHR_materials_variants");
-    if (extension == primitive.extensions.end() || variant_ < 0) return primitive.material;
-    for (const tinygltf::Value& mapping : extension->second.Get("mappings").Get<tinygltf::Value::Array>())
-      for (const tinygltf::Value& variant : mapping.Get("variants").Get<tinygltf::Value::Array>())
-        if (variant.GetNumberAsInt() == variant_) return mapping.Get("material").GetNumberAsInt();
-    return primitive.material;
+    if (extension == primitive.extensions.end()) return primitive.material;
+    const auto materials = static_cast<int>(document_.model.materials.size());
+    const auto variants = static_cast<int>(document_.variants.size());
+    std::optional<int> chosen;
+    for (const tinygltf::Value& mapping : extension->second.Get("mappings").Get<tinygltf::Value::Array>()) {
+      const int material = mapping.Get("material").GetNumberAsInt();
+      bool wrong = material >= materials;
+      for (const tinygltf::Value& value : mapping.Get("variants").Get<tinygltf::Value::Array>()) {
+        const int variant = value.GetNumberAsInt();
+        wrong = wrong || variant >= variants;
+        if (variant == variant_ && !chosen) chosen = material;
+      }
+      if (wrong) warn(scene_, "KHR_materials_variants: names a material or a variant that is not there");
+    }
+    if (chosen && *chosen >= materials)
+      throw LoadError(fmt::format("KHR_materials_variants: the variant has material {}, but materials has {} element{}",
+                                  *chosen, materials, materials == 1 ? "" : "s"));
+    return chosen.value_or(primitive.material);
   }
 
   // None where the primitive has nothing to draw.

@@ -11,7 +11,7 @@
 
 namespace vitrail::tool {
 
-std::vector<glm::dmat4> instancesOf(const GltfDocument& document, const GltfPlacedNode& placed) {
+std::vector<glm::dmat4> instancesOf(const GltfDocument& document, const GltfPlacedNode& placed, Scene& scene) {
   const GltfRareParts& rare = document.nodes.rare(placed.node);
   if (!rare.instanced) return {};
   std::optional<std::size_t> count;
@@ -37,10 +37,10 @@ std::vector<glm::dmat4> instancesOf(const GltfDocument& document, const GltfPlac
     if (!rotations.empty()) {
       const glm::dvec4 rotation(rotations[i]);
       const double length = glm::length(rotation);
-      if (!(length > 0.0))
-        throw LoadError(
-            fmt::format("{}: ROTATION of instance {} is zero, not a quaternion", document.nodes.name(placed.node), i));
-      place.rotation = rotation / length;
+      if (length > 0.0)
+        place.rotation = rotation / length;
+      else
+        warn(scene, "EXT_mesh_gpu_instancing: a ROTATION is zero, not a quaternion: that copy is not rotated");
     }
     instances.push_back(matrixOf(place));
   }

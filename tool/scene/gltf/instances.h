@@ -11,7 +11,7 @@
 namespace vitrail::tool {
 
 // From the space of each copy to that of the node; none where the node has no such copies but one of its own. Throws
-// LoadError.
-std::vector<glm::dmat4> instancesOf(const GltfDocument& document, const GltfPlacedNode& placed);
+// LoadError; warns of rotations that are none.
+std::vector<glm::dmat4> instancesOf(const GltfDocument& document, const GltfPlacedNode& placed, Scene& scene);
 
 } // namespace vitrail::tool

@@ -160,6 +160,8 @@ std::int32_t GltfMaterialReader::decode(std::size_t index) {
 }
 
 const GltfMaterialReader::DecodedImage& GltfMaterialReader::image(std::size_t index) {
+  const std::string& uri = document_.images[index].uri;
+  if (!uri.empty() && !uri.starts_with("data:")) index = files_.emplace(uri, index).first->second;
   const auto known = decoded_.find(index);
   if (known != decoded_.end()) return known->second;
   DecodedImage result;
@@ -236,8 +238,10 @@ GltfMaterial GltfMaterialReader::read(std::size_t index) {
   material.emissiveTexture = slot(source.emissiveTexture, where);
   for (int c = 0; c < 3; ++c) material.emissive[c] = clampedFactor(source.emissiveFactor[static_cast<std::size_t>(c)]);
   const auto texture = [&](const tinygltf::Value& info) { return slot(textureInfo(info), where); };
-  readMaterialExtensions(source, where, texture, material, scene_);
+  readMaterialExtensions(source, texture, material, scene_);
   renameTexCoordSets(result, where, scene_);
+  // The factor alone would make the whole surface shine.
+  if (source.emissiveTexture.index >= 0 && material.emissiveTexture.image < 0) material.emissive = glm::vec3(0.0F);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -42,7 +43,8 @@ class GltfMaterialReader {
 
   const GltfDocument& document_;
   Scene& scene_;
-  std::unordered_map<std::size_t, DecodedImage> decoded_; // by the file's image, good or bad
+  std::unordered_map<std::size_t, DecodedImage> decoded_;   // by the file's image, good or bad
+  std::unordered_map<std::string_view, std::size_t> files_; // the first image of each file's name
   std::uint64_t pixels_ = 0;
 };
 

@@ -135,19 +135,18 @@ void readDiffuseTransmission(const Extension& extension, Material& material) {
 }
 
 // The textures of extensions for which no slot is left.
-void warnOfTextures(const Extension& clearcoat, const Extension& diffuseTransmission, const std::string& where,
-                    Scene& scene) {
+void warnOfTextures(const Extension& clearcoat, const Extension& diffuseTransmission, Scene& scene) {
   if (clearcoat && clearcoat.has("clearcoatNormalTexture"))
-    warn(scene, fmt::format("{}: the clearcoatNormalTexture is not drawn: the coat is smooth", where));
+    warn(scene, "the clearcoatNormalTexture of materials is not drawn: coats are smooth");
   for (const char* key : {"diffuseTransmissionTexture", "diffuseTransmissionColorTexture"}) {
     if (diffuseTransmission && diffuseTransmission.has(key))
-      warn(scene, fmt::format("{}: the {} is not drawn: light comes through the same everywhere", where, key));
+      warn(scene, fmt::format("the {} of materials is not drawn: light comes through the same everywhere", key));
   }
 }
 
 } // namespace
 
-void readMaterialExtensions(const tinygltf::Material& source, const std::string& where,
+void readMaterialExtensions(const tinygltf::Material& source,
                             const std::function<TextureSlot(const tinygltf::Value&)>& texture, Material& material,
                             Scene& scene) {
   using Read = void (*)(const Extension&, Material&);
@@ -168,7 +167,11 @@ void readMaterialExtensions(const tinygltf::Material& source, const std::string&
     if (const Extension extension(source, name, texture); extension) read(extension, material);
   }
   warnOfTextures(Extension(source, "KHR_materials_clearcoat", texture),
-                 Extension(source, "KHR_materials_diffuse_transmission", texture), where, scene);
+                 Extension(source, "KHR_materials_diffuse_transmission", texture), scene);
+  if (material.diffuseTransmission > 0.0F && material.thickness > 0.0F && material.attenuationDistance > 0.0F)
+    warn(scene,
+         "KHR_materials_volume with KHR_materials_diffuse_transmission: the light that comes through is not "
+         "attenuated");
 }
 
 } // namespace vitrail::tool

@@ -10,8 +10,8 @@
 namespace vitrail::tool {
 
 // Fills in what the extensions of `source` say, and warns of what of them is not drawn. `texture` reads a texture slot
-// from an extension's JSON. `where` names the material in messages.
-void readMaterialExtensions(const tinygltf::Material& source, const std::string& where,
+// from an extension's JSON.
+void readMaterialExtensions(const tinygltf::Material& source,
                             const std::function<TextureSlot(const tinygltf::Value&)>& texture, Material& material,
                             Scene& scene);
 

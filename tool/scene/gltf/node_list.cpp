@@ -60,6 +60,13 @@ GltfPlace placeOf(const glm::dmat4& matrix) {
   return place;
 }
 
+// Whether a quaternion has no length.
+bool isZero(const Json& numbers) {
+  glm::dvec4 rotation(0.0);
+  for (int i = 0; i < 4; ++i) rotation[i] = numbers[static_cast<std::size_t>(i)].get<double>();
+  return !(glm::length(rotation) > 0.0);
+}
+
 } // namespace
 
 glm::dmat4 matrixOf(const GltfPlace& place) {
@@ -111,6 +118,7 @@ void GltfNodes::addExtensions(const Json& extensions) {
   rare.translations = indexIn(attributes, "TRANSLATION");
   rare.rotations = indexIn(attributes, "ROTATION");
   rare.scales = indexIn(attributes, "SCALE");
+  rare.instanceColors = attributes.contains("_COLOR_0") || attributes.contains("COLOR_0");
   rare.instanced = rare.translations || rare.rotations || rare.scales;
 }
 
@@ -124,6 +132,10 @@ void GltfNodes::add(const Json& json) {
     const auto member = json.find(key);
     // Where there is a matrix the others should not be there.
     if (member == json.end() || (node.parts & Matrix) != 0) continue;
+    if (part == Rotation && isZero(*member)) {
+      if (zeroRotations_++ == 0) firstZeroRotation_ = size() - 1;
+      continue;
+    }
     node.parts |= part;
     for (const Json& number : *member) numbers_.push_back(number.get<double>());
   }
@@ -181,9 +193,7 @@ GltfPlace GltfNodes::place(std::uint32_t index) const {
   if ((node.parts & Rotation) != 0) {
     place.rotation = glm::make_vec4(numbers<4>(at).data());
     at += 4;
-    const double length = glm::length(place.rotation);
-    if (!(length > 0.0)) throw LoadError(fmt::format("{}: rotation is zero, not a quaternion", name(index)));
-    place.rotation /= length;
+    place.rotation /= glm::length(place.rotation); // add() keeps none that is zero
   }
   if ((node.parts & Scale) != 0) place.scale = glm::make_vec3(numbers<3>(at).data());
   return place;

@@ -35,6 +35,7 @@ struct GltfRareParts {
   std::optional<std::uint32_t> translations; // its accessors
   std::optional<std::uint32_t> rotations;
   std::optional<std::uint32_t> scales;
+  bool instanceColors = false;
   std::vector<std::string> extensions; // the names of all that it has
 };
 
@@ -56,9 +57,9 @@ class GltfNodes {
   [[nodiscard]] std::string name(std::uint32_t node) const;         // how a message names it
   [[nodiscard]] std::string_view ownName(std::uint32_t node) const; // empty where it has none
 
-  // Its own transform. Throws LoadError where its rotation is zero.
+  // Its own transform.
   [[nodiscard]] glm::dmat4 matrix(std::uint32_t node) const;
-  // The same as a place; a matrix is decomposed, its shear left out. Throws likewise.
+  // The same as a place; a matrix is decomposed, its shear left out.
   [[nodiscard]] GltfPlace place(std::uint32_t node) const;
 
   // Moves it, or changes the weights of its morph targets.
@@ -68,6 +69,10 @@ class GltfNodes {
   // How many of the children that nodes list were left out, since the node lists them twice, and which one is first.
   [[nodiscard]] std::uint64_t repeatedChildren() const { return repeated_; }
   [[nodiscard]] std::uint32_t firstRepeating() const { return firstRepeating_; }
+
+  // How many rotations of nodes are zero, which turn nothing, and which node has the first.
+  [[nodiscard]] std::uint64_t zeroRotations() const { return zeroRotations_; }
+  [[nodiscard]] std::uint32_t firstZeroRotation() const { return firstZeroRotation_; }
 
  private:
   enum Parts : std::uint8_t { Matrix = 1, Translation = 2, Rotation = 4, Scale = 8, Hidden = 16 };
@@ -96,6 +101,8 @@ class GltfNodes {
   std::string names_;
   std::uint64_t repeated_ = 0;
   std::uint32_t firstRepeating_ = none;
+  std::uint64_t zeroRotations_ = 0;
+  std::uint32_t firstZeroRotation_ = none;
 };
 
 } // namespace vitrail::tool

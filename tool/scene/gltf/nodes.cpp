@@ -134,6 +134,9 @@ void GltfHierarchy::warnOfParents(Scene& scene) const {
   if (nodes.repeatedChildren() > 0)
     warn(scene, fmt::format("{} lists a child twice{}: it is drawn once", nodes.name(nodes.firstRepeating()),
                             andMore(nodes.repeatedChildren())));
+  if (nodes.zeroRotations() > 0)
+    warn(scene, fmt::format("{}: rotation is zero, not a quaternion{}: it is not rotated",
+                            nodes.name(nodes.firstZeroRotation()), andMore(nodes.zeroRotations())));
 }
 
 void GltfHierarchy::visit(const std::function<void(const GltfPlacedNode&)>& visit) const {
