@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -424,6 +425,38 @@ TEST(Cli, UnsortedBlendsInTheOrderOfSubmission) {
   // picture to 16-bit floats at each surface.
   const auto flames = [](const Words& options) { return draw(options, "flames", "96x64", "#000000").png; };
   EXPECT_LE(largestDifference(flames({"--method", "unsorted"}), flames({"--nodes", "hdr"})), 2);
+}
+
+// What the method, and not the file's reader, knows to be missing.
+TEST(Cli, WhatAMethodDrawsOtherwiseIsWarnedOf) {
+  const TemporaryFolder folder;
+  Words words = {"render", VITRAIL_TEST_CORPUS "/good/volume.gltf", "--size", "32x32", "-o", "a.png", "--json",
+                 "a.json"};
+  const ProcessResult result = vitrail(folder, words);
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_NE(result.error.find("vitrail: warning: material 0 \"pane\": an object of it is not closed"),
+            std::string::npos)
+      << result.error;
+  EXPECT_EQ(readJson(folder.file("a.json")).at("warnings").size(), 1U);
+  words[5] = "strict.png";
+  words.emplace_back("--strict");
+  EXPECT_EQ(vitrail(folder, words).exitCode, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("strict.png")));
+}
+
+TEST(Cli, AModelIsNeverWrittenOver) {
+  const TemporaryFolder folder;
+  const std::filesystem::path model = folder.file("m.gltf");
+  std::filesystem::copy_file(VITRAIL_TEST_CORPUS "/good/triangle.gltf", model);
+  const auto size = std::filesystem::file_size(model);
+  for (const Words& outputs : {Words{"-o", "a.png", "--json", "./m.gltf"}, Words{"-o", "m.gltf", "--format", "png"}}) {
+    Words words = {"render", "m.gltf", "--size", "16x16"};
+    words.insert(words.end(), outputs.begin(), outputs.end());
+    const ProcessResult result = vitrail(folder, words);
+    EXPECT_EQ(result.exitCode, 2) << result.error;
+    EXPECT_NE(result.error.find("would be written over"), std::string::npos) << result.error;
+    EXPECT_EQ(std::filesystem::file_size(model), size);
+  }
 }
 
 // Sample counts are the device's: those of lavapipe are 1 and 4.

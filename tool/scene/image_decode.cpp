@@ -69,12 +69,13 @@ bool plausiblePng(std::span<const std::byte> file, std::uint64_t pixels) {
 
 // Whether all chunks of a PNG lie within the file: the decoder takes memory for one as long as it says that it is.
 bool pngChunksFit(std::span<const std::byte> file) {
-  constexpr std::size_t frame = 12; // length, kind and checksum
-  for (std::size_t i = pngSignature.size(); file.size() - i >= frame;) {
+  constexpr std::size_t front = 8; // length and kind; a checksum of 4 bytes ends a chunk
+  constexpr std::size_t frame = 12;
+  for (std::size_t i = pngSignature.size(); file.size() - i >= front;) {
+    if (startsWith(file.subspan(i + 4), "IEND")) return true;
     std::size_t length = 0;
     for (std::size_t byte = 0; byte < 4; ++byte) length = length << 8U | std::to_integer<std::size_t>(file[i + byte]);
-    if (length > file.size() - i - frame) return false;
-    if (startsWith(file.subspan(i + 4), "IEND")) return true;
+    if (file.size() - i < frame || length > file.size() - i - frame) return false;
     i += frame + length;
   }
   return true;
