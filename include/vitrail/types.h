@@ -36,6 +36,7 @@ VITRAIL_API uint32_t vitrailVersion(void);
 /* What calls without a graphics API return; those of an API return that API's own codes. */
 typedef enum VitrailResult {
   VITRAIL_SUCCESS = 0,
+  VITRAIL_INCOMPLETE = 1,           /* it was given up, as the host asked */
   VITRAIL_ERROR_INVALID = -1,       /* an argument is not as described */
   VITRAIL_ERROR_UNSUPPORTED = -2,   /* the device, or a feature that was not enabled, rules it out */
   VITRAIL_ERROR_FORMAT = -3,        /* a format does not go with the rest */
