@@ -46,12 +46,12 @@ typedef void (*VitrailCpuParallel)(void* user, uint32_t count, void (*task)(void
 /* The vector instructions that a context uses. Which there are depends on the processor and on how the library was
  * built. */
 typedef enum VitrailCpuInstructions {
-  VITRAIL_CPU_BEST = 0,   /* the widest that the processor has */
-  VITRAIL_CPU_SSE4 = 1,   /* 4 lanes, x86 */
-  VITRAIL_CPU_AVX2 = 2,   /* 8 lanes, x86, with fused multiply-add */
-  VITRAIL_CPU_AVX512 = 3, /* 16 lanes, x86 */
-  VITRAIL_CPU_NEON = 4,   /* 4 lanes, 64-bit Arm */
-  VITRAIL_CPU_SCALAR = 5, /* 1 lane; what is taken on other processors */
+  VITRAIL_CPU_BEST = 0,     /* the widest that the processor has */
+  VITRAIL_CPU_SSE4 = 1,     /* 4 lanes, x86 */
+  VITRAIL_CPU_AVX2 = 2,     /* 8 lanes, x86, with fused multiply-add */
+  VITRAIL_CPU_AVX512 = 3,   /* 16 lanes, x86 */
+  VITRAIL_CPU_NEON = 4,     /* 4 lanes, 64-bit Arm */
+  VITRAIL_CPU_BASELINE = 5, /* 4 lanes: what every processor of the kind has (x86: SSE2) */
   VITRAIL_CPU_INSTRUCTIONS_MAX_ENUM = 0x7fffffff
 } VitrailCpuInstructions;
 
@@ -216,10 +216,19 @@ typedef int (*VitrailCpuList)(void* user, uint32_t x, uint32_t y, const VitrailL
  * anything else to give up: the call returns VITRAIL_INCOMPLETE, and part of the picture is there. */
 typedef int (*VitrailCpuProgress)(void* user, uint32_t tilesDone, uint32_t tiles);
 
+/* The most pixels of a picture's side. */
+#define VITRAIL_CPU_MAX_SIDE 32768
+
 typedef struct VitrailCpuFrame {
   const void* next; /* null */
-  uint32_t width;   /* pixels; required; at most 32768 */
+  uint32_t width;   /* pixels; required; at most VITRAIL_CPU_MAX_SIDE */
   uint32_t height;
+  /* Where the frame is a part of a larger picture: the size of that, and where in it the frame begins. What is drawn is
+   * bit for bit what it is in the whole picture. Default: the frame is the picture. */
+  uint32_t pictureWidth;
+  uint32_t pictureHeight;
+  uint32_t originX;
+  uint32_t originY;
   uint32_t samples; /* 1 (default), 2, 4 or 8: each sample blends its own fragments, and a pixel is their mean */
   VitrailCpuClipSpace clipSpace;
   VitrailDepthOrder depthOrder;
