@@ -68,6 +68,10 @@ HWY_INLINE float* floatsOf(Row row, std::uint32_t vector) { return reinterpret_c
 
 class Store {
  public:
+  static constexpr std::uint32_t kNone = ~0U;
+  static constexpr std::uint32_t kFirstLimit = 64;
+  static constexpr std::uint32_t kNoLimit = ~0U;
+
   Store(const RowShape& shape, std::uint64_t budget) : shape_(shape) {
     chunkBytes_ = shape.bytes() * kChunkRows;
     chunks_ = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(budget / chunkBytes_, 4, 1U << 24U));
@@ -80,6 +84,7 @@ class Store {
 
   void reset() {
     used_ = 0;
+    free_ = kNone;
     for (Head& head : heads_) head = {};
   }
 
@@ -101,18 +106,47 @@ class Store {
     return head.row;
   }
 
-  // All rows of a block, in no particular order.
+  // All rows of a block, in the order in which they were opened.
   void collect(std::uint32_t block, std::vector<Row>& rows) const {
     const Head& head = heads_[block];
-    rows.clear();
+    rows.resize(head.rows);
     std::uint32_t chunk = head.chunk;
-    std::uint32_t left = head.rows;
-    while (left > 0) {
+    for (std::uint32_t left = head.rows; left > 0;) {
       const std::uint32_t count = (left - 1) % kChunkRows + 1;
-      for (std::uint32_t i = 0; i < count; ++i) rows.push_back(rowAt(chunk, i));
       left -= count;
+      for (std::uint32_t i = 0; i < count; ++i) rows[left + i] = rowAt(chunk, i);
       chunk = previous_[chunk];
     }
+  }
+
+  void setLimit(std::uint32_t block, std::uint32_t limit) { heads_[block].limit = limit; }
+  // Whether it is time to look which fragments of a block can still be seen.
+  bool isCrowded(std::uint32_t block) const { return heads_[block].rows >= heads_[block].limit; }
+  // How many of a block's rows, its first ones, were shaded.
+  std::uint32_t shadedRows(std::uint32_t block) const { return heads_[block].shaded; }
+
+  // All of its rows were.
+  void setShaded(std::uint32_t block) {
+    heads_[block].shaded = heads_[block].rows;
+    heads_[block].filled = 0xffffU; // nothing is added to a row that was shaded
+  }
+
+  // Keeps the first `rows` rows of a block, all of them shaded; `limit`: how many make it crowded.
+  void keepFirst(std::uint32_t block, std::uint32_t rows, std::uint32_t limit) {
+    Head& head = heads_[block];
+    const std::uint32_t chunks = (rows + kChunkRows - 1) / kChunkRows;
+    for (std::uint32_t i = (head.rows + kChunkRows - 1) / kChunkRows; i > chunks; --i) {
+      const std::uint32_t before = previous_[head.chunk];
+      previous_[head.chunk] = free_;
+      free_ = head.chunk;
+      head.chunk = before;
+    }
+    head.rows = rows;
+    head.shaded = rows;
+    head.limit = limit;
+    head.filled = 0xffffU;
+    head.left = chunks * kChunkRows - rows;
+    head.row = rows == 0 ? nullptr : rowAt(head.chunk, (rows - 1) % kChunkRows);
   }
 
   // Twice as much room, for what has to be held at once. Rows move.
@@ -129,7 +163,9 @@ class Store {
 
   // An empty store but for `rows` rows of one block, to be filled in.
   void restart(std::uint32_t block, std::uint32_t rows) {
+    const std::uint32_t limit = heads_[block].limit;
     reset();
+    heads_[block].limit = limit;
     std::uint32_t isFresh = 0;
     for (std::uint32_t i = 0; i < rows; ++i) static_cast<void>(rowFor(block, 0xffffU, isFresh));
   }
@@ -145,6 +181,8 @@ class Store {
     std::uint32_t rows = 0;
     std::uint32_t left = 0; // rows of the last chunk that are free
     std::uint32_t chunk = 0;
+    std::uint32_t shaded = 0; // of its first rows
+    std::uint32_t limit = kFirstLimit;
     Row row = nullptr; // the last one
   };
 
@@ -157,9 +195,12 @@ class Store {
   }
 
   HWY_NOINLINE bool addChunk(Head& head) {
-    if (used_ == chunks_) return false;
-    previous_[used_] = head.chunk;
-    head.chunk = used_++;
+    if (head.rows >= head.limit) return false;
+    if (free_ == kNone && used_ == chunks_) return false;
+    const std::uint32_t chunk = free_ != kNone ? free_ : used_++;
+    if (chunk == free_) free_ = previous_[chunk];
+    previous_[chunk] = head.chunk;
+    head.chunk = chunk;
     head.row = rowAt(head.chunk, 0);
     head.left = kChunkRows;
     return true;
@@ -169,6 +210,7 @@ class Store {
   std::size_t chunkBytes_ = 0;
   std::uint32_t chunks_ = 0;
   std::uint32_t used_ = 0;
+  std::uint32_t free_ = kNone; // chunks that were given back, a list
   std::unique_ptr<std::int32_t, Free> arena_;
   std::vector<std::uint32_t> previous_; // of a chunk: the one before it
   std::array<Head, kBlocks> heads_{};

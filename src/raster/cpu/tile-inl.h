@@ -106,7 +106,8 @@ class TileWorker final : public TileWorkspace {
   struct Window {
     alignas(64) std::int32_t after[kLanes];
     alignas(64) std::int32_t until[kLanes];
-    bool isCut = false; // some were left
+    bool isCut = false;     // some were left
+    bool isCounted = false; // fragments are only counted: nothing shows behind what was blended
   };
 
   struct State { // of a block: what its samples come to
@@ -136,8 +137,11 @@ class TileWorker final : public TileWorkspace {
 
   HWY_INLINE void perspective(std::uint32_t t, const F& flatSecond, const F& flatThird, bool derivatives,
                               F* weights) const;
+  enum class Emitted { IsStored, IsCrowded, IsFull };
   template <bool kShaded>
-  HWY_INLINE bool emitTransparent(const Frame& frame, std::uint32_t item, Window* window);
+  Emitted emitTransparent(const Frame& frame, std::uint32_t item, Window* window);
+  template <bool kShaded>
+  bool emit(const Frame& frame, std::uint32_t item, Window* window);
   HWY_INLINE void emitOpaque(const Frame& frame, std::uint32_t item);
   HWY_INLINE std::uint32_t testDepth(const Frame& frame, const Work& work, std::uint32_t item, const F& depth, I* keys);
 
@@ -146,9 +150,14 @@ class TileWorker final : public TileWorkspace {
   void drawParts(const Frame& frame, std::uint64_t blocks, TileCounts& counts);
   void drawInWindows(const Frame& frame, std::uint32_t block, TileCounts& counts);
   void shrink(Window& window, std::uint32_t block);
+  void thin(const Frame& frame, std::uint32_t block);
+  bool mayHide(const Frame& frame) const;
+  void shadeBlock(const Frame& frame, std::uint32_t block);
+  I saturationOf(const Frame& frame, const SortedRows& sorted) const;
   void resolveBlock(const Frame& frame, std::uint32_t block, TileCounts& counts);
   SortedRows sortBlock(const Frame& frame, std::uint32_t block);
   static void count(const std::int32_t* layers, TileCounts& counts);
+  static bool isHidden(const Frame& frame, const State& state);
   void blendInto(const Frame& frame, const SortedRows& sorted, State& state);
   void coveragesOf(const Frame& frame, const SortedRows& sorted, std::uint32_t* coverages) const;
   Row rowOf(const Frame& frame, const SortedRows& sorted, std::size_t r, std::size_t lane) const;
@@ -172,6 +181,10 @@ class TileWorker final : public TileWorkspace {
   std::array<std::uint8_t, kBatch * kBlocks + 64> tags_{};
   std::array<Work, kBatch * kBlocks + 64> work_{};
   std::array<std::array<std::uint16_t, kBatch * kBlocks + 64>, kMaxSamples> sampleMasks_{};
+  // Blocks in which what is far away is known to be hidden: from which depth on, and how many fragments were left out.
+  std::uint64_t saturated_ = 0;
+  alignas(64) std::int32_t until_[kBlocks][kLanes];
+  alignas(64) std::int32_t hidden_[kBlocks][kLanes];
   alignas(64) std::int32_t layers_[kLanes]; // fragments of each pixel of the block that was sorted last
   std::vector<Row> rows_;
   std::vector<double> keyMemory_;
@@ -444,9 +457,9 @@ HWY_INLINE std::uint32_t TileWorker::testDepth(const Frame& frame, const Work& w
   return any;
 }
 
-// Stores the fragments of a triangle in a block. False: the store is full.
+// Stores the fragments of a triangle in a block.
 template <bool kShaded>
-HWY_INLINE bool TileWorker::emitTransparent(const Frame& frame, std::uint32_t item, Window* window) {
+HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, std::uint32_t item, Window* window) {
   const Work work = work_[item];
   const std::uint32_t t = work.triangle;
   const std::uint32_t block = work.block;
@@ -462,11 +475,22 @@ HWY_INLINE bool TileWorker::emitTransparent(const Frame& frame, std::uint32_t it
     const std::uint32_t later = mask & ~bitsOf(load(window->until) > key);
     window->isCut = window->isCut || later != 0;
     mask &= ~later & bitsOf(key > load(window->after));
+    if (window->isCounted) {
+      store(layers_, load(layers_) + keep(maskOf(mask), set(1)));
+      return Emitted::IsStored;
+    }
   }
-  if (mask == 0) return true;
+  if (HWY_UNLIKELY((saturated_ >> block & 1U) != 0)) {
+    const M hidden = andNot(load(until_[block]) > key, maskOf(mask));
+    store(hidden_[block], load(hidden_[block]) + keep(hidden, set(1)));
+    mask &= ~bitsOf(hidden);
+  }
+  if (mask == 0) return Emitted::IsStored;
   std::uint32_t isFresh = 0;
   const Row row = store_.rowFor(block, mask, isFresh);
-  if (HWY_UNLIKELY(row == nullptr)) return false;
+  if (HWY_UNLIKELY(row == nullptr)) {
+    return store_.isCrowded(block) ? Emitted::IsCrowded : Emitted::IsFull;
+  }
   const M here = maskOf(mask);
   const M fresh = maskOf(0U - isFresh); // without a branch: nobody could tell which it takes
   const auto put = [&](std::uint32_t vector, const I& value, const I& elsewhere) HWY_ATTR {
@@ -492,7 +516,18 @@ HWY_INLINE bool TileWorker::emitTransparent(const Frame& frame, std::uint32_t it
     }
     put(shape_.coverage, covered, set(0));
   }
-  return true;
+  return Emitted::IsStored;
+}
+
+// The same, and makes room where hidden fragments take it. False: the store is full.
+template <bool kShaded>
+HWY_INLINE bool TileWorker::emit(const Frame& frame, std::uint32_t item, Window* window) {
+  Emitted emitted = emitTransparent<kShaded>(frame, item, window);
+  if (HWY_UNLIKELY(emitted == Emitted::IsCrowded)) {
+    thin(frame, work_[item].block);
+    emitted = emitTransparent<kShaded>(frame, item, window);
+  }
+  return emitted == Emitted::IsStored;
 }
 
 // ---- Opaque surfaces
@@ -635,11 +670,11 @@ inline void TileWorker::drawOpaque(const Frame& frame, std::uint32_t tile) {
 
 inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, TileCounts& counts) {
   store_.reset();
+  saturated_ = 0;
   const bool hasFitted =
       frame.needs.shaded
-          ? rasterise(frame, blocks, [&](std::uint32_t i) HWY_ATTR { return emitTransparent<true>(frame, i, nullptr); })
-          : rasterise(frame, blocks,
-                      [&](std::uint32_t i) HWY_ATTR { return emitTransparent<false>(frame, i, nullptr); });
+          ? rasterise(frame, blocks, [&](std::uint32_t i) HWY_ATTR { return emit<true>(frame, i, nullptr); })
+          : rasterise(frame, blocks, [&](std::uint32_t i) HWY_ATTR { return emit<false>(frame, i, nullptr); });
   if (hasFitted) {
     for (std::uint64_t left = blocks; left != 0; left &= left - 1) {
       const auto block = static_cast<std::uint32_t>(__builtin_ctzll(left));
@@ -713,6 +748,119 @@ inline void TileWorker::shrink(Window& window, std::uint32_t block) {
   for (std::size_t r = 0; r < most; ++r) std::memcpy(rows_[r], copy.data() + r * stride, shape_.bytes());
 }
 
+// What comes through fragments that are taken one after the other. With several samples only what covers all of a pixel
+// counts.
+class Through {
+ public:
+  explicit Through(const Frame& frame) : filters_(frame.needs.filters), least_(set(0.5F * frame.leastTransmittance)) {
+    for (F& t : through_) t = set(1.0F);
+  }
+
+  HWY_INLINE void take(const M& counts, const F& alpha, const F* filter) {
+    through_[3] = fnma(through_[3], keep(counts, alpha), through_[3]);
+    for (std::size_t c = 0; filters_ && c < 3; ++c) through_[c] = select(counts, through_[c] * filter[c], through_[c]);
+  }
+  // Where it is too little to show anything: half of the least, for what rounds otherwise in blending.
+  HWY_INLINE M isTooLittle() const {
+    const F most = filters_ ? max(max(through_[0], through_[1]), max(through_[2], through_[3])) : through_[3];
+    return least_ > most;
+  }
+
+ private:
+  bool filters_;
+  F least_;
+  F through_[4]; // red, green, blue where there are filters, alpha
+};
+
+// Whether in some pixel of rows_ there is enough to hide anything, in whatever order.
+inline bool TileWorker::mayHide(const Frame& frame) const {
+  Through through(frame);
+  const I everything = set(static_cast<std::int32_t>((1U << frame.info.samples) - 1));
+  for (const Row row : rows_) {
+    M counts = set(kFarKey) > load(row);
+    if (shape_.coverage != 0) counts = counts & (load(row + kLanes * shape_.coverage) == everything);
+    const std::int32_t* places = row + kLanes * RowShape::kNumber;
+    const auto pairs = [&](const float* of, std::uint32_t vector, F* values) HWY_ATTR {
+      loadFours(
+          [&](std::size_t lane) HWY_ATTR {
+            return shape_.isFlat ? of + std::size_t{4} * static_cast<std::uint32_t>(places[lane])
+                                 : floatsOf(row, vector) + 4 * placeOfFour(lane);
+          },
+          values[0], values[1], values[2], values[3]);
+    };
+    F pair[4];
+    F filter[4];
+    pairs(frame.flatPairs.front().data(), RowShape::kPairs, pair);
+    if (frame.needs.filters) pairs(frame.flatFilters.front().data(), RowShape::kFilters, filter);
+    through.take(counts, pair[3], filter);
+  }
+  return !none(through.isTooLittle());
+}
+
+// The depth, as a key, from which on each pixel's fragments are hidden by those in front of them: 1 beyond that of the
+// one behind which too little light is left.
+inline I TileWorker::saturationOf(const Frame& frame, const SortedRows& sorted) const {
+  Through through(frame);
+  I until = set(kFarKey);
+  alignas(64) std::int32_t keys[kLanes];
+  alignas(64) std::int32_t whole[kLanes];
+  const std::uint32_t everything = (1U << frame.info.samples) - 1;
+  for (std::size_t r = 0; r < sorted.rows; ++r) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      keys[lane] = static_cast<std::int32_t>(sorted.depthKeyOf(r, lane));
+      whole[lane] = keys[lane] < kFarKey ? 1 : 0;
+      if (shape_.coverage == 0 || whole[lane] == 0) continue;
+      const std::int32_t covered = rowOf(frame, sorted, r, lane)[kLanes * shape_.coverage + lane];
+      whole[lane] = static_cast<std::uint32_t>(covered) == everything ? 1 : 0;
+    }
+    F pair[4];
+    F filter[4];
+    loadFours([&](std::size_t lane) HWY_ATTR { return sorted.pairOf(r, lane); }, pair[0], pair[1], pair[2], pair[3]);
+    if (frame.needs.filters) {
+      loadFours([&](std::size_t lane) HWY_ATTR { return sorted.filterOf(r, lane); }, filter[0], filter[1], filter[2],
+                filter[3]);
+    }
+    const M before = through.isTooLittle();
+    through.take(load(whole) > set(0), pair[3], filter);
+    const M after = through.isTooLittle();
+    until = select(andNot(before, after), load(keys) + set(1), until);
+    if (all(after)) break;
+  }
+  return until;
+}
+
+// Lets go of a block's fragments that are hidden. Whatever comes later can only move that depth nearer.
+inline void TileWorker::thin(const Frame& frame, std::uint32_t block) {
+  const auto limitOf = [](std::size_t rows) {
+    const auto twice = static_cast<std::uint32_t>((2 * rows + kChunkRows - 1) / kChunkRows * kChunkRows);
+    return std::max(Store::kFirstLimit, twice);
+  };
+  shadeBlock(frame, block);
+  if (!mayHide(frame)) {
+    const auto rows = static_cast<std::uint32_t>(rows_.size());
+    return store_.keepFirst(block, rows, limitOf(rows));
+  }
+  const SortedRows sorted = sortBlock(frame, block);
+  const I until = saturationOf(frame, sorted);
+  if ((saturated_ >> block & 1U) == 0) store(hidden_[block], set(0));
+  saturated_ |= std::uint64_t{1} << block;
+  store(until_[block], until);
+  std::uint32_t kept = 0;
+  I hiddenCount = load(hidden_[block]);
+  for (const Row row : rows_) {
+    const I key = load(row);
+    const M present = set(kFarKey) > key;
+    const M shown = until > key;
+    hiddenCount = hiddenCount + keep(andNot(shown, present), set(1));
+    if (none(shown & present)) continue;
+    const Row to = rows_[kept++];
+    if (to != row) std::memcpy(to, row, shape_.bytes());
+    store(to, select(shown, key, set(kFarKey)));
+  }
+  store(hidden_[block], hiddenCount);
+  store_.keepFirst(block, kept, limitOf(kept));
+}
+
 // A block whose fragments do not fit: the nearest ones are blended, then those behind them, and so on.
 inline void TileWorker::drawInWindows(const Frame& frame, std::uint32_t block, TileCounts& counts) {
   State state;
@@ -724,10 +872,11 @@ inline void TileWorker::drawInWindows(const Frame& frame, std::uint32_t block, T
     window.isCut = false;
     std::fill(std::begin(window.until), std::end(window.until), kFarKey);
     store_.reset();
+    store_.setLimit(block, Store::kNoLimit);
+    saturated_ = 0;
     store(layers_, set(0));
     rasterise(frame, std::uint64_t{1} << block, [&](std::uint32_t item) HWY_ATTR {
-      while (!(frame.needs.shaded ? emitTransparent<true>(frame, item, &window)
-                                  : emitTransparent<false>(frame, item, &window))) {
+      while (!(frame.needs.shaded ? emit<true>(frame, item, &window) : emit<false>(frame, item, &window))) {
         if (frame.info.list != nullptr) {
           store_.grow(); // the hook takes whole lists
         } else {
@@ -742,6 +891,7 @@ inline void TileWorker::drawInWindows(const Frame& frame, std::uint32_t block, T
         listBlock(frame, block, sorted);
       } else {
         blendInto(frame, sorted, state);
+        window.isCounted = isHidden(frame, state);
       }
     }
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -764,21 +914,38 @@ inline void TileWorker::count(const std::int32_t* layers, TileCounts& counts) {
   }
 }
 
-inline SortedRows TileWorker::sortBlock(const Frame& frame, std::uint32_t block) {
+// Whether nothing shows behind what was blended of a block.
+inline bool TileWorker::isHidden(const Frame& frame, const State& state) {
+  const F least = set(frame.leastTransmittance);
+  for (std::uint32_t s = 0; s < frame.info.samples; ++s) {
+    const Blended& b = state.samples[s];
+    if (!none(frame.needs.filters ? isAlive<true>(b, least) : isAlive<false>(b, least))) return false;
+  }
+  return true;
+}
+
+// Collects a block's rows, and shades those that are not.
+inline void TileWorker::shadeBlock(const Frame& frame, std::uint32_t block) {
   store_.collect(block, rows_);
+  if (!frame.needs.shaded) return;
   const std::uint32_t x = static_cast<std::uint32_t>(tile_.x) + block % kBlocksAcross * kBlockSide;
   const std::uint32_t y = static_cast<std::uint32_t>(tile_.y) + block / kBlocksAcross * kBlockSide;
+  for (std::size_t r = store_.shadedRows(block); r < rows_.size(); ++r) shadeRow(frame, rows_[r], x, y, fragments_);
+  store_.setShaded(block);
+}
+
+inline SortedRows TileWorker::sortBlock(const Frame& frame, std::uint32_t block) {
+  shadeBlock(frame, block);
   SortedRows sorted;
   sorted.rows = sortedRows(rows_.size());
   if (keyMemory_.size() < sorted.rows * kLanes + kLanes) keyMemory_.resize(2 * sorted.rows * kLanes + kLanes);
   sorted.keys = aligned(keyMemory_.data());
   const I places = load(kPairPlaces.place);
-  I layers = set(0);
+  I layers = (saturated_ >> block & 1U) != 0 ? load(hidden_[block]) : set(0);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const Row row = rows_[r];
     I place;
     if (frame.needs.shaded) {
-      shadeRow(frame, row, x, y, fragments_);
       const std::ptrdiff_t first = reinterpret_cast<const float*>(row + kLanes * RowShape::kPairs) - store_.base();
       place = places + set(static_cast<std::int32_t>(first / 4));
     } else {
