@@ -162,18 +162,20 @@ typedef struct VitrailCpuDraw {
   VitrailCpuCull cull;
   VitrailBlend blend; /* of transparent draws */
   /* Vertices: `vertexCount` times `components` floats, 3 (w is 1) or 4 (default), `vertexStride` bytes apart (default:
-   * without gaps). With `transform`, a 4 x 4 matrix in columns, clip space is transform * (x, y, z, w); without it they
-   * are in clip space. */
+   * without gaps). With `model`, three rows of four floats, (x, y, z) becomes those rows times (x, y, z, w). With
+   * `transform`, a 4 x 4 matrix in columns, clip space is transform * (x, y, z, w); without it they are in clip space.
+   * Products are added from w to x, each sum rounded: in the order of Mesa's drivers. */
   const float* positions; /* required */
   uint32_t components;
   uint32_t vertexStride;
   uint32_t vertexCount;
+  const float* model;     /* optional */
   const float* transform; /* optional */
   /* Optional: `indexCount` numbers of vertices, each below vertexCount. Without them vertices are taken in order. */
   const uint32_t* indices;
   uint32_t indexCount;
-  /* Optional: what is on the negative side of a plane is cut away: four floats each, times (x, y, z, w) of `positions`.
-   * At most VITRAIL_CPU_MAX_CLIP_PLANES. */
+  /* Optional: what is on the negative side of a plane is cut away: four floats each, times (x, y, z, w) before
+   * `transform` and after `model`. At most VITRAIL_CPU_MAX_CLIP_PLANES. */
   const float* clipPlanes;
   uint32_t clipPlaneCount;
   float pointSize; /* of points; default 1 */
