@@ -88,7 +88,7 @@ std::int64_t targetsOf(VitrailCpuInstructions instructions) {
       return HWY_AVX3;
     case VITRAIL_CPU_NEON:
       return HWY_NEON;
-    case VITRAIL_CPU_SCALAR:
+    case VITRAIL_CPU_BASELINE:
       return 0;
     default:
       return ~std::int64_t{0};
