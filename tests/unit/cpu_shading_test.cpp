@@ -9,8 +9,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/packing.hpp>
 
 #include "../../tool/cpu/cpu_scene.h"
 #include "../../tool/cpu/cpu_texture.h"
@@ -48,7 +49,7 @@ class Random {
 };
 
 // What the material of a scene is at a point, as textures of one texel each have it.
-struct Texels {
+struct SlotTexels {
   glm::dvec4 base{1.0};
   glm::dvec4 metallicRoughness{1.0};
   glm::dvec3 normal{0.5, 0.5, 1.0};
@@ -71,7 +72,7 @@ struct Texels {
 struct Case {
   Scene scene;
   View view;
-  Texels texels;
+  SlotTexels texels;
   std::uint32_t x = 0; // of the block
   std::uint32_t y = 0;
   std::optional<float> opacity;
@@ -188,12 +189,16 @@ void addMesh(Case& c, Random& random, std::size_t triangles, const glm::mat4& tr
     const double depth = random.number(2.0, 6.0);
     glm::dvec3 facing = random.direction();
     if (glm::dot(facing, way) > 0.0) facing = -facing;
+    // Where the tool's own light is mirrored, highlights are as sharp as they can be.
+    const glm::dvec3 light = glm::dmat3(glm::dmat4(c.view.cameraToWorld)) * glm::normalize(glm::dvec3(-0.4, 0.7, 0.6));
+    const bool highlight = random.chance(0.3);
+    if (highlight) facing = glm::normalize(light - glm::normalize(way));
     for (int i = 0; i < 3; ++i) {
       const double angle = turn + i * 2.0 * 3.14159265 / 3.0 + random.number(-0.3, 0.3);
       const auto [from, along] = rayAt(c.view, c.x + 2.0 + 12.0 * std::cos(angle), c.y + 2.0 + 12.0 * std::sin(angle));
       Vertex vertex;
       vertex.position = glm::vec3(toMesh * glm::dvec4(from + along * (depth + random.number(-0.2, 0.2)), 1.0));
-      const glm::dvec3 normal = glm::normalize(facing + 0.3 * random.direction());
+      const glm::dvec3 normal = glm::normalize(facing + (highlight ? 0.05 : 0.3) * random.direction());
       vertex.normal = glm::normalize(glm::transpose(glm::dmat3(glm::dmat4(transform))) * normal);
       vertex.tangent = glm::vec4(glm::vec3(random.direction()), random.chance() ? 1.0F : -1.0F);
       if (i > 0) vertex.tangent.w = mesh.vertex(mesh.vertexCount() - 1).tangent.w; // along a triangle it is the same
@@ -231,8 +236,8 @@ Case makeCase(Random& random, Kind kind) {
   if (kind == Kind::Everything) addExtensions(m, random);
   if (kind != Kind::Plain) addTextures(c, m, random);
   if (kind == Kind::Everything && random.chance()) addLights(c.scene, random);
-  glm::mat4 transform = glm::rotate(glm::mat4(1.0F), static_cast<float>(random.number(0.0, 6.0)),
-                                    glm::vec3(random.direction()));
+  glm::mat4 transform =
+      glm::rotate(glm::mat4(1.0F), static_cast<float>(random.number(0.0, 6.0)), glm::vec3(random.direction()));
   transform = glm::scale(transform, glm::vec3(random.color(2.0) + 0.3) * (random.chance() ? 1.0F : -1.0F));
   transform[3] = glm::vec4(glm::vec3(random.color()), 1.0F);
   const bool colors = kind != Kind::Plain && random.chance();
@@ -302,7 +307,7 @@ glm::dvec3 mapped(const glm::dvec3& seen, double side, const glm::dvec4& tangent
 }
 
 // Fills in what the material and its texels are.
-void setMaterial(reference::Surface& s, const Material& m, const Texels& t) {
+void setMaterial(reference::Surface& s, const Material& m, const SlotTexels& t) {
   s.emissive = glm::dvec3(m.emissive) * t.emissive;
   s.metallic = double{m.metallic} * t.metallicRoughness.b;
   s.roughness = double{m.roughness} * t.metallicRoughness.g;
@@ -325,7 +330,8 @@ void setMaterial(reference::Surface& s, const Material& m, const Texels& t) {
   s.anisotropyRotation = double{m.anisotropyRotation} + std::atan2(turned.y, turned.x);
   s.iridescence = double{m.iridescence} * t.iridescence;
   s.iridescenceIor = m.iridescenceIor;
-  s.filmThickness = glm::mix(double{m.iridescenceThickness.x}, double{m.iridescenceThickness.y}, t.iridescenceThickness);
+  s.filmThickness =
+      glm::mix(double{m.iridescenceThickness.x}, double{m.iridescenceThickness.y}, t.iridescenceThickness);
   s.diffuseTransmission = m.diffuseTransmission;
   s.diffuseTransmissionColor = m.diffuseTransmissionColor;
 }
@@ -459,6 +465,387 @@ TEST_P(CpuShading, IsThatOfTheReference) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, CpuShading,
                          testing::Values(Kind::Plain, Kind::Textured, Kind::Everything, Kind::Unlit));
+
+// ---- Textures
+
+Image randomImage(Random& random, bool translucent) {
+  Image image;
+  image.width = 1 + static_cast<std::uint32_t>(random.below(9));
+  image.height = 1 + static_cast<std::uint32_t>(random.below(9));
+  for (std::size_t i = 0; i < std::size_t{image.width} * image.height; ++i) {
+    for (int k = 0; k < 3; ++k) image.rgba.push_back(static_cast<std::uint8_t>(random.below(256)));
+    image.rgba.push_back(translucent ? static_cast<std::uint8_t>(random.below(256)) : 255);
+  }
+  return image;
+}
+
+glm::dvec4 texelAt(const CpuTexture& texture, std::size_t level, std::int64_t x, std::int64_t y) {
+  const auto i = static_cast<std::size_t>(texture.offset.at(level) + y * texture.width.at(level) + x);
+  if (texture.kind == Texels::Premultiplied) {
+    return {glm::unpackHalf2x16(texture.texels[i]), glm::unpackHalf2x16(texture.blueAlpha[i])};
+  }
+  glm::dvec4 value;
+  for (int k = 0; k < 4; ++k) {
+    const double code = (texture.texels[i] >> (8 * k) & 255U) / 255.0;
+    value[k] = texture.kind == Texels::Srgb && k < 3 ? reference::decodeSrgb(code) : code;
+  }
+  return value;
+}
+
+std::int64_t wrapped(std::int64_t i, std::int64_t size, Wrap wrap) {
+  const auto modulo = [](std::int64_t a, std::int64_t b) { return (a % b + b) % b; };
+  if (wrap == Wrap::Repeat) return modulo(i, size);
+  if (wrap == Wrap::ClampToEdge) return std::clamp<std::int64_t>(i, 0, size - 1);
+  const std::int64_t folded = modulo(i, 2 * size);
+  return folded < size ? folded : 2 * size - 1 - folded;
+}
+
+// A sample as the Vulkan specification has it, and whether a rounding error could give another one.
+struct Sample {
+  glm::dvec4 value{0.0};
+  bool unsure = false;
+};
+
+void addLevel(Sample& sample, const CpuTexture& texture, const Sampler& sampler, const glm::dvec2& uv,
+              std::size_t level, bool linear, double weight) {
+  const std::int64_t width = texture.width.at(level);
+  const std::int64_t height = texture.height.at(level);
+  const double shift = linear ? 0.5 : 0.0;
+  const double x = uv.x * static_cast<double>(width) - shift;
+  const double y = uv.y * static_cast<double>(height) - shift;
+  const auto left = static_cast<std::int64_t>(std::floor(x));
+  const auto top = static_cast<std::int64_t>(std::floor(y));
+  const auto at = [&](std::int64_t column, std::int64_t line) {
+    return texelAt(texture, level, wrapped(column, width, sampler.wrapU), wrapped(line, height, sampler.wrapV));
+  };
+  const auto nearEdge = [](double place) { return std::abs(place - std::round(place)) < 1e-3; };
+  if (!linear) {
+    sample.value += weight * at(left, top);
+    sample.unsure = sample.unsure || nearEdge(x) || nearEdge(y);
+    return;
+  }
+  const double a = x - static_cast<double>(left);
+  const double b = y - static_cast<double>(top);
+  sample.value += weight * glm::mix(glm::mix(at(left, top), at(left + 1, top), a),
+                                    glm::mix(at(left, top + 1), at(left + 1, top + 1), a), b);
+}
+
+Sample sampleOf(const CpuTexture& texture, const Sampler& sampler, const glm::dvec2& uv, const glm::dvec2& dx,
+                const glm::dvec2& dy) {
+  const glm::dvec2 size(texture.width[0], texture.height[0]);
+  const double detail = std::log2(std::max(glm::length(dx * size), glm::length(dy * size)));
+  const double level = std::clamp(detail, 0.0, sampler.mipmaps ? texture.levels - 1.0 : 0.25);
+  const bool linear = detail > 0.0 ? sampler.minLinear : sampler.magLinear;
+  Sample sample;
+  sample.unsure = std::abs(detail) < 1e-3 && sampler.minLinear != sampler.magLinear;
+  if (!sampler.mipmaps || !sampler.mipLinear) {
+    const double nearest = std::ceil(level + 0.5) - 1.0;
+    sample.unsure = sample.unsure || std::abs(level + 0.5 - std::round(level + 0.5)) < 1e-3;
+    addLevel(sample, texture, sampler, uv, static_cast<std::size_t>(nearest), linear, 1.0);
+    return sample;
+  }
+  const double fine = std::floor(level);
+  const double share = level - fine;
+  addLevel(sample, texture, sampler, uv, static_cast<std::size_t>(fine), linear, 1.0 - share);
+  if (share > 0.0) addLevel(sample, texture, sampler, uv, static_cast<std::size_t>(fine) + 1, linear, share);
+  return sample;
+}
+
+// A triangle of an unlit material that shows a texture.
+Scene texturedScene(Random& random, bool translucent) {
+  Scene scene;
+  scene.images = {randomImage(random, translucent)};
+  Material material;
+  material.unlit = true;
+  if (translucent) material.alphaMode = AlphaMode::Blend;
+  TextureSlot& slot = material.baseColorTexture;
+  slot.image = 0;
+  slot.texCoord = static_cast<std::uint32_t>(random.below(2));
+  slot.sampler = {static_cast<Wrap>(random.below(3)),
+                  static_cast<Wrap>(random.below(3)),
+                  random.chance(),
+                  random.chance(),
+                  random.chance(),
+                  random.chance(0.8)};
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 2; ++k) slot.transform[i][k] = static_cast<float>(random.number(-2.0, 2.0));
+  }
+  scene.materials = {material};
+  Mesh mesh;
+  for (int i = 0; i < 3; ++i) {
+    Vertex vertex;
+    vertex.position = glm::vec3(random.direction());
+    (slot.texCoord == 0 ? vertex.texCoord0 : vertex.texCoord1) = {random.number(-3.0, 3.0), random.number(-3.0, 3.0)};
+    mesh.add(vertex);
+  }
+  mesh.indices = {0, 1, 2};
+  scene.meshes = {mesh};
+  scene.draws = {{0, 0, glm::mat4(1.0F)}};
+  return scene;
+}
+
+TEST(CpuTextures, AreSampledAsTheSpecificationSays) {
+  Random random(7);
+  std::size_t compared = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const bool translucent = random.chance(0.3);
+    const Scene scene = texturedScene(random, translucent);
+    const TextureSlot& slot = scene.materials[0].baseColorTexture;
+    const bool anyAlpha = isTranslucent(scene.images[0]);
+    const CpuTexture texture = makeCpuTexture(scene.images[0], anyAlpha ? Texels::Premultiplied : Texels::Srgb);
+    VitrailCpuFragments fragments{};
+    fragments.mask = 0xffff;
+    const double scale = std::exp2(random.number(-6.0, 1.0));
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      fragments.second[k] = static_cast<float>(random.number(-0.5, 1.0));
+      fragments.third[k] = static_cast<float>(random.number(-0.5, 1.0));
+      for (float* derivative : {fragments.secondDx, fragments.secondDy, fragments.thirdDx, fragments.thirdDy}) {
+        derivative[k] = static_cast<float>(scale * random.number(-1.0, 1.0));
+      }
+    }
+    const auto place = [&](double first, double second, double third, double one) {
+      const Mesh& mesh = scene.meshes[0];
+      const auto at = [&](std::size_t v) {
+        return glm::dvec2(slot.texCoord == 0 ? mesh.vertex(v).texCoord0 : mesh.vertex(v).texCoord1);
+      };
+      const glm::dvec2 uv = first * at(0) + second * at(1) + third * at(2);
+      return glm::dvec2(glm::dmat3(slot.transform) * glm::dvec3(uv, one));
+    };
+    for (const VitrailCpuInstructions instructions : kInstructions) {
+      CpuScene cpu(scene, {}, DrawOrder::Forward, instructions);
+      const VitrailCpuDraw draw = cpu.draws(View{}, kWidth, kHeight)[0];
+      ASSERT_NE(draw.shade, nullptr);
+      ASSERT_EQ(draw.shadeFlags, static_cast<std::uint32_t>(VITRAIL_CPU_SHADE_DERIVATIVES));
+      VitrailCpuFragments f = fragments;
+      draw.shade(draw.shadeUser, &f);
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const auto change = [&](const float* second, const float* third) {
+          return place(-double{second[k]} - double{third[k]}, second[k], third[k], 0.0);
+        };
+        const glm::dvec2 uv = place(1.0 - double{f.second[k]} - double{f.third[k]}, f.second[k], f.third[k], 1.0);
+        Sample sample =
+            sampleOf(texture, slot.sampler, uv, change(f.secondDx, f.thirdDx), change(f.secondDy, f.thirdDy));
+        if (sample.unsure) continue;
+        ++compared;
+        if (anyAlpha && sample.value.a > 0.0)
+          sample.value = glm::dvec4(glm::dvec3(sample.value) / sample.value.a, sample.value.a);
+        for (int channel = 0; channel < 3; ++channel) {
+          ASSERT_LT(stepsBetween(double{f.color[channel][k]}, sample.value[channel]), 0.1)
+              << "case " << i << ", lane " << k << ", channel " << channel << ", instructions " << instructions;
+        }
+        ASSERT_NEAR(double{f.color[3][k]}, translucent ? sample.value.a : 1.0, 1e-4);
+      }
+    }
+  }
+  EXPECT_GT(compared, 50000U);
+}
+
+TEST(CpuTextures, HaveMipmapsThatAreAveragedInLinearLight) {
+  Image image{2, 2, {0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 255}};
+  const CpuTexture srgb = makeCpuTexture(image, Texels::Srgb);
+  ASSERT_EQ(srgb.levels, 2);
+  EXPECT_EQ(srgb.texels[4], 0xffbcbcbcU); // 188: half the light
+  EXPECT_EQ(makeCpuTexture(image, Texels::Linear).texels[4], 0xff808080U);
+
+  // Three texels become one: the middle one, where the blit samples.
+  Image three{3, 1, {10, 20, 30, 40, 50, 60, 70, 80, 90, 100, 110, 120}};
+  const CpuTexture linear = makeCpuTexture(three, Texels::Linear);
+  ASSERT_EQ(linear.levels, 2);
+  EXPECT_EQ(linear.texels[3], 50U | 60U << 8U | 70U << 16U | 80U << 24U);
+}
+
+TEST(CpuTextures, KeepEverySrgbCode) {
+  Image image{256, 1, {}};
+  for (std::uint32_t i = 0; i < 256; ++i) image.rgba.insert(image.rgba.end(), {std::uint8_t(i), 0, 0, 255});
+  // Each texel twice: the first level holds what the base one does.
+  Image twice{512, 1, {}};
+  for (std::uint32_t i = 0; i < 512; ++i) twice.rgba.insert(twice.rgba.end(), {std::uint8_t(i / 2), 0, 0, 255});
+  const CpuTexture texture = makeCpuTexture(twice, Texels::Srgb);
+  for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(texture.texels[512 + i] & 255U, i);
+}
+
+// ---- Draws
+
+Scene triangleScene(const Material& material, const glm::mat4& transform = glm::mat4(1.0F)) {
+  Scene scene;
+  Mesh mesh;
+  for (const glm::vec3& position : {glm::vec3(0.0F), glm::vec3(1.0F, 0.0F, 0.0F), glm::vec3(0.0F, 1.0F, 0.0F)}) {
+    Vertex vertex;
+    vertex.position = position;
+    mesh.add(vertex);
+  }
+  mesh.indices = {0, 1, 2};
+  scene.meshes = {mesh};
+  scene.materials = {material};
+  scene.draws = {{0, 0, transform}};
+  return scene;
+}
+
+TEST(CpuScene, HidesTheBacksOfOpaqueSurfacesAlsoInAMirror) {
+  const glm::mat4 mirror = glm::scale(glm::mat4(1.0F), glm::vec3(-1.0F, 1.0F, 1.0F));
+  Material material;
+  const auto cull = [](const Scene& scene, std::optional<float> opacity) {
+    CpuScene cpu(scene, opacity, DrawOrder::Forward);
+    return cpu.draws(View{}, 8, 8)[0].cull;
+  };
+  EXPECT_EQ(cull(triangleScene(material), {}), VITRAIL_CPU_CULL_BACK);
+  EXPECT_EQ(cull(triangleScene(material, mirror), {}), VITRAIL_CPU_CULL_FRONT);
+  EXPECT_EQ(cull(triangleScene(material), 0.5F), VITRAIL_CPU_CULL_NONE);
+  material.doubleSided = true;
+  EXPECT_EQ(cull(triangleScene(material), {}), VITRAIL_CPU_CULL_NONE);
+}
+
+TEST(CpuScene, GivesUnlitSurfacesOneColour) {
+  Material material;
+  material.unlit = true;
+  material.baseColor = {0.1F, 0.2F, 0.3F, 0.4F};
+  material.alphaMode = AlphaMode::Blend;
+  CpuScene cpu(triangleScene(material), 0.5F, DrawOrder::Forward);
+  const VitrailCpuDraw& draw = cpu.draws(View{}, 8, 8)[0];
+  EXPECT_EQ(draw.shade, nullptr);
+  EXPECT_EQ(draw.color[0], 0.1F);
+  EXPECT_EQ(draw.color[3], 0.2F);
+  EXPECT_TRUE(cpu.hasTransparent());
+
+  material.alphaMode = AlphaMode::Mask; // nothing of it is left
+  CpuScene masked(triangleScene(material), {}, DrawOrder::Forward);
+  EXPECT_TRUE(masked.draws(View{}, 8, 8).empty());
+  EXPECT_FALSE(masked.hasTransparent());
+}
+
+TEST(CpuScene, DiscardsWhatTheMaskCutsAway) {
+  Material material;
+  material.unlit = true;
+  material.alphaMode = AlphaMode::Mask;
+  Scene scene = triangleScene(material);
+  scene.meshes[0].colors = {packColor(glm::vec4(1.0F, 1.0F, 1.0F, 0.0F)), packColor(glm::vec4(1.0F)),
+                            packColor(glm::vec4(1.0F))};
+  CpuScene cpu(scene, {}, DrawOrder::Forward);
+  const VitrailCpuDraw& draw = cpu.draws(View{}, 8, 8)[0];
+  EXPECT_EQ(draw.shadeFlags, static_cast<std::uint32_t>(VITRAIL_CPU_SHADE_DISCARD));
+  VitrailCpuFragments f{};
+  f.mask = 0xffff;
+  for (std::size_t i = 0; i < kLanes; ++i) f.second[i] = static_cast<float>(i) / 16.0F; // alpha, of which 0.5 is left
+  draw.shade(draw.shadeUser, &f);
+  EXPECT_EQ(f.discarded, 0x00ffU);
+}
+
+TEST(CpuScene, OcclusionDimsAmbientLightAlone) {
+  Scene scene = triangleScene(Material{});
+  scene.materials[0].occlusionTexture.image = 0;
+  scene.images = {{1, 1, {51, 0, 0, 255}}}; // 0.2
+  scene.materials[0].occlusionStrength = 0.5F;
+  const auto red = [](const Scene& s) {
+    CpuScene cpu(s, {}, DrawOrder::Forward);
+    View view;
+    view.cameraToWorld[3] = glm::vec4(0.0F, 0.0F, 5.0F, 1.0F);
+    const VitrailCpuDraw& draw = cpu.draws(view, 8, 8)[0];
+    VitrailCpuFragments f{};
+    f.mask = f.front = 1;
+    f.x = f.y = 4;
+    draw.shade(draw.shadeUser, &f);
+    return f.color[0][0];
+  };
+  Light light;
+  light.kind = Light::Kind::Directional;
+  light.direction = {0.0F, 0.0F, 1.0F}; // on the back
+  scene.lights = {light};
+  Scene clear = scene;
+  clear.materials[0].occlusionTexture.image = -1;
+  EXPECT_NEAR(red(scene), 0.6F * red(clear), 1e-6F);
+  EXPECT_GT(red(clear), 0.1F);
+}
+
+TEST(CpuScene, TakesMeshesOver) {
+  Scene scene = triangleScene(Material{});
+  const glm::vec3* positions = scene.meshes[0].positions.data();
+  CpuScene cpu(std::move(scene), {}, DrawOrder::Forward);
+  EXPECT_EQ(cpu.draws(View{}, 8, 8)[0].positions, &positions->x);
+}
+
+TEST(CpuScene, DrawsTransparentTrianglesInTheOrderThatIsAskedFor) {
+  Material material;
+  material.alphaMode = AlphaMode::Blend;
+  Scene scene = triangleScene(material);
+  scene.meshes[0].indices = {0, 1, 2, 2, 1, 0};
+  CpuScene cpu(scene, {}, DrawOrder::Reversed);
+  const VitrailCpuDraw& draw = cpu.draws(View{}, 8, 8)[0];
+  EXPECT_EQ(std::vector<std::uint32_t>(draw.indices, draw.indices + 6), (std::vector<std::uint32_t>{2, 1, 0, 0, 1, 2}));
+}
+
+TEST(CpuScene, MovesClipPlanesIntoTheMeshesSpace) {
+  glm::mat4 transform = glm::rotate(glm::mat4(1.0F), 0.7F, glm::normalize(glm::vec3(1.0F, 2.0F, 3.0F)));
+  transform[3] = glm::vec4(1.0F, 2.0F, 3.0F, 1.0F);
+  Scene scene = triangleScene(Material{}, transform);
+  scene.clipPlanes = {glm::dvec4(0.6, 0.8, 0.0, 1.5)};
+  CpuScene cpu(scene, {}, DrawOrder::Forward);
+  const VitrailCpuDraw& draw = cpu.draws(View{}, 8, 8)[0];
+  ASSERT_EQ(draw.clipPlaneCount, 1U);
+  const glm::vec4 local(0.3F, -0.2F, 0.9F, 1.0F);
+  const glm::dvec3 world(transform * local);
+  const float* p = draw.clipPlanes;
+  EXPECT_NEAR(p[0] * local.x + p[1] * local.y + p[2] * local.z + p[3], glm::dot(world, glm::dvec3(0.6, 0.8, 0.0)) - 1.5,
+              1e-6);
+}
+
+TEST(CpuScene, MovesLinesByHalfASubpixel) {
+  Scene scene = triangleScene(Material{});
+  View view;
+  const auto clip = [&](Primitive primitive) {
+    scene.meshes[0].primitive = primitive;
+    scene.meshes[0].indices = {0, 1};
+    if (primitive == Primitive::Triangles) scene.meshes[0].indices = {0, 1, 2};
+    CpuScene cpu(scene, {}, DrawOrder::Forward);
+    const float* m = cpu.draws(view, 64, 32)[0].transform;
+    const glm::vec4 place = glm::vec4(m[8], m[9], m[10], m[11]) * -2.0F + glm::vec4(m[12], m[13], m[14], m[15]);
+    return glm::vec2(place) / place.w * glm::vec2(32.0F, 16.0F); // in pixels
+  };
+  const glm::vec2 moved = clip(Primitive::Lines) - clip(Primitive::Triangles);
+  EXPECT_NEAR(moved.x, 1.0F / 256.0F, 1e-5F);
+  EXPECT_NEAR(moved.y, 1.0F / 256.0F, 1e-5F);
+}
+
+TEST(CpuScene, WarnsOfVolumesThatAreNotFollowed) {
+  Material material;
+  material.transmission = 1.0F;
+  material.thickness = 1.0F;
+  material.attenuationDistance = 1.0F;
+  material.attenuationColor = glm::vec3(0.5F);
+  Scene scene = triangleScene(material);
+  EXPECT_TRUE(CpuScene(scene, {}, DrawOrder::Forward).warnings().empty()); // it is open
+  Mesh& mesh = scene.meshes[0];
+  Vertex top;
+  top.position = {0.0F, 0.0F, 1.0F};
+  mesh.add(top);
+  mesh.indices = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  EXPECT_EQ(CpuScene(scene, {}, DrawOrder::Forward).warnings().size(), 1U);
+}
+
+TEST(CpuBackground, IsThatOfThePage) {
+  View view;
+  view.cameraToWorld =
+      glm::mat4(glm::inverse(glm::lookAt(glm::dvec3(0.0), glm::dvec3(1.0, 0.3, 0.4), glm::dvec3(0, 1, 0))));
+  Background sky;
+  sky.kind = Background::Kind::Sky;
+  constexpr std::uint32_t kRows = 50;
+  std::vector<float> rgba(std::size_t{kWidth} * kRows * 4);
+  drawBackground(sky, view, kWidth, kHeight, 90, kRows, rgba.data());
+  for (std::uint32_t i = 0; i < kWidth * kRows; ++i) {
+    const auto along = rayAt(view, i % kWidth + 0.5, 90 + i / kWidth + 0.5).second;
+    const glm::dvec3 expected = reference::skyColor(glm::normalize(along));
+    for (int k = 0; k < 3; ++k)
+      ASSERT_NEAR(double{rgba[4 * std::size_t{i} + static_cast<std::size_t>(k)]}, expected[k], 2e-3);
+    ASSERT_EQ(rgba[4 * std::size_t{i} + 3], 1.0F);
+  }
+  Background gray;
+  gray.srgb = glm::vec3(188.0F / 255.0F);
+  drawBackground(gray, view, kWidth, kHeight, 0, 1, rgba.data());
+  EXPECT_NEAR(double{rgba[4]}, reference::decodeSrgb(188.0 / 255.0), 1e-6);
+  gray.kind = Background::Kind::Transparent;
+  drawBackground(gray, view, kWidth, kHeight, 0, 1, rgba.data());
+  EXPECT_EQ(rgba[4], 0.0F);
+  EXPECT_EQ(rgba[7], 0.0F);
+}
 
 } // namespace
 } // namespace vitrail::tool::test
