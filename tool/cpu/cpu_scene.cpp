@@ -159,6 +159,7 @@ void CpuScene::Impl::listGroups(const Scene& scene, std::optional<float> opacity
     group.surface.features = featuresOf(scene, material, mesh, textures_.isPremultiplied(source.material));
     group.surface.isOpaque = !transparent;
     group.surface.material = makeMaterialData(material, opacity);
+    group.surface.plain = makePlainSurface(group.surface.material);
     group.surface.slots = textures_.slots(scene, source.material, group.surface.features);
     group.surface.mesh.corners = static_cast<std::uint32_t>(cornersOf(mesh.primitive));
     group.largestVertex = largestColor(mesh);
