@@ -24,7 +24,7 @@ VitrailCpuShade functionOf(std::uint32_t features) {
   using namespace shaders;
   constexpr std::uint32_t kUnlit =
       FEATURE_UNLIT | FEATURE_VERTEX_COLOR | FEATURE_MASK | FEATURE_PREMULTIPLIED | slotBit(SLOT_BASE_COLOR);
-  constexpr std::uint32_t kLit = FEATURE_VERTEX_COLOR | FEATURE_TRANSMISSION | FEATURE_FLAT;
+  constexpr std::uint32_t kLit = FEATURE_VERTEX_COLOR | FEATURE_TRANSMISSION | FEATURE_FLAT | FEATURE_LIGHTS;
   constexpr std::uint32_t kTextured = kLit | FEATURE_MASK | FEATURE_PREMULTIPLIED | slotBit(SLOT_BASE_COLOR) |
                                       slotBit(SLOT_METALLIC_ROUGHNESS) | slotBit(SLOT_NORMAL) |
                                       slotBit(SLOT_OCCLUSION) | slotBit(SLOT_EMISSIVE);
