@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kHemisphere[3] = {0.36, 0.38, 0.42}; // its largest value
-constexpr double kMargin = 1.0001;                    // for rounding
+constexpr double kMargin = 1.001;                     // for rounding, of premultiplied texels as 16-bit floats, too
 
 bool hasFeature(const ShadeSurface& surface, std::uint32_t feature) { return (surface.features & feature) != 0; }
 bool samples(const ShadeSurface& surface, std::uint32_t slot) { return hasFeature(surface, 1U << slot); }

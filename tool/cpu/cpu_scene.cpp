@@ -23,15 +23,6 @@ namespace vitrail::tool {
 
 namespace {
 
-// One draw of a mesh with a material, and all its instances.
-struct Group {
-  DrawGroup source;
-  bool isTransparent = false;
-  glm::vec4 largestVertex{1.0F}; // the largest vertex colour, per channel
-  ShadeSurface surface;
-  VitrailCpuDraw prototype{}; // without what the view and the instance say
-};
-
 std::vector<std::uint32_t> drawnMaterials(const Scene& scene) {
   std::set<std::uint32_t> used;
   for (const Draw& draw : scene.draws) used.insert(draw.material);
@@ -67,10 +58,10 @@ VitrailCpuTopology topologyOf(Primitive primitive) {
   return primitive == Primitive::Points ? VITRAIL_CPU_POINTS : VITRAIL_CPU_TRIANGLES;
 }
 
-VitrailCpuCull cullOf(const Group& group, const Material& material) {
-  if (group.isTransparent || material.doubleSided) return VITRAIL_CPU_CULL_NONE;
+VitrailCpuCull cullOf(const Material& material, bool transparent, bool mirrored) {
+  if (transparent || material.doubleSided) return VITRAIL_CPU_CULL_NONE;
   // A mirror turns the triangles round, and glTF means the side that was outside before.
-  return group.source.mirrored ? VITRAIL_CPU_CULL_FRONT : VITRAIL_CPU_CULL_BACK;
+  return mirrored ? VITRAIL_CPU_CULL_FRONT : VITRAIL_CPU_CULL_BACK;
 }
 
 VitrailBlend blendOf(std::uint32_t features) {
@@ -109,6 +100,15 @@ class CpuScene::Impl {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
+  // One draw of a mesh with a material, and all its instances.
+  struct Group {
+    DrawGroup source;
+    bool isTransparent = false;
+    glm::vec4 largestVertex{1.0F}; // the largest vertex colour, per channel
+    ShadeSurface surface;
+    VitrailCpuDraw prototype{}; // without what the view and the instance say
+  };
+
   void listGroups(const Scene& scene, std::optional<float> opacity, DrawOrder order);
   void takeMeshes(const Scene& scene, DrawOrder order, Scene* released);
   void linkMesh(Group& group) const;
@@ -200,7 +200,7 @@ void CpuScene::Impl::describe(Group& group, const Scene& scene, VitrailCpuInstru
   VitrailCpuDraw& draw = group.prototype;
   draw.surface = group.isTransparent ? VITRAIL_CPU_TRANSPARENT : VITRAIL_CPU_OPAQUE;
   draw.topology = topologyOf(mesh.primitive);
-  draw.cull = cullOf(group, scene.materials[group.source.material]);
+  draw.cull = cullOf(scene.materials[group.source.material], group.isTransparent, group.source.mirrored);
   draw.blend = blendOf(group.surface.features);
   draw.positions = &mesh.positions.data()->x;
   draw.components = 3;
