@@ -74,21 +74,25 @@ HWY_INLINE Places placesOf(const VitrailCpuFragments& fragments, const Corners& 
 // What each fragment's triangle has at a corner, 0 to 2.
 HWY_INLINE V valueAt(const Corners& corners, const CornerValues& values, VI first, std::int32_t corner) {
   const Tag d;
-#if HWY_TARGET == HWY_AVX3
-  if (corners.count <= kLanes) {
-    return hn::TableLookupLanes(load(values.of), hn::IndicesFromVec(d, first + setInt(corner)));
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
+  // Shuffles of whole vectors: calls have five triangles on average, and their corners fit into one or two.
+  const VI at = first + setInt(corner);
+  const auto within = hn::IndicesFromVec(d, hn::And(at, setInt(static_cast<std::int32_t>(kLanes - 1))));
+  V result = hn::TableLookupLanes(load(values.of), within);
+  for (std::size_t i = kLanes; i < corners.count; i += kLanes) {
+    const M further = hn::RebindMask(d, at > setInt(static_cast<std::int32_t>(i - 1)));
+    result = select(further, hn::TableLookupLanes(load(values.of + i), within), result);
   }
+  return result;
 #else
-  if (corners.count <= 12) {
-    V result = set(values.of[corner]);
-    for (std::size_t i = 3; i < corners.count; i += 3) {
-      const M own = hn::RebindMask(d, first == setInt(static_cast<std::int32_t>(i)));
-      result = select(own, set(values.of[i + static_cast<std::size_t>(corner)]), result);
-    }
-    return result;
+  if (corners.count > 12) return hn::GatherIndex(d, values.of, first + setInt(corner));
+  V result = set(values.of[corner]);
+  for (std::size_t i = 3; i < corners.count; i += 3) {
+    const M own = hn::RebindMask(d, first == setInt(static_cast<std::int32_t>(i)));
+    result = select(own, set(values.of[i + static_cast<std::size_t>(corner)]), result);
   }
+  return result;
 #endif
-  return hn::GatherIndex(d, values.of, first + setInt(corner));
 }
 
 HWY_INLINE V interpolate(const Corners& corners, const CornerValues& values, const Places& places) {
