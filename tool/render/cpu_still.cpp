@@ -1,0 +1,252 @@
+#include "cpu_still.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <vitrail/cpu.h>
+
+#include "../cpu/cpu_scene.h"
+#include "../cpu/rasterizer.h"
+#include "../gpu/device.h"
+#include "../image/encode.h"
+#include "../methods/methods.h"
+#include "../scene/threads.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+constexpr std::uint64_t kBandPixels = std::uint64_t{16} << 20U;  // drawn at once: 16 bytes each
+constexpr std::size_t kRowsOfAThread = 32;                       // fewer are not worth one
+constexpr std::uint64_t kThreadBudget = std::uint64_t{4} << 20U; // VitrailCpuFrame's default
+
+// The most that the process has held at once.
+std::uint64_t peakMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+// Adds up the time of each pass over all bands.
+class PassClock {
+ public:
+  void end(const char* name) {
+    const Clock::time_point now = Clock::now();
+    const double milliseconds = std::chrono::duration<double, std::milli>(now - start_).count();
+    start_ = now;
+    const auto known = std::ranges::find(passes_, name, [](const auto& pass) { return pass.first; });
+    if (known != passes_.end()) {
+      known->second += milliseconds;
+    } else {
+      passes_.emplace_back(name, milliseconds);
+    }
+  }
+  [[nodiscard]] const PassTimes& passes() const { return passes_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+  PassTimes passes_;
+};
+
+// An encoded picture, made row by row.
+class Encoded {
+ public:
+  explicit Encoded(const RenderOptions& picture) : picture_(picture) {
+    const std::size_t count = std::size_t{picture.width} * picture.height * 4;
+    picture.encoding == Encoding::Srgb8 ? shallow.resize(count) : deep.resize(count);
+  }
+
+  // Takes rows of linear light, from `firstRow` on.
+  void set(std::uint32_t firstRow, std::uint32_t rows, const float* linear) {
+    const std::size_t width = picture_.width;
+    const std::size_t parts = partsFor(rows, kRowsOfAThread);
+    inParts(parts, [&](std::size_t part) {
+      const std::size_t first = rows * part / parts;
+      const std::size_t count = (rows * (part + 1) / parts - first) * width;
+      const std::size_t to = (firstRow + first) * width * 4;
+      const float* from = linear + first * width * 4;
+      shallow.empty() ? encodePixels(from, count, picture_.encoding, &deep[to])
+                      : encodePixels(from, count, &shallow[to]);
+    });
+  }
+
+  // Whether a row of linear light would be the same as one of the picture.
+  [[nodiscard]] bool hasRow(std::uint32_t row, const float* linear) const {
+    const std::size_t width = picture_.width;
+    const auto at = static_cast<std::ptrdiff_t>(row * width * 4);
+    if (shallow.empty()) {
+      std::vector<std::uint16_t> numbers(width * 4);
+      encodePixels(linear, width, picture_.encoding, numbers.data());
+      return std::equal(numbers.begin(), numbers.end(), deep.begin() + at);
+    }
+    std::vector<std::uint8_t> numbers(width * 4);
+    encodePixels(linear, width, numbers.data());
+    return std::equal(numbers.begin(), numbers.end(), shallow.begin() + at);
+  }
+
+  std::vector<std::uint8_t> shallow; // of Encoding::Srgb8
+  std::vector<std::uint16_t> deep;   // of the others
+
+ private:
+  const RenderOptions& picture_;
+};
+
+// Whether the picture is the background alone. Models tend to be in the middle, so most pictures show at once that
+// there is more.
+bool isBackgroundAlone(const RenderOptions& picture, const Encoded& encoded) {
+  std::vector<float> row(std::size_t{picture.width} * 4);
+  for (std::uint32_t i = 0; i < picture.height; ++i) {
+    const std::uint32_t y = (picture.height / 2 + i) % picture.height;
+    drawBackground(picture.background, picture.view, picture.width, picture.height, y, 1, row.data());
+    if (!encoded.hasRow(y, row.data())) return false;
+  }
+  return true;
+}
+
+// What the bands of a picture add up to.
+void add(FrameReport& report, std::uint64_t& coveredPixels, const VitrailStats& band) {
+  report.fragmentsRequested += band.fragmentsRequested;
+  report.fragmentsStored += band.fragmentsStored;
+  report.fragmentsMissing += band.fragmentsMissing;
+  report.layersMax = std::max(report.layersMax, band.layersMax);
+  report.complete = report.complete && band.complete != 0;
+  report.errorBound = std::max(report.errorBound, static_cast<double>(band.errorBound));
+  coveredPixels += band.coveredPixels;
+}
+
+int tellTiles(void* user, std::uint32_t tilesDone, std::uint32_t /*tiles*/) {
+  static_cast<const RenderOptions*>(user)->onTile(tilesDone);
+  return 0;
+}
+
+} // namespace
+
+struct CpuStillRenderer::Impl {
+  MethodOptions method;
+  std::vector<std::string> warnings; // of what is drawn otherwise than the file says
+  Rasterizer rasterizer;
+  CpuScene scene;
+  std::string device;
+  std::vector<float> band; // linear rows, those that are drawn at once
+
+  template <class GivenScene>
+  Impl(GivenScene&& given, std::optional<float> opacity, DrawOrder order, const MethodOptions& chosen)
+      : method(chosen),
+        warnings(methodWarnings(given, chosen)),
+        scene(std::forward<GivenScene>(given), opacity, order),
+        device(rasterizer.name()) {
+    warnings.insert(warnings.end(), scene.warnings().begin(), scene.warnings().end());
+  }
+
+  FrameReport draw(const RenderOptions& picture, Encoded* encoded);
+  VitrailCpuFrame frameOf(const RenderOptions& picture) const;
+  void finish(FrameReport& report, const RenderOptions& picture, const PassTimes& passes) const;
+};
+
+// The frame of a whole picture.
+VitrailCpuFrame CpuStillRenderer::Impl::frameOf(const RenderOptions& picture) const {
+  VitrailCpuFrame frame{};
+  frame.width = picture.width;
+  frame.pictureWidth = picture.width;
+  frame.pictureHeight = picture.height;
+  frame.samples = method.samples;
+  frame.clipSpace = VITRAIL_CPU_CLIP_VULKAN;
+  frame.depthOrder = VITRAIL_DEPTH_NEAREST_IS_ONE;
+  frame.colorFormat = VITRAIL_CPU_RGBA32F;
+  frame.memoryBudget = picture.memoryBudget.value_or(0);
+  if (picture.onTile) {
+    frame.progress = tellTiles;
+    frame.progressUser = const_cast<RenderOptions*>(&picture); // it is not written to
+  }
+  return frame;
+}
+
+// Draws a picture band by band, and encodes it where that is wanted.
+FrameReport CpuStillRenderer::Impl::draw(const RenderOptions& picture, Encoded* encoded) {
+  if (std::max(picture.width, picture.height) > VITRAIL_CPU_MAX_SIDE) {
+    throw GpuError(fmt::format("a picture of {}x{} is too large: the processor draws at most {}x{}", picture.width,
+                               picture.height, VITRAIL_CPU_MAX_SIDE, VITRAIL_CPU_MAX_SIDE));
+  }
+  PassClock clock;
+  const auto most = static_cast<std::uint32_t>(std::max<std::uint64_t>(kBandPixels / picture.width, 1));
+  const std::uint32_t bandRows = std::min(picture.height, most);
+  band.resize(std::size_t{picture.width} * bandRows * 4);
+  VitrailCpuFrame frame = frameOf(picture);
+  frame.color = band.data();
+  const std::span<const VitrailCpuDraw> draws = scene.draws(picture.view, picture.width, picture.height);
+  clock.end("vertices");
+
+  FrameReport report;
+  report.complete = true;
+  report.counted = true;
+  report.errorBound = 0.0;
+  std::uint64_t coveredPixels = 0;
+  for (frame.originY = 0; frame.originY < picture.height; frame.originY += bandRows) {
+    frame.height = std::min(bandRows, picture.height - frame.originY);
+    drawBackground(picture.background, picture.view, picture.width, picture.height, frame.originY, frame.height,
+                   band.data());
+    clock.end("background");
+    VitrailStats stats{};
+    rasterizer.render(frame, draws, stats);
+    add(report, coveredPixels, stats);
+    clock.end("draw");
+    if (encoded == nullptr) continue;
+    encoded->set(frame.originY, frame.height, band.data());
+    clock.end("encode");
+  }
+  report.layersMean = meanLayers(report.fragmentsStored, coveredPixels);
+  report.tiles = (picture.height + bandRows - 1) / bandRows;
+  finish(report, picture, clock.passes());
+  return report;
+}
+
+void CpuStillRenderer::Impl::finish(FrameReport& report, const RenderOptions& picture, const PassTimes& passes) const {
+  report.nodesBytes = picture.memoryBudget.value_or(kThreadBudget * rasterizer.threads());
+  report.totalBytes = report.nodesBytes;
+  report.device = device;
+  report.api = "CPU";
+  report.method = method.name;
+  report.width = picture.width;
+  report.height = picture.height;
+  report.samples = method.samples;
+  report.warnings = warnings;
+  report.peakBytes = peakMemory();
+  report.passesMs = passes;
+  for (const auto& [name, milliseconds] : passes) report.frameMs += milliseconds;
+}
+
+CpuStillRenderer::CpuStillRenderer(const Scene& scene, std::optional<float> opacity, DrawOrder order,
+                                   const MethodOptions& method)
+    : impl_(std::make_unique<Impl>(scene, opacity, order, method)) {}
+
+CpuStillRenderer::CpuStillRenderer(Scene&& scene, std::optional<float> opacity, const MethodOptions& method)
+    : impl_(std::make_unique<Impl>(std::move(scene), opacity, DrawOrder::Forward, method)) {}
+
+CpuStillRenderer::~CpuStillRenderer() = default;
+
+RenderResult CpuStillRenderer::render(const RenderOptions& options) {
+  RenderResult result;
+  Encoded encoded(options);
+  result.report = impl_->draw(options, &encoded);
+  result.isEmpty = isBackgroundAlone(options, encoded);
+  const bool hasAlpha = options.background.kind == Background::Kind::Transparent;
+  if (options.encoding == Encoding::Srgb8) {
+    result.picture = {options.width, options.height, hasAlpha, std::move(encoded.shallow)};
+  } else {
+    result.deep = {options.width, options.height, hasAlpha, options.encoding, std::move(encoded.deep)};
+  }
+  return result;
+}
+
+FrameReport CpuStillRenderer::measure(const RenderOptions& options) { return impl_->draw(options, nullptr); }
+
+std::string processorDevice() { return Rasterizer().name(); }
+
+} // namespace vitrail::tool
