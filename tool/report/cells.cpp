@@ -11,8 +11,8 @@ std::string notesOn(const Machine& machine, bool hasCpuMethod) {
   if (machine.isCpu && machine.hasVulkan)
     notes = "This device is a CPU: only the ratios say something, its times are the machine's.\n";
   if (!hasCpuMethod) return notes;
-  return notes + (machine.hasVulkan ? fmt::format("The method cpu is drawn by {}: its times are by the clock, its cost "
-                                                  "is that of the whole frame.\n",
+  return notes + (machine.hasVulkan ? fmt::format("The method cpu is drawn by {}.\nIts times are by the clock, and its "
+                                                  "cost is that of the whole frame.\n",
                                                   machine.processor)
                                     : "Times are by the clock, and the cost is that of the whole frame.\n");
 }
