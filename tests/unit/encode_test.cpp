@@ -66,7 +66,7 @@ TEST(Encode, HalvesAreTheNearest) {
             (std::array<std::uint16_t, 4>{0x0000, 0x8000, 0x3c00, 0x7bff}));
   EXPECT_EQ(deep({0x1.002p0F, 0x1.006p0F, 0x1.0021p0F, 0x1p-25F}, Encoding::Linear), // ties go to even
             (std::array<std::uint16_t, 4>{0x3c00, 0x3c02, 0x3c01, 0x0000}));
-  EXPECT_EQ(deep({0x1p-24F, 0x1.8p-24F, 0x1.ffcp-15F, 70000.0F}, Encoding::Linear),
+  EXPECT_EQ(deep({0x1p-24F, 0x1.8p-24F, 0x1.ff8p-15F, 70000.0F}, Encoding::Linear),
             (std::array<std::uint16_t, 4>{0x0001, 0x0002, 0x03ff, 0x7c00}));
   EXPECT_EQ(deep({std::numeric_limits<float>::quiet_NaN(), 0.5F, 0.25F, 2.0F}, Encoding::Linear),
             (std::array<std::uint16_t, 4>{0, 0x3800, 0x3400, 0x4000}));
