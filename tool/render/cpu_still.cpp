@@ -12,11 +12,11 @@
 #include <vitrail/cpu.h>
 
 #include "../cpu/cpu_scene.h"
-#include "../cpu/rasterizer.h"
 #include "../gpu/device.h"
 #include "../image/encode.h"
 #include "../methods/methods.h"
 #include "../scene/threads.h"
+#include "rasterizer.h"
 
 namespace vitrail::tool {
 

@@ -33,7 +33,7 @@ const char* nameOf(VitrailCpuInstructions instructions) {
     case VITRAIL_CPU_NEON:
       return "NEON";
     default:
-      return "scalar";
+      return "baseline";
   }
 }
 
