@@ -88,12 +88,7 @@ VITRAIL_API uint32_t vitrailCpuContextThreads(VitrailCpuContext context);
 #define VITRAIL_CPU_LANES 16
 
 typedef struct VitrailCpuFragments {
-  /* What to shade. */
-  uint32_t mask;  /* bit i: entry i is a fragment; at least one is */
-  uint32_t draw;  /* index of the draw */
-  uint32_t front; /* bit i: the triangle shows its front */
-  uint32_t x;     /* pixel of the block's upper left corner: entry i is at x + i % 4, y + i / 4 */
-  uint32_t y;
+  /* What to shade. Arrays are aligned to 64 bytes. */
   uint32_t triangle[VITRAIL_CPU_LANES]; /* which triangle (line, point) of the draw, from 0 */
   float depth[VITRAIL_CPU_LANES];       /* at the pixel centre, in [0, 1] */
   /* Where in its triangle the pixel's centre is, perspective-correct: the weight of the second corner and that of the
@@ -113,6 +108,12 @@ typedef struct VitrailCpuFragments {
   float filter[3][VITRAIL_CPU_LANES];
   /* VITRAIL_CPU_SHADE_DISCARD: bits of those that are not there. 0 when the function is called. */
   uint32_t discarded;
+
+  uint32_t mask;  /* bit i: entry i is a fragment; at least one is */
+  uint32_t draw;  /* index of the draw */
+  uint32_t front; /* bit i: the triangle shows its front */
+  uint32_t x;     /* pixel of the block's upper left corner: entry i is at x + i % 4, y + i / 4 */
+  uint32_t y;
 } VitrailCpuFragments;
 
 /* Shades fragments of a draw. Called on several threads at once. Colours are as those of VitrailNodeFormat: a NaN is 0,
@@ -203,9 +204,10 @@ typedef enum VitrailCpuColorFormat {
   VITRAIL_CPU_COLOR_FORMAT_MAX_ENUM = 0x7fffffff
 } VitrailCpuColorFormat;
 
-/* Takes the sorted fragments of a pixel, nearest first, those behind opaque surfaces left out. A fragment with a filter
+/* Takes the sorted fragments of a pixel, nearest first, those behind opaque surfaces left out. Those of
+ * VITRAIL_BLEND_ADDITIVE and _MULTIPLY come with what they amount to at an alpha of 1. A fragment with a filter
  * (VITRAIL_CPU_SHADE_FILTER) is two layers at one depth, the first VITRAIL_BLEND_PREMULTIPLIED, the second
- * VITRAIL_BLEND_MULTIPLY with an alpha of 1. Called on several threads at once, for each pixel that has layers.
+ * VITRAIL_BLEND_MULTIPLY. Called on several threads at once, for each pixel that has layers.
  * Return 0 for the pixel to be blended as ever, or 1 to have blended it: `color` holds the opaque colour of each
  * sample, 4 floats (linear, premultiplied) times `samples`, and takes what becomes of them. No fragment is left out for
  * what is in front of it. */
@@ -243,6 +245,7 @@ typedef struct VitrailCpuFrame {
   /* Optional, samples > 1: what is behind each sample, in place of `color`: 4 floats times `samples` a pixel, without
    * gaps. It is not written. */
   const float* sampleColors;
+  float brightest;     /* the largest r, g or b of `color` and `sampleColors`; default 1 */
   VitrailCpuList list; /* optional */
   void* listUser;
   VitrailCpuProgress progress; /* optional */

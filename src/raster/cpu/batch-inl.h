@@ -1,0 +1,222 @@
+// Up to 64 triangles of one tile: staged one by one, set up sixteen at a time. From here on a tile is 32 x 32 pixels
+// whose first has its centre at (0, 0).
+#if defined(VITRAIL_BATCH_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRAIL_BATCH_INL_H
+#undef VITRAIL_BATCH_INL_H
+#else
+#define VITRAIL_BATCH_INL_H
+#endif
+
+#include "raster/cpu/frame.h"
+#include "raster/cpu/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrail::raster::HWY_NAMESPACE {
+
+constexpr std::uint32_t kBatch = 64;
+constexpr std::uint32_t kFrontBit = 0x80000000U; // beside a triangle's number: it shows its front
+
+// Columns, an entry a triangle. A triangle covers a pixel's sample where all three a * x + b * y + c are not negative;
+// its weights at a pixel's centre are (a * x + b * y + weightC) * scale + offset.
+struct Batch {
+  alignas(64) Corner corners[3][kBatch];
+  alignas(64) std::int32_t number[kBatch]; // with kFrontBit
+  alignas(64) std::int32_t cull[kBatch];   // 1: if it shows its back, 2: if it shows its front
+  alignas(64) std::int32_t big[kBatch];    // not 0: edges need more than 16 bits
+  alignas(64) float second[3][kBatch];     // of corners, where isPiece
+  alignas(64) float third[3][kBatch];
+  bool isPiece[kBatch];
+
+  alignas(64) std::int32_t a[3][kBatch];
+  alignas(64) std::int32_t b[3][kBatch];
+  alignas(64) std::int32_t ab[3][kBatch]; // a and b in 16 bits each
+  alignas(64) std::int32_t c[kMaxSamples][3][kBatch];
+  alignas(64) std::int32_t weightC[2][kBatch]; // of edges 1 and 2
+  alignas(64) float scale[kBatch];
+  alignas(64) float offset[2][kBatch];
+  alignas(64) double exactC[2][kBatch]; // the same where numbers are too large for 32 bits: undivided
+  alignas(64) double inverseArea[kBatch];
+  // Depth and 1 / w: at corner 0, and from there to corners 1 and 2.
+  alignas(64) float z[3][kBatch];
+  alignas(64) float w[3][kBatch];
+  alignas(64) float w1[kBatch]; // at corners 1 and 2
+  alignas(64) float w2[kBatch];
+  alignas(64) float sampleDepth[kMaxSamples][kBatch]; // from a pixel's centre to a sample
+  alignas(64) std::int32_t x0[kBatch];                // blocks; x1 < 0: none
+  alignas(64) std::int32_t x1[kBatch];
+  alignas(64) std::int32_t y0[kBatch];
+  alignas(64) std::int32_t y1[kBatch];
+  std::uint32_t count = 0;
+  bool isBig = false; // some triangle's edges need more than 16 bits
+};
+
+HWY_INLINE D exactly(const I& x) { return toDouble(x); }
+
+// floor((c - (owned ? 0 : 1)) / 256), within 31 bits: beyond, its sign is the same all over the tile.
+HWY_INLINE I stepsOf(const D& c, const M& owned) {
+  const D biased = c + exactly(select(owned, set(0), set(-1)));
+  const D limit = setDouble((1 << 30) - 1);
+  const D low = setDouble(-((1 << 30) - 1));
+  return toInt(min(max(floorOf(biased * setDouble(1.0 / 256.0)), low), limit));
+}
+
+struct SetUp {
+  I a[3];
+  I b[3];
+  D c[3];
+  M owned[3];
+  D inverseArea;
+};
+
+HWY_INLINE void setUpWeights(Batch& batch, std::uint32_t at, const SetUp& s) {
+  const F scale = toFloat(s.inverseArea * setDouble(256.0));
+  store(batch.scale + at, scale);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const D& c = s.c[k + 1];
+    const D limit = setDouble((1 << 30) - 1);
+    const D low = setDouble(-((1 << 30) - 1));
+    const D steps = min(max(floorOf(c * setDouble(1.0 / 256.0)), low), limit);
+    store(batch.weightC[k] + at, toInt(steps));
+    store(batch.offset[k] + at, toFloat((c - steps * setDouble(256.0)) * s.inverseArea));
+    for (std::size_t i = 0; i < 2 * kVectors; ++i) hn::Store(c.v[i], kD, batch.exactC[k] + at + i * kKeyLanes);
+  }
+  for (std::size_t i = 0; i < 2 * kVectors; ++i)
+    hn::Store(s.inverseArea.v[i], kD, batch.inverseArea + at + i * kKeyLanes);
+}
+
+// Returns whether some pixel or sample of the tile may be covered, and stores what decides it.
+HWY_INLINE M setUpEdges(Batch& batch, std::uint32_t at, const SetUp& s, std::uint32_t samples) {
+  const I zero = set(0);
+  I rejected = zero;
+  for (std::size_t k = 0; k < 3; ++k) {
+    I most = set(INT32_MIN);
+    for (std::uint32_t sample = 0; sample < samples; ++sample) {
+      const SamplePlace place = samplePlaces(samples)[sample];
+      const std::int32_t x = place.x * (kSubpixels / 16) - kSubpixels / 2;
+      const std::int32_t y = place.y * (kSubpixels / 16) - kSubpixels / 2;
+      D c = s.c[k];
+      if (samples > 1) c = c + exactly(s.a[k]) * setDouble(x) + exactly(s.b[k]) * setDouble(y);
+      const I steps = stepsOf(c, s.owned[k]);
+      store(batch.c[sample][k] + at, steps);
+      most = max(most, steps);
+    }
+    store(batch.a[k] + at, s.a[k]);
+    store(batch.b[k] + at, s.b[k]);
+    store(batch.ab[k] + at, (s.a[k] & set(0xffff)) | shiftLeft<16>(s.b[k]));
+    rejected =
+        rejected | (most + (max(s.a[k], zero) + max(s.b[k], zero)) * set(static_cast<std::int32_t>(kTileSide) - 1));
+  }
+  return andNot(zero > rejected, zero == zero);
+}
+
+HWY_INLINE void setUpValues(Batch& batch, std::uint32_t at, const F* z, const F* w, const SetUp& s,
+                            std::uint32_t samples) {
+  store(batch.z[0] + at, z[0]);
+  store(batch.z[1] + at, z[1] - z[0]);
+  store(batch.z[2] + at, z[2] - z[0]);
+  store(batch.w[0] + at, w[0]);
+  store(batch.w[1] + at, w[1] - w[0]);
+  store(batch.w[2] + at, w[2] - w[0]);
+  store(batch.w1 + at, w[1]);
+  store(batch.w2 + at, w[2]);
+  if (samples == 1) return;
+  for (std::uint32_t sample = 0; sample < samples; ++sample) {
+    const SamplePlace place = samplePlaces(samples)[sample];
+    const D x = setDouble(place.x * (kSubpixels / 16) - kSubpixels / 2);
+    const D y = setDouble(place.y * (kSubpixels / 16) - kSubpixels / 2);
+    F sum = set(0.0F);
+    for (std::size_t k = 1; k < 3; ++k) {
+      const F weight = toFloat((exactly(s.a[k]) * x + exactly(s.b[k]) * y) * s.inverseArea);
+      sum = sum + weight * (z[k] - z[0]);
+    }
+    store(batch.sampleDepth[sample] + at, sum);
+  }
+}
+
+// The blocks that the samples within a triangle's box may touch; none for those that are dropped.
+HWY_INLINE void setUpBlocks(Batch& batch, std::uint32_t at, const I* x, const I* y, const M& kept, const TileBox& tile,
+                            std::int32_t reach) {
+  const I zero = set(0);
+  const I up = set(kSubpixels - 1 - reach);
+  const I x0 = max(shiftRight<8>(min(x[0], min(x[1], x[2])) + up), zero);
+  const I y0 = max(shiftRight<8>(min(y[0], min(y[1], y[2])) + up), zero);
+  const I x1 = min(shiftRight<8>(max(x[0], max(x[1], x[2])) + set(reach)), set(tile.lastX));
+  const I y1 = min(shiftRight<8>(max(y[0], max(y[1], y[2])) + set(reach)), set(tile.lastY));
+  const M gone = andNot(kept, zero == zero) | (x0 > x1) | (y0 > y1);
+  store(batch.x0 + at, shiftRight<2>(x0));
+  store(batch.y0 + at, shiftRight<2>(y0));
+  store(batch.x1 + at, select(gone, set(-1), shiftRight<2>(x1)));
+  store(batch.y1 + at, shiftRight<2>(y1));
+}
+
+// Sixteen triangles from entry `at` on.
+HWY_INLINE void setUpSixteen(Batch& batch, std::uint32_t at, const TileBox& tile, std::uint32_t samples) {
+  I x[3];
+  I y[3];
+  F z[3];
+  F w[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    F column[2];
+    const Corner* corners = batch.corners[i] + at;
+    loadFours([corners](std::size_t lane) { return reinterpret_cast<const float*>(corners + lane); }, column[0],
+              column[1], z[i], w[i]);
+    x[i] = bitsOf(column[0]) - set(tile.x * kSubpixels + kSubpixels / 2);
+    y[i] = bitsOf(column[1]) - set(tile.y * kSubpixels + kSubpixels / 2);
+  }
+  SetUp s;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t p = (k + 1) % 3;
+    const std::size_t q = (k + 2) % 3;
+    s.a[k] = y[p] - y[q];
+    s.b[k] = x[q] - x[p];
+    s.c[k] = setDouble(0.0) - (exactly(s.a[k]) * exactly(x[p]) + exactly(s.b[k]) * exactly(y[p]));
+  }
+  const D area = exactly(s.a[0]) * exactly(x[0]) + exactly(s.b[0]) * exactly(y[0]) + s.c[0];
+  const I zero = set(0);
+  const F rounded = toFloat(area);
+  const M isFront = set(0.0F) > rounded;
+  const M isEmpty = rounded == set(0.0F);
+  const D signs = exactly(select(isFront, set(-1), set(1)));
+  M isBig = zero > zero;
+  for (std::size_t k = 0; k < 3; ++k) {
+    s.a[k] = select(isFront, zero - s.a[k], s.a[k]);
+    s.b[k] = select(isFront, zero - s.b[k], s.b[k]);
+    s.c[k] = s.c[k] * signs;
+    s.owned[k] = (s.a[k] > zero) | ((s.a[k] == zero) & (s.b[k] > zero));
+    isBig = isBig | (s.a[k] > set(32767)) | (set(-32768) > s.a[k]) | (s.b[k] > set(32767)) | (set(-32768) > s.b[k]);
+  }
+  store(batch.big + at, keep(isBig, set(1)));
+  batch.isBig = batch.isBig || !none(andNot(isEmpty, isBig));
+  s.inverseArea = setDouble(1.0) / max(area * signs, setDouble(1.0));
+  const I cull = load(batch.cull + at);
+  const M culled = select(isFront, cull & set(2), cull & set(1)) > zero;
+  const M touched = setUpEdges(batch, at, s, samples);
+  setUpWeights(batch, at, s);
+  setUpValues(batch, at, z, w, s, samples);
+  setUpBlocks(batch, at, x, y, andNot(isEmpty | culled, touched), tile,
+              samples == 1 ? 0 : kSubpixels / 2 - sampleMargin(samples));
+  store(batch.number + at, load(batch.number + at) | keep(isFront, set(static_cast<std::int32_t>(kFrontBit))));
+}
+
+// Weights of the second and third corner at a block's pixels, `position` of kBlockLanes, straight on the picture.
+HWY_INLINE void weightsAt(const Batch& batch, std::uint32_t t, const I& position, F& second, F& third) {
+  F* weights[2] = {&second, &third};
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (HWY_LIKELY(batch.big[t] == 0)) {
+      const I e = multiplyHalves(set(batch.weightC[k][t]), set(batch.ab[k + 1][t]), position);
+      *weights[k] = fma(toFloat(e), set(batch.scale[t]), set(batch.offset[k][t]));
+    } else {
+      const I x = position & set(0xffff);
+      const I y = shiftRight<16>(position);
+      const D e =
+          setDouble(batch.exactC[k][t]) +
+          (setDouble(batch.a[k + 1][t]) * exactly(x) + setDouble(batch.b[k + 1][t]) * exactly(y)) * setDouble(256.0);
+      *weights[k] = toFloat(e * setDouble(batch.inverseArea[t]));
+    }
+  }
+}
+
+} // namespace vitrail::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

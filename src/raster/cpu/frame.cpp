@@ -1,0 +1,86 @@
+#include "raster/cpu/frame.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace vitrail::raster {
+
+void Bins::append(Bin& bin) {
+  if ((used_ >> kSlabBits) == slabs_.size()) slabs_.push_back(std::make_unique_for_overwrite<Slab>());
+  const std::uint32_t chunk = used_++;
+  chunkAt(chunk).next = kNone;
+  if (bin.count == 0) {
+    bin.first = chunk;
+  } else {
+    chunkAt(bin.last).next = chunk;
+  }
+  bin.last = chunk;
+}
+
+void Bins::copy(std::size_t tile, std::uint32_t* to) const {
+  const Bin& bin = bins_[tile];
+  std::uint32_t chunk = bin.first;
+  for (std::uint32_t left = bin.count; left > 0;) {
+    const Chunk& from = chunkAt(chunk);
+    const std::uint32_t count = std::min(left, kChunk);
+    std::memcpy(to, from.numbers.data(), count * sizeof(std::uint32_t));
+    to += count;
+    left -= count;
+    chunk = from.next;
+  }
+}
+
+void TileCounts::add(const TileCounts& other) {
+  fragments += other.fragments;
+  pixels += other.pixels;
+  layersMax = std::max(layersMax, other.layersMax);
+}
+
+ClipVertex clipVertexOf(const DrawInfo& info, std::uint32_t vertex) {
+  const VitrailCpuDraw& draw = info.draw;
+  const auto* bytes =
+      reinterpret_cast<const unsigned char*>(draw.positions) + std::uint64_t{vertex} * draw.vertexStride;
+  std::array<float, 4> p{0.0F, 0.0F, 0.0F, 1.0F};
+  std::memcpy(p.data(), bytes, draw.components * sizeof(float));
+  ClipVertex made;
+  made.position = p;
+  if (draw.transform != nullptr) {
+    const float* m = draw.transform;
+    // In the order in which the vectors of placeVertices() add.
+    for (std::size_t row = 0; row < 4; ++row) {
+      float sum = m[row] * p[0];
+      sum = sum + m[4 + row] * p[1];
+      sum = sum + m[8 + row] * p[2];
+      made.position[row] = sum + m[12 + row] * p[3];
+    }
+  }
+  for (std::uint32_t i = 0; i < draw.clipPlaneCount; ++i) {
+    const float* plane = draw.clipPlanes + std::size_t{4} * i;
+    made.distances[i] = plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] * p[3];
+  }
+  return made;
+}
+
+Pieces piecesOf(const Frame& frame, const DrawInfo& info, std::uint32_t primitive) {
+  const VitrailCpuDraw& draw = info.draw;
+  const auto corner = [&](std::uint32_t corners, std::uint32_t i) {
+    return clipVertexOf(info, vertexOf(draw, std::uint64_t{primitive} * corners + i));
+  };
+  switch (draw.topology) {
+    case VITRAIL_CPU_POINTS:
+      return pointOf(frame.viewport, corner(1, 0), draw.clipPlaneCount, draw.pointSize);
+    case VITRAIL_CPU_LINES: {
+      std::array<ClipVertex, 2> line{corner(2, 0), corner(2, 1)};
+      line[1].second = 1.0F;
+      return lineOf(frame.viewport, line, draw.clipPlaneCount);
+    }
+    default: {
+      std::array<ClipVertex, 3> triangle{corner(3, 0), corner(3, 1), corner(3, 2)};
+      triangle[1].second = 1.0F;
+      triangle[2].third = 1.0F;
+      return clipped(frame.viewport, triangle, draw.clipPlaneCount);
+    }
+  }
+}
+
+} // namespace vitrail::raster

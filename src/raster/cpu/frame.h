@@ -1,0 +1,187 @@
+// A frame as the stages of the rasteriser see it: the host's draws with what was worked out of them, and what the
+// geometry stage leaves for the tiles. All memory is counted and can run out: std::bad_alloc.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "raster/clip.h"
+#include "raster/rules.h"
+#include "vitrail/cpu.h"
+
+namespace vitrail::raster {
+
+constexpr std::uint32_t kTileSide = 32;
+constexpr std::uint32_t kBlockSide = 4;
+constexpr std::uint32_t kBlocks = kTileSide / kBlockSide * (kTileSide / kBlockSide); // of a tile
+constexpr std::uint32_t kBlockPixels = kBlockSide * kBlockSide;
+
+// Triangles are numbered through the frame: the number of their job, and within it. The last bit is free.
+constexpr std::uint32_t kJobBits = 12;
+constexpr std::uint32_t kJobTriangles = 1U << kJobBits;
+constexpr std::uint32_t kMaxJobs = 1U << (31U - kJobBits);
+constexpr std::uint32_t kVertexChunk = 4096;
+
+// A draw, with its defaults filled in.
+struct DrawInfo {
+  VitrailCpuDraw draw{};
+  std::uint32_t primitives = 0;
+  std::uint64_t firstVertex = 0; // among Frame::corners
+  std::uint32_t firstJob = 0;
+};
+
+// Up to kJobTriangles triangles of a draw.
+struct Job {
+  std::uint32_t draw;
+  std::uint32_t first;
+  std::uint32_t count;
+};
+
+// Triangle numbers in chunks, of one thread and one tile; in the order in which they were added.
+class Bins {
+ public:
+  static constexpr std::uint32_t kChunk = 15;
+  static constexpr std::uint32_t kNone = ~0U;
+
+  void reset(std::size_t tiles) {
+    bins_.assign(tiles, {});
+    used_ = 0;
+  }
+
+  void add(std::size_t tile, std::uint32_t number) {
+    Bin& bin = bins_[tile];
+    const std::uint32_t place = bin.count % kChunk;
+    if (place == 0) append(bin);
+    chunkAt(bin.last).numbers[place] = number;
+    ++bin.count;
+  }
+
+  std::uint32_t countOf(std::size_t tile) const { return bins_[tile].count; }
+
+  // Writes the numbers of a tile one after the other.
+  void copy(std::size_t tile, std::uint32_t* to) const;
+
+  std::size_t bytes() const { return bins_.capacity() * sizeof(Bin) + slabs_.size() * sizeof(Slab); }
+
+ private:
+  struct Bin {
+    std::uint32_t first = kNone;
+    std::uint32_t last = kNone;
+    std::uint32_t count = 0;
+  };
+  struct Chunk {
+    std::array<std::uint32_t, kChunk> numbers;
+    std::uint32_t next;
+  };
+  static constexpr std::uint32_t kSlabBits = 12;
+  struct Slab {
+    std::array<Chunk, 1U << kSlabBits> chunks;
+  };
+
+  Chunk& chunkAt(std::uint32_t i) { return slabs_[i >> kSlabBits]->chunks[i & ((1U << kSlabBits) - 1)]; }
+  const Chunk& chunkAt(std::uint32_t i) const { return slabs_[i >> kSlabBits]->chunks[i & ((1U << kSlabBits) - 1)]; }
+  void append(Bin& bin);
+
+  std::vector<Bin> bins_;
+  std::vector<std::unique_ptr<Slab>> slabs_;
+  std::uint32_t used_ = 0;
+};
+
+// Of one thread.
+struct ThreadBins {
+  Bins opaque;
+  Bins transparent;
+};
+
+struct VertexChunk {
+  std::uint32_t draw;
+  std::uint32_t first;
+  std::uint32_t count;
+};
+
+// What a frame has of each fragment: decides how much of it is kept.
+struct FrameNeeds {
+  bool shaded = false;      // some transparent draw has a shade function
+  bool derivatives = false; // one of them reads derivatives
+  bool filters = false;     // something passes light through coloured: BLEND_MULTIPLY, or a filter
+  bool opaque = false;      // there are opaque draws, or a depth of the host's
+  bool opaqueDerivatives = false;
+};
+
+struct Frame {
+  VitrailCpuFrame info{}; // with its defaults filled in
+  Viewport viewport{};
+  FrameNeeds needs{};
+  float leastTransmittance = 0.0F; // what is behind less than that does not count
+  std::vector<DrawInfo> draws;
+  std::vector<Job> jobs;
+  std::vector<VertexChunk> vertexChunks;
+  std::vector<Corner> corners;
+  // Of draws without a shade function: what they do to the light behind them (below); after them, one that does
+  // nothing.
+  std::vector<std::array<float, 4>> flatPairs;
+  std::vector<std::array<float, 4>> flatFilters; // where needs.filters
+  std::uint32_t tilesX = 0;
+  std::uint32_t tilesY = 0;
+  std::uint64_t budget = 0;     // bytes of one thread's fragments
+  std::vector<ThreadBins> bins; // one for each thread
+
+  std::uint32_t tiles() const { return tilesX * tilesY; }
+};
+
+// What tiles counted.
+struct TileCounts {
+  std::uint64_t fragments = 0;
+  std::uint64_t pixels = 0; // with at least one
+  std::uint32_t layersMax = 0;
+
+  void add(const TileCounts& other);
+};
+
+// A tile's pixels in the picture.
+struct TileBox {
+  std::int32_t x = 0; // of its first one
+  std::int32_t y = 0;
+  std::int32_t lastX = 0; // of its last one, within the tile
+  std::int32_t lastY = 0;
+};
+
+// Memory of one thread that works on tiles; kept from tile to tile and from frame to frame.
+class TileWorkspace {
+ public:
+  TileWorkspace() = default;
+  virtual ~TileWorkspace() = default;
+  TileWorkspace(const TileWorkspace&) = delete;
+  TileWorkspace& operator=(const TileWorkspace&) = delete;
+};
+
+// The stages, compiled for one set of instructions.
+struct Stages {
+  VitrailCpuInstructions instructions;
+  void (*placeVertices)(Frame& frame, const VertexChunk& chunk);
+  void (*binJob)(const Frame& frame, std::uint32_t job, ThreadBins& bins);
+  std::unique_ptr<TileWorkspace> (*makeWorkspace)(const Frame& frame);
+  void (*drawTile)(const Frame& frame, std::uint32_t tile, TileWorkspace& workspace, TileCounts& counts);
+};
+
+// Those that the processor has, the widest first.
+std::span<const Stages* const> stagesHere();
+
+// ---- What several stages do alike, a vertex or triangle at a time
+
+// A vertex in clip space, with the distances from the draw's planes.
+ClipVertex clipVertexOf(const DrawInfo& info, std::uint32_t vertex);
+
+// The vertex number of a primitive's corner.
+inline std::uint32_t vertexOf(const VitrailCpuDraw& draw, std::uint64_t i) {
+  return draw.indices != nullptr ? draw.indices[i] : static_cast<std::uint32_t>(i);
+}
+
+// What is rasterised of a primitive that is no triangle, or whose corners need clipping.
+Pieces piecesOf(const Frame& frame, const DrawInfo& info, std::uint32_t primitive);
+
+} // namespace vitrail::raster

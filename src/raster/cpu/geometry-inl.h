@@ -1,0 +1,197 @@
+// Vertices to corners, and triangles to the tiles that they may touch.
+#if defined(VITRAIL_GEOMETRY_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRAIL_GEOMETRY_INL_H
+#undef VITRAIL_GEOMETRY_INL_H
+#else
+#define VITRAIL_GEOMETRY_INL_H
+#endif
+
+#include <algorithm>
+#include <cstring>
+
+#include "raster/cpu/frame.h"
+#include "raster/cpu/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrail::raster::HWY_NAMESPACE {
+
+// Up to sixteen vertices in clip space, as columns. Those that are not there repeat the last one.
+struct Vertices {
+  alignas(64) float value[4][kLanes];
+};
+
+HWY_INLINE void fetchVertices(const VitrailCpuDraw& draw, std::uint32_t first, std::uint32_t count, Vertices& to) {
+  const auto* bytes = reinterpret_cast<const unsigned char*>(draw.positions);
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    const std::uint64_t vertex = first + std::min(lane, count - 1);
+    float p[4] = {0.0F, 0.0F, 0.0F, 1.0F};
+    if (draw.components == 3) {
+      std::memcpy(p, bytes + vertex * draw.vertexStride, 3 * sizeof(float));
+    } else {
+      std::memcpy(p, bytes + vertex * draw.vertexStride, 4 * sizeof(float));
+    }
+    for (std::size_t c = 0; c < 4; ++c) to.value[c][lane] = p[c];
+  }
+}
+
+// Lanes whose vertex lies outside of what can be rasterised: `outside` of clip.h's needsClipping().
+HWY_INLINE M isOutside(const Viewport& viewport, const F& x, const F& y, const F& z, const F& w) {
+  const auto pixels = static_cast<float>(kGuardBand - 1);
+  const F bandX = set(2.0F * pixels / static_cast<float>(viewport.width)) * w;
+  const F bandY = set(2.0F * pixels / static_cast<float>(viewport.height)) * w;
+  const F zero = set(0.0F);
+  const F near = viewport.depthFromMinusW ? w + z : z;
+  const M inside = (w >= set(kLeastW)) & (near >= zero) & (w - z >= zero) & (bandX >= x) & (bandX + x >= zero) &
+                   (bandY >= y) & (bandY + y >= zero);
+  return andNot(inside, zero == zero);
+}
+
+// Corners of sixteen vertices. `cut` bits: those that need clipping whatever their place.
+HWY_INLINE void placeSixteen(const Viewport& viewport, const F& x, const F& y, const F& z, const F& w,
+                             std::uint32_t cut, std::uint32_t count, Corner* corners) {
+  const F inverse = set(1.0F) / w;
+  const F halfWidth = set(0.5F * static_cast<float>(viewport.width));
+  const F halfHeight = set(0.5F * static_cast<float>(viewport.height));
+  const F subpixels = set(static_cast<float>(kSubpixels));
+  const F ndcX = x * inverse;
+  const F ndcY = viewport.yUp ? set(0.0F) - y * inverse : y * inverse;
+  const F ndcZ = z * inverse;
+  const F depth = viewport.depthFromMinusW ? ndcZ * set(0.5F) + set(0.5F) : ndcZ;
+  const M outside = isOutside(viewport, x, y, z, w) | maskOf(cut);
+  I placeX;
+  I placeY;
+  VITRAIL_EACH {
+    placeX.v[i] = hn::NearestInt((ndcX * halfWidth + halfWidth).v[i] * subpixels.v[i]);
+    placeY.v[i] = hn::NearestInt((ndcY * halfHeight + halfHeight).v[i] * subpixels.v[i]);
+  }
+  placeX = select(outside, set(kNeedsClipping), placeX - set(viewport.originX * kSubpixels));
+  placeY = placeY - set(viewport.originY * kSubpixels);
+  alignas(64) std::int32_t columnX[kLanes];
+  alignas(64) std::int32_t columnY[kLanes];
+  alignas(64) float columnZ[kLanes];
+  alignas(64) float columnW[kLanes];
+  store(columnX, placeX);
+  store(columnY, placeY);
+  store(columnZ, depth);
+  store(columnW, inverse);
+  for (std::uint32_t i = 0; i < count; ++i) corners[i] = {columnX[i], columnY[i], columnZ[i], columnW[i]};
+}
+
+// Bits of vertices that a plane of the draw's cuts away.
+HWY_INLINE std::uint32_t cutByPlanes(const VitrailCpuDraw& draw, const F& x, const F& y, const F& z, const F& w) {
+  M kept = set(0.0F) == set(0.0F);
+  for (std::uint32_t i = 0; i < draw.clipPlaneCount; ++i) {
+    const float* p = draw.clipPlanes + std::size_t{4} * i;
+    kept = kept & (set(p[0]) * x + set(p[1]) * y + set(p[2]) * z + set(p[3]) * w >= set(0.0F));
+  }
+  return ~bitsOf(kept) & 0xffffU;
+}
+
+inline void placeVertices(Frame& frame, const VertexChunk& chunk) {
+  const DrawInfo& info = frame.draws[chunk.draw];
+  const VitrailCpuDraw& draw = info.draw;
+  const float* m = draw.transform;
+  Vertices vertices;
+  for (std::uint32_t done = 0; done < chunk.count; done += kLanes) {
+    const std::uint32_t count = std::min<std::uint32_t>(kLanes, chunk.count - done);
+    fetchVertices(draw, chunk.first + done, count, vertices);
+    F p[4];
+    for (std::size_t c = 0; c < 4; ++c) p[c] = load(vertices.value[c]);
+    const std::uint32_t cut = draw.clipPlaneCount == 0 ? 0 : cutByPlanes(draw, p[0], p[1], p[2], p[3]);
+    F q[4];
+    for (std::size_t row = 0; row < 4; ++row) {
+      q[row] = m == nullptr
+                   ? p[row]
+                   : set(m[row]) * p[0] + set(m[4 + row]) * p[1] + set(m[8 + row]) * p[2] + set(m[12 + row]) * p[3];
+    }
+    placeSixteen(frame.viewport, q[0], q[1], q[2], q[3], cut, count,
+                 &frame.corners[info.firstVertex + chunk.first + done]);
+  }
+}
+
+// Tiles whose pixels' samples a box in subpixels may hold.
+struct TileRange {
+  std::int32_t x0;
+  std::int32_t y0;
+  std::int32_t x1;
+  std::int32_t y1;
+};
+
+// How near to a pixel's borders samples lie, in subpixels.
+inline std::int32_t sampleMargin(std::uint32_t samples) {
+  return samples == 1 ? 128 : samples == 2 ? 64 : samples == 4 ? 32 : 16;
+}
+
+inline TileRange tilesOf(const Frame& frame, std::int32_t left, std::int32_t top, std::int32_t right,
+                         std::int32_t bottom) {
+  const std::int32_t margin = sampleMargin(frame.info.samples);
+  const auto width = static_cast<std::int32_t>(frame.info.width);
+  const auto height = static_cast<std::int32_t>(frame.info.height);
+  // From the first pixel with a sample at or right of `left` to the last one with a sample at or left of `right`.
+  const std::int32_t x0 = std::max((left + margin - 1) >> kSubpixelBits, 0);
+  const std::int32_t y0 = std::max((top + margin - 1) >> kSubpixelBits, 0);
+  const std::int32_t x1 = std::min((right - margin) >> kSubpixelBits, width - 1);
+  const std::int32_t y1 = std::min((bottom - margin) >> kSubpixelBits, height - 1);
+  if (x0 > x1 || y0 > y1) return {0, 0, -1, -1};
+  return {x0 >> 5, y0 >> 5, x1 >> 5, y1 >> 5};
+}
+
+inline void addTo(Bins& bins, const Frame& frame, const TileRange& range, std::uint32_t number) {
+  for (std::int32_t y = range.y0; y <= range.y1; ++y) {
+    for (std::int32_t x = range.x0; x <= range.x1; ++x) {
+      bins.add(static_cast<std::size_t>(y) * frame.tilesX + static_cast<std::size_t>(x), number);
+    }
+  }
+}
+
+// Of primitives that are rasterised as several triangles: each tile gets the number once.
+inline void binPieces(const Frame& frame, const DrawInfo& info, std::uint32_t primitive, std::uint32_t number,
+                      Bins& bins) {
+  const Pieces pieces = piecesOf(frame, info, primitive);
+  if (pieces.count == 0) return;
+  std::int32_t left = INT32_MAX;
+  std::int32_t top = INT32_MAX;
+  std::int32_t right = INT32_MIN;
+  std::int32_t bottom = INT32_MIN;
+  for (const Piece& piece : pieces.all()) {
+    for (const Corner& corner : piece.corners) {
+      left = std::min(left, corner.x);
+      right = std::max(right, corner.x);
+      top = std::min(top, corner.y);
+      bottom = std::max(bottom, corner.y);
+    }
+  }
+  addTo(bins, frame, tilesOf(frame, left, top, right, bottom), number);
+}
+
+inline void binJob(const Frame& frame, std::uint32_t jobNumber, ThreadBins& threadBins) {
+  const Job& job = frame.jobs[jobNumber];
+  const DrawInfo& info = frame.draws[job.draw];
+  const VitrailCpuDraw& draw = info.draw;
+  Bins& bins = draw.surface == VITRAIL_CPU_OPAQUE ? threadBins.opaque : threadBins.transparent;
+  const Corner* corners = frame.corners.data() + info.firstVertex;
+  for (std::uint32_t i = 0; i < job.count; ++i) {
+    const std::uint32_t number = jobNumber << kJobBits | i;
+    const std::uint32_t primitive = job.first + i;
+    if (draw.topology != VITRAIL_CPU_TRIANGLES) {
+      binPieces(frame, info, primitive, number, bins);
+      continue;
+    }
+    const std::uint64_t at = std::uint64_t{primitive} * 3;
+    const Corner& a = corners[vertexOf(draw, at)];
+    const Corner& b = corners[vertexOf(draw, at + 1)];
+    const Corner& c = corners[vertexOf(draw, at + 2)];
+    if (a.x == kNeedsClipping || b.x == kNeedsClipping || c.x == kNeedsClipping) {
+      binPieces(frame, info, primitive, number, bins);
+      continue;
+    }
+    const TileRange range = tilesOf(frame, std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}),
+                                    std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}));
+    addTo(bins, frame, range, number);
+  }
+}
+
+} // namespace vitrail::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

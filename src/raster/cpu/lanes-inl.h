@@ -1,0 +1,331 @@
+// Sixteen lanes, a block of 4 x 4 pixels, however many vectors of the target that takes. The only file that knows how
+// wide vectors are. Included once for each target (Highway's foreach_target).
+#if defined(VITRAIL_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRAIL_LANES_INL_H
+#undef VITRAIL_LANES_INL_H
+#else
+#define VITRAIL_LANES_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrail::raster::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::size_t kLanes = 16;
+using TagF = hn::CappedTag<float, kLanes>;
+using TagI = hn::RebindToSigned<TagF>;
+using TagU = hn::RebindToUnsigned<TagF>;
+using TagS = hn::Repartition<std::int16_t, TagI>;
+using TagD = hn::Repartition<double, TagF>;
+using TagL = hn::Repartition<std::uint64_t, TagF>;
+constexpr std::size_t kVectorLanes = hn::MaxLanes(TagF());
+constexpr std::size_t kVectors = kLanes / kVectorLanes;
+constexpr TagF kF;
+constexpr TagI kI;
+constexpr TagU kU;
+constexpr TagD kD;
+
+#define VITRAIL_EACH for (std::size_t i = 0; i < kVectors; ++i)
+
+struct F { // floats
+  hn::Vec<TagF> v[kVectors];
+};
+struct I { // 32-bit signed integers
+  hn::Vec<TagI> v[kVectors];
+};
+struct M { // masks
+  hn::Mask<TagF> v[kVectors];
+};
+struct D { // doubles: twice as many vectors, in the order of lanes
+  hn::Vec<TagD> v[2 * kVectors];
+};
+
+#define VITRAIL_UNARY(R, A, name, expression) \
+  HWY_INLINE R name(const A& a) {             \
+    R r;                                      \
+    VITRAIL_EACH r.v[i] = expression;         \
+    return r;                                 \
+  }
+#define VITRAIL_BINARY(R, A, B, name, expression) \
+  HWY_INLINE R name(const A& a, const B& b) {     \
+    R r;                                          \
+    VITRAIL_EACH r.v[i] = expression;             \
+    return r;                                     \
+  }
+#define VITRAIL_TERNARY(R, A, B, C, name, expression)     \
+  HWY_INLINE R name(const A& a, const B& b, const C& c) { \
+    R r;                                                  \
+    VITRAIL_EACH r.v[i] = expression;                     \
+    return r;                                             \
+  }
+
+HWY_INLINE F set(float x) {
+  F r;
+  VITRAIL_EACH r.v[i] = hn::Set(kF, x);
+  return r;
+}
+HWY_INLINE I set(std::int32_t x) {
+  I r;
+  VITRAIL_EACH r.v[i] = hn::Set(kI, x);
+  return r;
+}
+// From memory that is aligned to 64 bytes.
+HWY_INLINE F load(const float* p) {
+  F r;
+  VITRAIL_EACH r.v[i] = hn::Load(kF, p + i * kVectorLanes);
+  return r;
+}
+HWY_INLINE I load(const std::int32_t* p) {
+  I r;
+  VITRAIL_EACH r.v[i] = hn::Load(kI, p + i * kVectorLanes);
+  return r;
+}
+HWY_INLINE void store(float* p, const F& a) { VITRAIL_EACH hn::Store(a.v[i], kF, p + i * kVectorLanes); }
+HWY_INLINE void store(std::int32_t* p, const I& a) { VITRAIL_EACH hn::Store(a.v[i], kI, p + i * kVectorLanes); }
+
+VITRAIL_BINARY(F, F, F, operator+, hn::Add(a.v[i], b.v[i]))
+VITRAIL_BINARY(F, F, F, operator-, hn::Sub(a.v[i], b.v[i]))
+VITRAIL_BINARY(F, F, F, operator*, hn::Mul(a.v[i], b.v[i]))
+VITRAIL_BINARY(F, F, F, operator/, hn::Div(a.v[i], b.v[i]))
+VITRAIL_BINARY(F, F, F, min, hn::Min(a.v[i], b.v[i]))
+VITRAIL_BINARY(F, F, F, max, hn::Max(a.v[i], b.v[i]))
+VITRAIL_TERNARY(F, F, F, F, fma, hn::MulAdd(a.v[i], b.v[i], c.v[i]))
+VITRAIL_TERNARY(F, F, F, F, fnma, hn::NegMulAdd(a.v[i], b.v[i], c.v[i]))
+VITRAIL_BINARY(M, F, F, operator>=, hn::Ge(a.v[i], b.v[i]))
+VITRAIL_BINARY(M, F, F, operator>, hn::Gt(a.v[i], b.v[i]))
+VITRAIL_BINARY(M, F, F, operator==, hn::Eq(a.v[i], b.v[i]))
+VITRAIL_TERNARY(F, M, F, F, select, hn::IfThenElse(a.v[i], b.v[i], c.v[i]))
+VITRAIL_BINARY(F, M, F, keep, hn::IfThenElseZero(a.v[i], b.v[i]))
+
+VITRAIL_BINARY(I, I, I, operator+, hn::Add(a.v[i], b.v[i]))
+VITRAIL_BINARY(I, I, I, operator-, hn::Sub(a.v[i], b.v[i]))
+VITRAIL_BINARY(I, I, I, operator*, hn::Mul(a.v[i], b.v[i]))
+VITRAIL_BINARY(I, I, I, operator&, hn::And(a.v[i], b.v[i]))
+VITRAIL_BINARY(I, I, I, operator|, hn::Or(a.v[i], b.v[i]))
+VITRAIL_BINARY(I, I, I, operator^, hn::Xor(a.v[i], b.v[i]))
+VITRAIL_BINARY(I, I, I, min, hn::Min(a.v[i], b.v[i]))
+VITRAIL_BINARY(I, I, I, max, hn::Max(a.v[i], b.v[i]))
+VITRAIL_BINARY(M, I, I, operator>, hn::RebindMask(kF, hn::Gt(a.v[i], b.v[i])))
+VITRAIL_BINARY(M, I, I, operator==, hn::RebindMask(kF, hn::Eq(a.v[i], b.v[i])))
+VITRAIL_TERNARY(I, M, I, I, select, hn::IfThenElse(hn::RebindMask(kI, a.v[i]), b.v[i], c.v[i]))
+VITRAIL_BINARY(I, M, I, keep, hn::IfThenElseZero(hn::RebindMask(kI, a.v[i]), b.v[i]))
+
+VITRAIL_BINARY(M, M, M, operator&, hn::And(a.v[i], b.v[i]))
+VITRAIL_BINARY(M, M, M, operator|, hn::Or(a.v[i], b.v[i]))
+VITRAIL_BINARY(M, M, M, andNot, hn::AndNot(a.v[i], b.v[i])) // not a, and b
+
+VITRAIL_UNARY(I, F, bitsOf, hn::BitCast(kI, a.v[i]))
+VITRAIL_UNARY(F, I, floatOf, hn::BitCast(kF, a.v[i]))
+VITRAIL_UNARY(F, I, toFloat, hn::ConvertTo(kF, a.v[i]))
+
+template <int kBits>
+HWY_INLINE I shiftLeft(const I& a) {
+  I r;
+  VITRAIL_EACH r.v[i] = hn::ShiftLeft<kBits>(a.v[i]);
+  return r;
+}
+template <int kBits>
+HWY_INLINE I shiftRight(const I& a) { // keeps the sign
+  I r;
+  VITRAIL_EACH r.v[i] = hn::ShiftRight<kBits>(a.v[i]);
+  return r;
+}
+
+// A bit a lane.
+HWY_INLINE std::uint32_t bitsOf(const M& m) {
+  std::uint32_t bits = 0;
+  VITRAIL_EACH {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(kF, m.v[i], bytes);
+    bits |= static_cast<std::uint32_t>(bytes[0] | bytes[1] << 8U) << (i * kVectorLanes);
+  }
+  return bits;
+}
+// Of the signs of integers.
+HWY_INLINE std::uint32_t signsOf(const I& a) {
+  M m;
+  VITRAIL_EACH m.v[i] = hn::MaskFromVec(hn::BitCast(kF, a.v[i]));
+#if HWY_TARGET == HWY_AVX3
+  VITRAIL_EACH m.v[i] = hn::Mask<TagF>{static_cast<decltype(m.v[i].raw)>(_mm512_movepi32_mask(a.v[i].raw))};
+#else
+  VITRAIL_EACH m.v[i] = hn::RebindMask(kF, hn::Lt(a.v[i], hn::Zero(kI)));
+#endif
+  return bitsOf(m);
+}
+
+alignas(64) inline constexpr std::int32_t kLaneBits[kLanes] = {1,   2,   4,    8,    16,   32,   64,    128,
+                                                               256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+
+HWY_INLINE M maskOf(std::uint32_t bits) {
+  M m;
+#if HWY_TARGET == HWY_AVX3
+  m.v[0] = hn::Mask<TagF>{static_cast<__mmask16>(bits)};
+#else
+  const hn::Vec<TagI> all = hn::Set(kI, static_cast<std::int32_t>(bits));
+  VITRAIL_EACH m.v[i] = hn::RebindMask(kF, hn::TestBit(all, hn::Load(kI, kLaneBits + i * kVectorLanes)));
+#endif
+  return m;
+}
+
+HWY_INLINE bool none(const M& m) {
+  hn::Mask<TagF> any = m.v[0];
+  for (std::size_t i = 1; i < kVectors; ++i) any = hn::Or(any, m.v[i]);
+  return hn::AllFalse(kF, any);
+}
+HWY_INLINE bool all(const M& m) {
+  hn::Mask<TagF> every = m.v[0];
+  for (std::size_t i = 1; i < kVectors; ++i) every = hn::And(every, m.v[i]);
+  return hn::AllTrue(kF, every);
+}
+
+// acc + a's lower half * b's lower half + a's upper half * b's upper half, halves of 16 bits.
+HWY_INLINE I multiplyHalves(const I& acc, const I& a, const I& b) {
+  I r;
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_SSE4
+  VITRAIL_EACH {
+    hn::Vec<TagI> unused = hn::Zero(kI);
+    r.v[i] =
+        hn::ReorderWidenMulAccumulate(kI, hn::BitCast(TagS(), a.v[i]), hn::BitCast(TagS(), b.v[i]), acc.v[i], unused);
+  }
+#else
+  r = acc + shiftRight<16>(shiftLeft<16>(a)) * shiftRight<16>(shiftLeft<16>(b)) + shiftRight<16>(a) * shiftRight<16>(b);
+#endif
+  return r;
+}
+
+// ---- Doubles
+
+HWY_INLINE D setDouble(double x) {
+  D r;
+  for (auto& v : r.v) v = hn::Set(kD, x);
+  return r;
+}
+HWY_INLINE D toDouble(const I& a) {
+  D r;
+  const hn::Half<TagI> half;
+  VITRAIL_EACH {
+    r.v[2 * i] = hn::PromoteTo(kD, hn::LowerHalf(half, a.v[i]));
+    r.v[2 * i + 1] = hn::PromoteTo(kD, hn::UpperHalf(half, a.v[i]));
+  }
+  return r;
+}
+HWY_INLINE F toFloat(const D& a) {
+  F r;
+  const hn::Half<TagF> half;
+  VITRAIL_EACH r.v[i] = hn::Combine(kF, hn::DemoteTo(half, a.v[2 * i + 1]), hn::DemoteTo(half, a.v[2 * i]));
+  return r;
+}
+// Of numbers within the range.
+HWY_INLINE I toInt(const D& a) {
+  I r;
+  const hn::Half<TagI> half;
+  VITRAIL_EACH r.v[i] = hn::Combine(kI, hn::DemoteTo(half, a.v[2 * i + 1]), hn::DemoteTo(half, a.v[2 * i]));
+  return r;
+}
+#define VITRAIL_DOUBLES(name, expression)                               \
+  HWY_INLINE D name(const D& a, const D& b) {                           \
+    D r;                                                                \
+    for (std::size_t i = 0; i < 2 * kVectors; ++i) r.v[i] = expression; \
+    return r;                                                           \
+  }
+VITRAIL_DOUBLES(operator+, hn::Add(a.v[i], b.v[i]))
+VITRAIL_DOUBLES(operator-, hn::Sub(a.v[i], b.v[i]))
+VITRAIL_DOUBLES(operator*, hn::Mul(a.v[i], b.v[i]))
+VITRAIL_DOUBLES(operator/, hn::Div(a.v[i], b.v[i]))
+VITRAIL_DOUBLES(min, hn::Min(a.v[i], b.v[i]))
+VITRAIL_DOUBLES(max, hn::Max(a.v[i], b.v[i]))
+HWY_INLINE D floorOf(const D& a) {
+  D r;
+  for (std::size_t i = 0; i < 2 * kVectors; ++i) r.v[i] = hn::Floor(a.v[i]);
+  return r;
+}
+
+// ---- Four values a lane, side by side in memory
+
+// The first four floats of what each of sixteen pointers names: `at(l)` is that of lane l. Four vectors, one a value.
+template <class At>
+HWY_INLINE void loadFours(At at, F& x, F& y, F& z, F& w) {
+  const hn::FixedTag<float, 4> four;
+  const hn::Repartition<double, TagF> pairs;
+  VITRAIL_EACH {
+    hn::Vec<TagF> column[4]; // block b of column c: lane 4 b + c
+    for (std::size_t c = 0; c < 4; ++c) {
+      const std::size_t first = i * kVectorLanes + c;
+#if HWY_MAX_BYTES == 16
+      column[c] = hn::LoadU(four, at(first));
+#elif HWY_MAX_BYTES == 32
+      column[c] = hn::Combine(kF, hn::LoadU(four, at(first + 4)), hn::LoadU(four, at(first)));
+#else
+      const hn::FixedTag<float, 8> eight;
+      const auto low = hn::Combine(eight, hn::LoadU(four, at(first + 4)), hn::LoadU(four, at(first)));
+      const auto high = hn::Combine(eight, hn::LoadU(four, at(first + 12)), hn::LoadU(four, at(first + 8)));
+      column[c] = hn::Combine(kF, high, low);
+#endif
+    }
+    const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(kF, column[0], column[1]));
+    const auto zw01 = hn::BitCast(pairs, hn::InterleaveUpper(kF, column[0], column[1]));
+    const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(kF, column[2], column[3]));
+    const auto zw23 = hn::BitCast(pairs, hn::InterleaveUpper(kF, column[2], column[3]));
+    x.v[i] = hn::BitCast(kF, hn::InterleaveLower(pairs, xy01, xy23));
+    y.v[i] = hn::BitCast(kF, hn::InterleaveUpper(pairs, xy01, xy23));
+    z.v[i] = hn::BitCast(kF, hn::InterleaveLower(pairs, zw01, zw23));
+    w.v[i] = hn::BitCast(kF, hn::InterleaveUpper(pairs, zw01, zw23));
+  }
+}
+
+// Where lane l's four are among the sixteen that storeFours() writes.
+constexpr std::size_t placeOfFour(std::size_t lane) {
+  constexpr std::size_t kBlocks = kVectorLanes / 4;
+  const std::size_t inVector = lane % kVectorLanes;
+  return lane - inVector + inVector % 4 * kBlocks + inVector / 4;
+}
+
+// The other way round: sixteen times four floats, side by side, each lane's at its placeOfFour().
+HWY_INLINE void storeFours(float* p, const F& x, const F& y, const F& z, const F& w) {
+  const hn::Repartition<double, TagF> pairs;
+  VITRAIL_EACH {
+    const auto xyLow = hn::BitCast(pairs, hn::InterleaveLower(kF, x.v[i], y.v[i]));
+    const auto xyHigh = hn::BitCast(pairs, hn::InterleaveUpper(kF, x.v[i], y.v[i]));
+    const auto zwLow = hn::BitCast(pairs, hn::InterleaveLower(kF, z.v[i], w.v[i]));
+    const auto zwHigh = hn::BitCast(pairs, hn::InterleaveUpper(kF, z.v[i], w.v[i]));
+    float* to = p + i * kVectorLanes * 4;
+    hn::Store(hn::BitCast(kF, hn::InterleaveLower(pairs, xyLow, zwLow)), kF, to);
+    hn::Store(hn::BitCast(kF, hn::InterleaveUpper(pairs, xyLow, zwLow)), kF, to + kVectorLanes);
+    hn::Store(hn::BitCast(kF, hn::InterleaveLower(pairs, xyHigh, zwHigh)), kF, to + 2 * kVectorLanes);
+    hn::Store(hn::BitCast(kF, hn::InterleaveUpper(pairs, xyHigh, zwHigh)), kF, to + 3 * kVectorLanes);
+  }
+}
+
+// ---- Sorting keys: a depth above, what goes with it below, as a positive double, which has the order of its bits
+
+using Key = hn::Vec<TagD>;
+constexpr std::size_t kKeyLanes = kVectorLanes / 2;
+constexpr std::size_t kKeyVectors = 2 * kVectors; // of sixteen keys
+
+HWY_INLINE void order(Key& a, Key& b) {
+  const Key less = hn::Min(a, b);
+  b = hn::Max(a, b);
+  a = less;
+}
+// The keys of sixteen lanes, in an order of their own: lane l's is at placeOfKey(l).
+HWY_INLINE void keysOf(const I& depth, const I& rest, Key* keys) {
+  VITRAIL_EACH {
+    keys[2 * i] = hn::BitCast(kD, hn::InterleaveLower(kI, rest.v[i], depth.v[i]));
+    keys[2 * i + 1] = hn::BitCast(kD, hn::InterleaveUpper(kI, rest.v[i], depth.v[i]));
+  }
+}
+constexpr std::size_t placeOfKey(std::size_t lane) {
+  const std::size_t vector = lane / kVectorLanes;
+  const std::size_t block = lane % kVectorLanes / 4;
+  return (2 * vector + lane % 4 / 2) * kKeyLanes + 2 * block + lane % 2;
+}
+
+} // namespace vitrail::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,204 @@
+// A block's rows become pixels: sorted, one pixel a lane, and blended front to back (Porter and Duff's over, as pairs).
+#if defined(VITRAIL_RESOLVE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRAIL_RESOLVE_INL_H
+#undef VITRAIL_RESOLVE_INL_H
+#else
+#define VITRAIL_RESOLVE_INL_H
+#endif
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "raster/cpu/shade-inl.h"
+#include "raster/cpu/sort-inl.h"
+#include "raster/cpu/store-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrail::raster::HWY_NAMESPACE {
+
+// Sorted rows: keys, whose lower halves say where a fragment's pair is, in units of 16 bytes from `pairs`.
+class SortedRows {
+ public:
+  std::size_t rows = 0;
+  double* keys = nullptr; // 16 a row
+  const float* pairs = nullptr;
+  const float* filters = nullptr;
+  std::uint32_t coverage = 0; // floats from a row's first pair to its coverage; 0: none
+
+  HWY_INLINE std::uint64_t keyOf(std::size_t row, std::size_t lane) const {
+    std::uint64_t key = 0;
+    std::memcpy(&key, keys + row * kLanes + placeOfKey(lane), sizeof(key));
+    return key;
+  }
+  HWY_INLINE void setKey(std::size_t row, std::size_t lane, std::uint64_t key) const {
+    std::memcpy(keys + row * kLanes + placeOfKey(lane), &key, sizeof(key));
+  }
+  HWY_INLINE std::uint32_t placeOf(std::size_t row, std::size_t lane) const {
+    std::uint32_t place = 0;
+    std::memcpy(&place, keys + row * kLanes + placeOfKey(lane), sizeof(place));
+    return place;
+  }
+  HWY_INLINE std::uint32_t depthKeyOf(std::size_t row, std::size_t lane) const {
+    return static_cast<std::uint32_t>(keyOf(row, lane) >> 32U);
+  }
+  HWY_INLINE const float* pairOf(std::size_t row, std::size_t lane) const {
+    return pairs + std::size_t{4} * placeOf(row, lane);
+  }
+  HWY_INLINE const float* filterOf(std::size_t row, std::size_t lane) const {
+    return filters + std::size_t{4} * placeOf(row, lane);
+  }
+};
+
+// Whether fragments at one depth stand in the same pixel of two neighbouring rows.
+HWY_INLINE bool hasTies(const double* keys, std::size_t rows) {
+  const hn::Repartition<std::int32_t, TagD> words;
+  // Depths are the odd words.
+  const auto far = hn::OddEven(hn::Set(words, kFarKey), hn::Set(words, INT32_MIN));
+  for (std::size_t v = 0; v < kKeyVectors; ++v) {
+    const double* column = keys + v * kKeyLanes;
+    auto above = hn::BitCast(words, hn::Load(kD, column));
+    auto found = hn::Zero(words);
+    for (std::size_t r = 1; r < rows; ++r) {
+      const auto here = hn::BitCast(words, hn::Load(kD, column + r * kLanes));
+      const auto same = hn::And(hn::Eq(above, here), hn::Gt(far, here));
+      found = hn::Or(found, hn::VecFromMask(words, same));
+      above = here;
+    }
+    if (!hn::AllTrue(words, hn::Eq(found, hn::Zero(words)))) return true;
+  }
+  return false;
+}
+
+// Fragments of one depth in a pixel are ordered by what they do, never by when they came.
+HWY_NOINLINE void orderTies(const SortedRows& sorted, bool filters) {
+  const auto before = [&](std::uint64_t a, std::uint64_t b) {
+    const std::size_t at = std::size_t{4} * static_cast<std::uint32_t>(a);
+    const std::size_t bt = std::size_t{4} * static_cast<std::uint32_t>(b);
+    // What hides light is in front of what adds to it or filters it, as in the lists of GPUs; then by the bits.
+    const int byPair = std::memcmp(sorted.pairs + at, sorted.pairs + bt, 4 * sizeof(float));
+    if (sorted.pairs[at + 3] != sorted.pairs[bt + 3]) return sorted.pairs[at + 3] > sorted.pairs[bt + 3];
+    if (byPair != 0) return byPair < 0;
+    return filters && std::memcmp(sorted.filters + at, sorted.filters + bt, 3 * sizeof(float)) < 0;
+  };
+  std::vector<std::uint64_t> group;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    std::size_t first = 0;
+    while (first < sorted.rows && sorted.depthKeyOf(first, lane) < static_cast<std::uint32_t>(kFarKey)) {
+      group.clear();
+      const std::uint32_t depth = sorted.depthKeyOf(first, lane);
+      while (first + group.size() < sorted.rows && sorted.depthKeyOf(first + group.size(), lane) == depth) {
+        group.push_back(sorted.keyOf(first + group.size(), lane));
+      }
+      if (group.size() > 1) {
+        std::sort(group.begin(), group.end(), before);
+        for (std::size_t i = 0; i < group.size(); ++i) sorted.setKey(first + i, lane, group[i]);
+      }
+      first += group.size();
+    }
+  }
+}
+
+// What the fragments of sixteen pixels, or of one sample of each, come to.
+struct Blended {
+  F color[3];
+  F through;
+  F filter[3];
+
+  HWY_INLINE void clear() {
+    for (F& c : color) c = set(0.0F);
+    through = set(1.0F);
+    for (F& f : filter) f = set(1.0F);
+  }
+};
+
+template <bool kFilters>
+HWY_INLINE M isAlive(const Blended& b, const F& least) {
+  if constexpr (!kFilters) return b.through >= least;
+  return max(max(b.filter[0], b.filter[1]), max(b.filter[2], b.through)) >= least;
+}
+
+// Puts fragments behind what is there: those that little light comes through to add nothing.
+template <bool kFilters>
+HWY_INLINE void put(Blended& b, const M& alive, const F* color, const F& alpha, const F* filter) {
+  if constexpr (kFilters) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      b.color[c] = fma(keep(alive, b.filter[c]), color[c], b.color[c]);
+      b.filter[c] = select(alive, b.filter[c] * filter[c], b.filter[c]);
+    }
+    b.through = select(alive, fnma(b.through, alpha, b.through), b.through);
+  } else {
+    const F light = keep(alive, b.through);
+    for (std::size_t c = 0; c < 3; ++c) b.color[c] = fma(light, color[c], b.color[c]);
+    b.through = fnma(b.through, alpha, b.through);
+  }
+}
+
+template <bool kFilters>
+HWY_INLINE void blendRows(const SortedRows& sorted, float leastTransmittance, Blended& blended) {
+  const F least = set(leastTransmittance);
+  for (std::size_t r = 0; r < sorted.rows; ++r) {
+    const M alive = isAlive<kFilters>(blended, least);
+    if (none(alive)) return;
+    F color[3];
+    F alpha;
+    F filter[3];
+    loadFours([&](std::size_t lane) HWY_ATTR { return sorted.pairOf(r, lane); }, color[0], color[1], color[2], alpha);
+    if constexpr (kFilters) {
+      F unused;
+      loadFours([&](std::size_t lane) HWY_ATTR { return sorted.filterOf(r, lane); }, filter[0], filter[1], filter[2],
+                unused);
+    }
+    put<kFilters>(blended, alive, color, alpha, filter);
+  }
+}
+
+// The same for each sample, by the coverage that stands in the rows.
+template <bool kFilters>
+HWY_INLINE void blendSamples(const SortedRows& sorted, const std::uint32_t* coverages, float leastTransmittance,
+                             std::uint32_t samples, Blended* blended) {
+  const F least = set(leastTransmittance);
+  const F one = set(1.0F);
+  for (std::size_t r = 0; r < sorted.rows; ++r) {
+    bool isAnyAlive = false;
+    for (std::uint32_t s = 0; s < samples; ++s) isAnyAlive = isAnyAlive || !none(isAlive<kFilters>(blended[s], least));
+    if (!isAnyAlive) return;
+    F color[3];
+    F alpha;
+    F filter[3];
+    loadFours([&](std::size_t lane) HWY_ATTR { return sorted.pairOf(r, lane); }, color[0], color[1], color[2], alpha);
+    if constexpr (kFilters) {
+      F unused;
+      loadFours([&](std::size_t lane) HWY_ATTR { return sorted.filterOf(r, lane); }, filter[0], filter[1], filter[2],
+                unused);
+    }
+    const I covered = load(reinterpret_cast<const std::int32_t*>(coverages) + r * kLanes);
+    for (std::uint32_t s = 0; s < samples; ++s) {
+      const I bit = set(static_cast<std::int32_t>(1U << s));
+      const M here = (covered & bit) == bit;
+      F colorHere[3];
+      F filterHere[3];
+      for (std::size_t c = 0; c < 3; ++c) colorHere[c] = keep(here, color[c]);
+      if constexpr (kFilters) {
+        for (std::size_t c = 0; c < 3; ++c) filterHere[c] = select(here, filter[c], one);
+      }
+      put<kFilters>(blended[s], isAlive<kFilters>(blended[s], least), colorHere, keep(here, alpha), filterHere);
+    }
+  }
+}
+
+// Over what is behind: r, g, b, alpha.
+template <bool kFilters>
+HWY_INLINE void over(const Blended& b, float leastTransmittance, F* behind) {
+  const M alive = isAlive<kFilters>(b, set(leastTransmittance));
+  const F through = keep(alive, b.through);
+  for (std::size_t c = 0; c < 3; ++c) {
+    behind[c] = fma(kFilters ? keep(alive, b.filter[c]) : through, behind[c], b.color[c]);
+  }
+  behind[3] = fma(through, behind[3], set(1.0F) - through);
+}
+
+} // namespace vitrail::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,128 @@
+// Sorts the fragments of sixteen pixels at once, one pixel a lane, by comparisons that do not depend on what is
+// compared: Batcher's merge exchange (Knuth, The Art of Computer Programming, 5.2.2, algorithm M). Short lists in
+// registers, the others in memory.
+#if defined(VITRAIL_SORT_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRAIL_SORT_INL_H
+#undef VITRAIL_SORT_INL_H
+#else
+#define VITRAIL_SORT_INL_H
+#endif
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "raster/cpu/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrail::raster::HWY_NAMESPACE {
+
+// Calls exchange(i, i + distance) for every comparison of n values, in an order in which they may be made.
+template <class Exchange>
+constexpr void mergeExchange(std::size_t n, Exchange exchange) {
+  std::size_t top = 1;
+  while (top * 2 < n) top *= 2;
+  for (std::size_t p = n > 1 ? top : 0; p > 0; p /= 2) {
+    std::size_t q = top;
+    std::size_t r = 0;
+    for (std::size_t d = p;; d = q - p, q /= 2, r = p) {
+      for (std::size_t i = 0; i + d < n; ++i) {
+        if ((i & p) == r) exchange(i, i + d);
+      }
+      if (q == p) break;
+    }
+  }
+}
+
+constexpr std::size_t comparisonsOf(std::size_t n) {
+  std::size_t count = 0;
+  mergeExchange(n, [&count](std::size_t, std::size_t) { ++count; });
+  return count;
+}
+
+template <std::size_t kRows>
+struct Network {
+  std::array<std::uint8_t, comparisonsOf(kRows) + 1> low{};
+  std::array<std::uint8_t, comparisonsOf(kRows) + 1> high{};
+  constexpr Network() {
+    std::size_t count = 0;
+    mergeExchange(kRows, [&](std::size_t i, std::size_t j) {
+      low[count] = static_cast<std::uint8_t>(i);
+      high[count++] = static_cast<std::uint8_t>(j);
+    });
+  }
+};
+template <std::size_t kRows>
+inline constexpr Network<kRows> kNetwork{};
+
+// Sorts a column of kRows keys, a vector wide, `kKeyVectors` vectors apart.
+template <std::size_t kRows, std::size_t... kSteps>
+HWY_INLINE void sortColumn(double* keys, std::index_sequence<kSteps...> /*steps*/) {
+  Key rows[kRows];
+  for (std::size_t r = 0; r < kRows; ++r) rows[r] = hn::Load(kD, keys + r * kLanes);
+  (order(rows[kNetwork<kRows>.low[kSteps]], rows[kNetwork<kRows>.high[kSteps]]), ...);
+  for (std::size_t r = 0; r < kRows; ++r) hn::Store(rows[r], kD, keys + r * kLanes);
+}
+
+template <std::size_t kRows>
+HWY_NOINLINE void sortRows(double* keys) {
+  for (std::size_t v = 0; v < kKeyVectors; ++v) {
+    sortColumn<kRows>(keys + v * kKeyLanes, std::make_index_sequence<comparisonsOf(kRows)>());
+  }
+}
+
+HWY_NOINLINE void sortInMemory(double* keys, std::size_t rows) {
+  mergeExchange(rows, [keys](std::size_t i, std::size_t j) HWY_ATTR {
+    for (std::size_t v = 0; v < kKeyVectors; ++v) {
+      double* a = keys + i * kLanes + v * kKeyLanes;
+      double* b = keys + j * kLanes + v * kKeyLanes;
+      Key low = hn::Load(kD, a);
+      Key high = hn::Load(kD, b);
+      order(low, high);
+      hn::Store(low, kD, a);
+      hn::Store(high, kD, b);
+    }
+  });
+}
+
+// How many rows a list of so many is sorted with: those that are added hold kFarKey.
+constexpr std::size_t sortedRows(std::size_t rows) {
+  if (rows <= 8) return rows;
+  if (rows <= 16) return (rows + 1) / 2 * 2;
+  if (rows <= 32) return (rows + 3) / 4 * 4;
+  return rows;
+}
+
+inline void sortKeys(double* keys, std::size_t rows) {
+  switch (rows) {
+    case 0:
+    case 1:
+      return;
+#define VITRAIL_SORT(n) \
+  case n:               \
+    return sortRows<n>(keys);
+      VITRAIL_SORT(2)
+      VITRAIL_SORT(3)
+      VITRAIL_SORT(4)
+      VITRAIL_SORT(5)
+      VITRAIL_SORT(6)
+      VITRAIL_SORT(7)
+      VITRAIL_SORT(8)
+      VITRAIL_SORT(10)
+      VITRAIL_SORT(12)
+      VITRAIL_SORT(14)
+      VITRAIL_SORT(16)
+      VITRAIL_SORT(20)
+      VITRAIL_SORT(24)
+      VITRAIL_SORT(28)
+      VITRAIL_SORT(32)
+#undef VITRAIL_SORT
+    default:
+      return sortInMemory(keys, rows);
+  }
+}
+
+} // namespace vitrail::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,180 @@
+// A tile's fragments. A row holds one fragment for each of a block's sixteen pixels, a vector (64 bytes) for each
+// value. A triangle whose pixels are still free in the block's last row goes there, else a row is opened: neighbouring
+// small triangles of one surface fill rows together. Rows come in chunks, from an arena that is as large as the budget.
+#if defined(VITRAIL_STORE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRAIL_STORE_INL_H
+#undef VITRAIL_STORE_INL_H
+#else
+#define VITRAIL_STORE_INL_H
+#endif
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+#include <vector>
+
+#include "raster/cpu/frame.h"
+#include "raster/cpu/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrail::raster::HWY_NAMESPACE {
+
+constexpr std::size_t kVectorBytes = 64;
+constexpr std::uint32_t kChunkRows = 8;
+
+// Depths as integers that grow away from the viewer. Above zero, so that with what goes below they are normal doubles.
+constexpr std::int32_t kNearestKey = 0x00100000;
+constexpr std::int32_t kOneBits = 0x3f800000;
+constexpr std::int32_t kFarKey = 0x7f000000; // farther than anything: there is no fragment
+
+HWY_INLINE I keyOf(const F& depth, bool nearestIsOne) {
+  // A NaN becomes the farthest depth.
+  const F zero = set(0.0F);
+  const F one = set(1.0F);
+  const I base = set(kNearestKey);
+  if (nearestIsOne) return set(kOneBits + kNearestKey) - bitsOf(min(keep(depth > zero, depth), one));
+  return bitsOf(select(one >= depth, max(depth, zero), one)) + base;
+}
+
+HWY_INLINE F depthOf(const I& key, bool nearestIsOne) {
+  return nearestIsOne ? floatOf(set(kOneBits + kNearestKey) - key) : floatOf(key - set(kNearestKey));
+}
+
+// Which vector of a row holds what. Shading replaces the weights by what is blended.
+struct RowShape {
+  static constexpr std::uint32_t kKey = 0;
+  static constexpr std::uint32_t kNumber = 1; // shaded: the triangle's number; else: the draw's place in flatPairs
+  static constexpr std::uint32_t kPairs = 2; // shaded, four vectors: r, g, b, transmittance of each pixel, side by side
+  static constexpr std::uint32_t kSecond = 2; // weights and derivatives, until they are shaded
+  static constexpr std::uint32_t kThird = 3;
+  static constexpr std::uint32_t kDerivatives = 4;
+  static constexpr std::uint32_t kFilters = 6; // four vectors
+  std::uint32_t coverage = 0;
+  std::uint32_t vectors = 2;
+  bool isFlat = false;
+  std::int32_t nothing = 0; // flat: the place of the pair that does nothing
+
+  RowShape(const FrameNeeds& needs, bool multisampled, std::size_t draws)
+      : isFlat(!needs.shaded), nothing(static_cast<std::int32_t>(draws)) {
+    if (needs.shaded) vectors = needs.filters ? 10 : needs.derivatives ? 8 : 6;
+    if (multisampled) coverage = vectors++;
+  }
+  std::size_t bytes() const { return vectors * kVectorBytes; }
+};
+
+using Row = std::int32_t*; // vector i at 16 * i
+
+HWY_INLINE float* floatsOf(Row row, std::uint32_t vector) { return reinterpret_cast<float*>(row + kLanes * vector); }
+
+class Store {
+ public:
+  Store(const RowShape& shape, std::uint64_t budget) : shape_(shape) {
+    chunkBytes_ = shape.bytes() * kChunkRows;
+    chunks_ = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(budget / chunkBytes_, 4, 1U << 24U));
+    arena_.reset(allocate(chunks_));
+    previous_.resize(chunks_);
+  }
+
+  const RowShape& shape() const { return shape_; }
+  const float* base() const { return reinterpret_cast<const float*>(arena_.get()); }
+
+  void reset() {
+    used_ = 0;
+    for (Head& head : heads_) head = {};
+  }
+
+  std::uint32_t rows(std::uint32_t block) const { return heads_[block].rows; }
+
+  // The row for fragments of a block at the pixels of `mask`; `isFresh`: nothing is in it yet. Null: the arena is full.
+  HWY_INLINE Row rowFor(std::uint32_t block, std::uint32_t mask, bool& isFresh) {
+    Head& head = heads_[block];
+    isFresh = (head.filled & mask) != 0;
+    if (!isFresh) {
+      head.filled |= mask;
+      return head.row;
+    }
+    if (HWY_UNLIKELY(head.rows % kChunkRows == 0)) {
+      if (!addChunk(head)) return nullptr;
+    } else {
+      head.row += shape_.vectors * kLanes;
+    }
+    ++head.rows;
+    head.filled = mask;
+    return head.row;
+  }
+
+  // All rows of a block, in no particular order.
+  void collect(std::uint32_t block, std::vector<Row>& rows) const {
+    const Head& head = heads_[block];
+    rows.clear();
+    std::uint32_t chunk = head.chunk;
+    std::uint32_t left = head.rows;
+    while (left > 0) {
+      const std::uint32_t count = (left - 1) % kChunkRows + 1;
+      for (std::uint32_t i = 0; i < count; ++i) rows.push_back(rowAt(chunk, i));
+      left -= count;
+      chunk = previous_[chunk];
+    }
+  }
+
+  // Twice as much room, for what has to be held at once. Rows move.
+  void grow() {
+    std::unique_ptr<std::int32_t, Free> larger(allocate(chunks_ * 2));
+    std::memcpy(larger.get(), arena_.get(), chunks_ * chunkBytes_);
+    for (Head& head : heads_) {
+      if (head.row != nullptr) head.row = larger.get() + (head.row - arena_.get());
+    }
+    arena_ = std::move(larger);
+    chunks_ *= 2;
+    previous_.resize(chunks_);
+  }
+
+  // An empty store but for `rows` rows of one block, to be filled in.
+  void restart(std::uint32_t block, std::uint32_t rows) {
+    reset();
+    bool isFresh = false;
+    for (std::uint32_t i = 0; i < rows; ++i) static_cast<void>(rowFor(block, 0xffffU, isFresh));
+  }
+
+  std::int32_t* arena() const { return arena_.get(); }
+
+ private:
+  struct Free {
+    void operator()(std::int32_t* p) const { ::operator delete (p, std::align_val_t{kVectorBytes}); }
+  };
+  struct Head {
+    std::uint32_t filled = 0xffffU; // pixels of the last row: all, so that the first fragment opens one
+    std::uint32_t rows = 0;
+    std::uint32_t chunk = 0;
+    Row row = nullptr; // the last one
+  };
+
+  std::int32_t* allocate(std::size_t chunks) const {
+    return static_cast<std::int32_t*>(::operator new (chunks* chunkBytes_, std::align_val_t{kVectorBytes}));
+  }
+
+  Row rowAt(std::uint32_t chunk, std::uint32_t i) const {
+    return arena_.get() + (std::size_t{chunk} * kChunkRows + i) * shape_.vectors * kLanes;
+  }
+
+  HWY_NOINLINE bool addChunk(Head& head) {
+    if (used_ == chunks_) return false;
+    previous_[used_] = head.chunk;
+    head.chunk = used_++;
+    head.row = rowAt(head.chunk, 0);
+    return true;
+  }
+
+  RowShape shape_;
+  std::size_t chunkBytes_ = 0;
+  std::uint32_t chunks_ = 0;
+  std::uint32_t used_ = 0;
+  std::unique_ptr<std::int32_t, Free> arena_;
+  std::vector<std::uint32_t> previous_; // of a chunk: the one before it
+  std::array<Head, kBlocks> heads_{};
+};
+
+} // namespace vitrail::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
