@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <span>
 #include <utility>
@@ -63,6 +64,13 @@ class Encoded {
     picture.encoding == Encoding::Srgb8 ? shallow.resize(count) : deep.resize(count);
   }
 
+  // Makes all pixels the same.
+  void fill(const float* linear) {
+    std::array<std::uint8_t, 4> pixel{};
+    encodePixels(linear, 1, pixel.data());
+    for (std::size_t i = 0; i < shallow.size(); i += 4) std::copy_n(pixel.data(), 4, &shallow[i]);
+  }
+
   // Takes rows of linear light, from `firstRow` on.
   void set(std::uint32_t firstRow, std::uint32_t rows, const float* linear) {
     const std::size_t width = picture_.width;
@@ -110,15 +118,11 @@ bool isBackgroundAlone(const RenderOptions& picture, const Encoded& encoded) {
   return true;
 }
 
-// What the bands of a picture add up to.
-void add(FrameReport& report, std::uint64_t& coveredPixels, const VitrailStats& band) {
-  report.fragmentsRequested += band.fragmentsRequested;
-  report.fragmentsStored += band.fragmentsStored;
-  report.fragmentsMissing += band.fragmentsMissing;
-  report.layersMax = std::max(report.layersMax, band.layersMax);
-  report.complete = report.complete && band.complete != 0;
-  report.errorBound = std::max(report.errorBound, static_cast<double>(band.errorBound));
-  coveredPixels += band.coveredPixels;
+// Whether the background is a colour that 8-bit pictures have, so that nothing is lost where it shows through.
+bool hasCodes(const RenderOptions& picture) {
+  if (picture.encoding != Encoding::Srgb8 || picture.background.kind != Background::Kind::Color) return false;
+  const glm::vec3 codes = picture.background.srgb * 255.0F;
+  return glm::all(glm::lessThan(glm::abs(codes - glm::round(codes)), glm::vec3(1.0e-3F)));
 }
 
 int tellTiles(void* user, std::uint32_t tilesDone, std::uint32_t /*tiles*/) {
@@ -128,13 +132,40 @@ int tellTiles(void* user, std::uint32_t tilesDone, std::uint32_t /*tiles*/) {
 
 } // namespace
 
+// What the bands of a picture add up to.
+struct CpuStillRenderer::Totals {
+  PassClock clock;
+  FrameReport report;
+  std::uint64_t coveredPixels = 0;
+
+  Totals() {
+    report.complete = true;
+    report.counted = true;
+    report.errorBound = 0.0;
+    report.tiles = 0;
+  }
+
+  void add(const VitrailStats& band) {
+    report.fragmentsRequested += band.fragmentsRequested;
+    report.fragmentsStored += band.fragmentsStored;
+    report.fragmentsMissing += band.fragmentsMissing;
+    report.layersMax = std::max(report.layersMax, band.layersMax);
+    report.complete = report.complete && band.complete != 0;
+    report.errorBound = std::max(report.errorBound, static_cast<double>(band.errorBound));
+    coveredPixels += band.coveredPixels;
+    ++report.tiles;
+  }
+};
+
 struct CpuStillRenderer::Impl {
   MethodOptions method;
   std::vector<std::string> warnings; // of what is drawn otherwise than the file says
   Rasterizer rasterizer;
   CpuScene scene;
   std::string device;
-  std::vector<float> band; // linear rows, those that are drawn at once
+  std::span<const VitrailCpuDraw> draws; // of the picture at hand
+  std::unique_ptr<float[]> band;         // linear rows, those that are drawn at once
+  std::size_t bandNumbers = 0;
 
   template <class GivenScene>
   Impl(GivenScene&& given, std::optional<float> opacity, DrawOrder order, const MethodOptions& chosen)
@@ -146,6 +177,8 @@ struct CpuStillRenderer::Impl {
   }
 
   FrameReport draw(const RenderOptions& picture, Encoded* encoded);
+  void drawCodes(const RenderOptions& picture, VitrailCpuFrame& frame, Encoded& encoded, Totals& totals);
+  void drawBands(const RenderOptions& picture, VitrailCpuFrame& frame, Encoded* encoded, Totals& totals);
   VitrailCpuFrame frameOf(const RenderOptions& picture) const;
   void finish(FrameReport& report, const RenderOptions& picture, const PassTimes& passes) const;
 };
@@ -154,12 +187,12 @@ struct CpuStillRenderer::Impl {
 VitrailCpuFrame CpuStillRenderer::Impl::frameOf(const RenderOptions& picture) const {
   VitrailCpuFrame frame{};
   frame.width = picture.width;
+  frame.height = picture.height;
   frame.pictureWidth = picture.width;
   frame.pictureHeight = picture.height;
   frame.samples = method.samples;
   frame.clipSpace = VITRAIL_CPU_CLIP_VULKAN;
   frame.depthOrder = VITRAIL_DEPTH_NEAREST_IS_ONE;
-  frame.colorFormat = VITRAIL_CPU_RGBA32F;
   frame.memoryBudget = picture.memoryBudget.value_or(0);
   if (picture.onTile) {
     frame.progress = tellTiles;
@@ -168,43 +201,67 @@ VitrailCpuFrame CpuStillRenderer::Impl::frameOf(const RenderOptions& picture) co
   return frame;
 }
 
-// Draws a picture band by band, and encodes it where that is wanted.
 FrameReport CpuStillRenderer::Impl::draw(const RenderOptions& picture, Encoded* encoded) {
-  if (std::max(picture.width, picture.height) > VITRAIL_CPU_MAX_SIDE) {
+  if (std::max(picture.width, picture.height) > kMaxProcessorSide) {
     throw GpuError(fmt::format("a picture of {}x{} is too large: the processor draws at most {}x{}", picture.width,
-                               picture.height, VITRAIL_CPU_MAX_SIDE, VITRAIL_CPU_MAX_SIDE));
+                               picture.height, kMaxProcessorSide, kMaxProcessorSide));
   }
-  PassClock clock;
-  const auto most = static_cast<std::uint32_t>(std::max<std::uint64_t>(kBandPixels / picture.width, 1));
-  const std::uint32_t bandRows = std::min(picture.height, most);
-  band.resize(std::size_t{picture.width} * bandRows * 4);
+  Totals totals;
   VitrailCpuFrame frame = frameOf(picture);
-  frame.color = band.data();
-  const std::span<const VitrailCpuDraw> draws = scene.draws(picture.view, picture.width, picture.height);
-  clock.end("vertices");
+  draws = scene.draws(picture.view, picture.width, picture.height);
+  totals.clock.end("vertices");
+  if (encoded != nullptr && hasCodes(picture)) {
+    drawCodes(picture, frame, *encoded, totals);
+  } else {
+    drawBands(picture, frame, encoded, totals);
+  }
+  FrameReport& report = totals.report;
+  report.layersMean = meanLayers(report.fragmentsStored, totals.coveredPixels);
+  finish(report, picture, totals.clock.passes());
+  return report;
+}
 
-  FrameReport report;
-  report.complete = true;
-  report.counted = true;
-  report.errorBound = 0.0;
-  std::uint64_t coveredPixels = 0;
-  for (frame.originY = 0; frame.originY < picture.height; frame.originY += bandRows) {
-    frame.height = std::min(bandRows, picture.height - frame.originY);
+// The rasteriser encodes: each pixel is touched once, and there is no other picture than the encoded one.
+void CpuStillRenderer::Impl::drawCodes(const RenderOptions& picture, VitrailCpuFrame& frame, Encoded& encoded,
+                                       Totals& totals) {
+  std::array<float, 4> linear{};
+  drawBackground(picture.background, picture.view, 1, 1, 0, 1, linear.data());
+  encoded.fill(linear.data());
+  totals.clock.end("background");
+  frame.colorFormat = VITRAIL_CPU_RGBA8_SRGB;
+  frame.color = encoded.shallow.data();
+  VitrailStats stats{};
+  rasterizer.render(frame, draws, stats);
+  totals.add(stats);
+  totals.clock.end("draw");
+}
+
+// Draws in linear light, and encodes where that is wanted.
+void CpuStillRenderer::Impl::drawBands(const RenderOptions& picture, VitrailCpuFrame& frame, Encoded* encoded,
+                                       Totals& totals) {
+  const auto most = static_cast<std::uint32_t>(std::max<std::uint64_t>(kBandPixels / picture.width, 1));
+  const std::uint32_t rows = std::min(picture.height, most);
+  const std::size_t numbers = std::size_t{picture.width} * rows * 4;
+  if (numbers > bandNumbers) {
+    band = nullptr; // the old one and the new one need not fit together
+    band = std::make_unique_for_overwrite<float[]>(numbers);
+    bandNumbers = numbers;
+  }
+  frame.colorFormat = VITRAIL_CPU_RGBA32F;
+  frame.color = band.get();
+  for (frame.originY = 0; frame.originY < picture.height; frame.originY += rows) {
+    frame.height = std::min(rows, picture.height - frame.originY);
     drawBackground(picture.background, picture.view, picture.width, picture.height, frame.originY, frame.height,
-                   band.data());
-    clock.end("background");
+                   band.get());
+    totals.clock.end("background");
     VitrailStats stats{};
     rasterizer.render(frame, draws, stats);
-    add(report, coveredPixels, stats);
-    clock.end("draw");
+    totals.add(stats);
+    totals.clock.end("draw");
     if (encoded == nullptr) continue;
-    encoded->set(frame.originY, frame.height, band.data());
-    clock.end("encode");
+    encoded->set(frame.originY, frame.height, band.get());
+    totals.clock.end("encode");
   }
-  report.layersMean = meanLayers(report.fragmentsStored, coveredPixels);
-  report.tiles = (picture.height + bandRows - 1) / bandRows;
-  finish(report, picture, clock.passes());
-  return report;
 }
 
 void CpuStillRenderer::Impl::finish(FrameReport& report, const RenderOptions& picture, const PassTimes& passes) const {

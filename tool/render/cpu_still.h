@@ -21,8 +21,9 @@ inline constexpr std::uint32_t kMaxProcessorSide = VITRAIL_CPU_MAX_SIDE;
 // the rasteriser cannot be made.
 std::string processorDevice();
 
-// Holds one scene. Pictures beyond 16 M pixels are drawn and encoded in bands of rows, so that little more than the
-// encoded picture is in memory; they are the same.
+// Holds one scene. Pictures of 8 bits over a colour are encoded as they are drawn. Others are drawn in linear light, in
+// bands of rows where they have more than 16 M pixels, so that little more than the encoded picture is in memory; they
+// are the same.
 class CpuStillRenderer final : public Renderer {
  public:
   // As StillRenderer's; the method is `cpu`. Throws GpuError. The scene need not outlive it.
@@ -35,6 +36,7 @@ class CpuStillRenderer final : public Renderer {
 
  private:
   struct Impl;
+  struct Totals;
   std::unique_ptr<Impl> impl_;
 };
 
