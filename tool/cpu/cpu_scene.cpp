@@ -43,7 +43,7 @@ std::vector<std::string> volumeWarnings(const Scene& scene) {
   if (!scene.clipPlanes.empty()) {
     return {"volumes are attenuated by the file's thickness, not by the true path: --clip-plane cuts them open"};
   }
-  return {"volumes are attenuated by the file's thickness, not by the true path: leave --device cpu out"};
+  return {"volumes are attenuated by the file's thickness, not by the true path: use --method linked-list"};
 }
 
 // The meshes that are drawn; the others are left empty, so that all keep their numbers.

@@ -201,8 +201,7 @@ void checkMethodOptions(const MethodOptions& options) {
 
 std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions& options) {
   const bool cut = !scene.clipPlanes.empty();
-  const bool isExact = options.name == kListMethod || options.name == kCpuMethod;
-  const bool walks = isExact && options.maxLayers == 0;
+  const bool walks = options.name == kListMethod && options.maxLayers == 0;
   const Solids solids(scene, false);
   if (walks && !cut && solids.open()) {
     const std::uint32_t material = *solids.open();

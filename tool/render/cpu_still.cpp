@@ -159,7 +159,6 @@ struct CpuStillRenderer::Totals {
 
 struct CpuStillRenderer::Impl {
   MethodOptions method;
-  std::vector<std::string> warnings; // of what is drawn otherwise than the file says
   Rasterizer rasterizer;
   CpuScene scene;
   std::string device;
@@ -169,12 +168,7 @@ struct CpuStillRenderer::Impl {
 
   template <class GivenScene>
   Impl(GivenScene&& given, std::optional<float> opacity, DrawOrder order, const MethodOptions& chosen)
-      : method(chosen),
-        warnings(methodWarnings(given, chosen)),
-        scene(std::forward<GivenScene>(given), opacity, order),
-        device(rasterizer.name()) {
-    warnings.insert(warnings.end(), scene.warnings().begin(), scene.warnings().end());
-  }
+      : method(chosen), scene(std::forward<GivenScene>(given), opacity, order), device(rasterizer.name()) {}
 
   FrameReport draw(const RenderOptions& picture, Encoded* encoded);
   void drawCodes(const RenderOptions& picture, VitrailCpuFrame& frame, Encoded& encoded, Totals& totals);
@@ -273,7 +267,7 @@ void CpuStillRenderer::Impl::finish(FrameReport& report, const RenderOptions& pi
   report.width = picture.width;
   report.height = picture.height;
   report.samples = method.samples;
-  report.warnings = warnings;
+  report.warnings = scene.warnings();
   report.peakBytes = peakMemory();
   report.passesMs = passes;
   for (const auto& [name, milliseconds] : passes) report.frameMs += milliseconds;
