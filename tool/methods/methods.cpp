@@ -212,8 +212,9 @@ std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions&
   }
   if ((walks && !cut) || !solids.any()) return {};
   if (cut) return {"volumes are attenuated by the file's thickness, not by the true path: --clip-plane cuts them open"};
-  return {isExact ? "volumes are attenuated by the file's thickness, not by the true path: leave --layers out"
-                  : "volumes are attenuated by the file's thickness, not by the true path: use --method linked-list"};
+  return {options.name == kListMethod
+              ? "volumes are attenuated by the file's thickness, not by the true path: leave --layers out"
+              : "volumes are attenuated by the file's thickness, not by the true path: use --method linked-list"};
 }
 
 void checkPictureOptions(std::string_view method, bool memoryBudget) {
