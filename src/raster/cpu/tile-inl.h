@@ -725,10 +725,10 @@ inline SortedRows TileWorker::sortBlock(const Frame& frame, std::uint32_t block)
     keysOf(load(row), place, keys);
     for (std::size_t v = 0; v < kKeyVectors; ++v) hn::Store(keys[v], kD, sorted.keys + r * kLanes + v * kKeyLanes);
   }
-  // What fills the list up refers to any fragment that exists: nothing looks at it.
+  // What fills the list up is farther than what is not there: it comes last, and nothing looks at it.
   for (std::size_t r = rows_.size(); r < sorted.rows; ++r) {
     Key keys[kKeyVectors];
-    keysOf(set(kFarKey), set(0), keys);
+    keysOf(set(kFarKey + 1), set(0), keys);
     for (std::size_t v = 0; v < kKeyVectors; ++v) hn::Store(keys[v], kD, sorted.keys + r * kLanes + v * kKeyLanes);
   }
   if (frame.needs.shaded) {
