@@ -69,9 +69,10 @@ TEST(Device, TheReportOfTheProcessor) {
     EXPECT_GE(report.at("layers").at("mean"), 1.0);
     EXPECT_GE(report.at("memory").at("nodes_bytes"), 65536);
     EXPECT_GT(report.at("memory").at("peak_bytes"), 1 << 20);
-    for (const char* pass : {"vertices", "background", "draw", "encode"}) {
+    for (const char* pass : {"vertices", "background", "draw"}) {
       EXPECT_GE(report.at("passes_ms").at(pass).get<double>(), 0.0) << pass;
     }
+    EXPECT_FALSE(report.at("passes_ms").contains("encode")); // it is encoded as it is drawn
     EXPECT_GT(report.at("frame_ms"), 0.0);
   }
 }
@@ -211,7 +212,7 @@ TEST(Device, EveryMemoryBudgetGivesTheSamePictureOnTheProcessor) {
   words.back() = "budget.png";
   words.insert(words.end(), {"--memory-budget", "1"});
   ASSERT_EQ(vitrail(folder, words).exitCode, 0);
-  EXPECT_EQ(readText(folder.path() / "whole.png"), readText(folder.path() / "budget.png"));
+  EXPECT_TRUE(readText(folder.path() / "whole.png") == readText(folder.path() / "budget.png"));
 }
 
 TEST(Device, EveryEncodingOfTheProcessor) {
@@ -243,10 +244,13 @@ TEST(Device, LongSidesOnTheProcessor) {
 // Larger than what is drawn at once: the parts fit together.
 TEST(Device, ALargePictureIsDrawnInBands) {
   const TemporaryFolder folder;
-  const ProcessResult result = vitrail(folder, {"render", "--scene", "planes", "--count", "1", "--device", "cpu",
-                                                "--size", "8192x2560", "-o", "a.png", "--json", "a.json"});
+  const ProcessResult result =
+      vitrail(folder, {"render", "--scene", "planes", "--count", "1", "--device", "cpu", "--size", "8192x2560",
+                       "--bits", "16", "-o", "a.png", "--json", "a.json"});
   ASSERT_EQ(result.exitCode, 0) << result.error;
-  EXPECT_EQ(readJson(folder.file("a.json")).at("tiles"), 2);
+  const Json report = readJson(folder.file("a.json"));
+  EXPECT_EQ(report.at("tiles"), 2);
+  EXPECT_TRUE(report.at("passes_ms").contains("encode")) << report;
   EXPECT_EQ(readPng(folder.file("a.png")).height, 2560U);
 }
 

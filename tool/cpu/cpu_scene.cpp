@@ -7,6 +7,7 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
+#include "../scene/message.h"
 #include "../scene/srgb.h"
 #include "../scene/threads.h"
 #include "../scene/volume.h"
@@ -39,7 +40,14 @@ std::vector<std::uint32_t> drawnMaterials(const Scene& scene) {
 }
 
 std::vector<std::string> volumeWarnings(const Scene& scene) {
-  if (!Solids(scene, false).any()) return {};
+  const Solids solids(scene, false);
+  if (!solids.any()) {
+    if (!solids.open() || !scene.clipPlanes.empty()) return {};
+    const std::uint32_t material = *solids.open();
+    return {objectName("material", material, scene.materials[material].name) +
+            ": an object of it is not closed, so that light is absorbed there by the file's thickness, not by its true "
+            "way"};
+  }
   if (!scene.clipPlanes.empty()) {
     return {"volumes are attenuated by the file's thickness, not by the true path: --clip-plane cuts them open"};
   }
