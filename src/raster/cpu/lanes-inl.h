@@ -138,24 +138,33 @@ HWY_INLINE I shiftRight(const I& a) { // keeps the sign
 
 // A bit a lane.
 HWY_INLINE std::uint32_t bitsOf(const M& m) {
+#if HWY_TARGET == HWY_AVX3
+  return _cvtmask16_u32(m.v[0].raw);
+#elif HWY_TARGET == HWY_AVX2
+  const int low = _mm256_movemask_ps(hn::VecFromMask(kF, m.v[0]).raw);
+  const int high = _mm256_movemask_ps(hn::VecFromMask(kF, m.v[1]).raw);
+  return static_cast<std::uint32_t>(low | high << 8);
+#else
   std::uint32_t bits = 0;
   VITRAIL_EACH {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(kF, m.v[i], bytes);
-    bits |= static_cast<std::uint32_t>(bytes[0] | bytes[1] << 8U) << (i * kVectorLanes);
+    bits |= static_cast<std::uint32_t>(bytes[0]) << (i * kVectorLanes);
   }
   return bits;
+#endif
 }
 // Of the signs of integers.
 HWY_INLINE std::uint32_t signsOf(const I& a) {
-  M m;
-  VITRAIL_EACH m.v[i] = hn::MaskFromVec(hn::BitCast(kF, a.v[i]));
 #if HWY_TARGET == HWY_AVX3
-  VITRAIL_EACH m.v[i] = hn::Mask<TagF>{static_cast<decltype(m.v[i].raw)>(_mm512_movepi32_mask(a.v[i].raw))};
+  return _cvtmask16_u32(_mm512_movepi32_mask(a.v[0].raw));
+#elif HWY_TARGET == HWY_AVX2
+  const int low = _mm256_movemask_ps(_mm256_castsi256_ps(a.v[0].raw));
+  const int high = _mm256_movemask_ps(_mm256_castsi256_ps(a.v[1].raw));
+  return static_cast<std::uint32_t>(low | high << 8);
 #else
-  VITRAIL_EACH m.v[i] = hn::RebindMask(kF, hn::Lt(a.v[i], hn::Zero(kI)));
+  return bitsOf(set(0) > a);
 #endif
-  return bitsOf(m);
 }
 
 alignas(64) inline constexpr std::int32_t kLaneBits[kLanes] = {1,   2,   4,    8,    16,   32,   64,    128,

@@ -85,21 +85,19 @@ class Store {
 
   std::uint32_t rows(std::uint32_t block) const { return heads_[block].rows; }
 
-  // The row for fragments of a block at the pixels of `mask`; `isFresh`: nothing is in it yet. Null: the arena is full.
-  HWY_INLINE Row rowFor(std::uint32_t block, std::uint32_t mask, bool& isFresh) {
+  // The row for fragments of a block at the pixels of `mask`; isFresh is 1 where nothing is in it yet, else 0. Null:
+  // the arena is full.
+  HWY_INLINE Row rowFor(std::uint32_t block, std::uint32_t mask, std::uint32_t& isFresh) {
     Head& head = heads_[block];
-    isFresh = (head.filled & mask) != 0;
-    if (!isFresh) {
-      head.filled |= mask;
-      return head.row;
-    }
-    if (HWY_UNLIKELY(head.rows % kChunkRows == 0)) {
+    isFresh = static_cast<std::uint32_t>((head.filled & mask) != 0);
+    if (HWY_UNLIKELY((isFresh & static_cast<std::uint32_t>(head.left == 0)) != 0)) {
       if (!addChunk(head)) return nullptr;
     } else {
-      head.row += shape_.vectors * kLanes;
+      head.row += isFresh * shape_.vectors * kLanes;
     }
-    ++head.rows;
-    head.filled = mask;
+    head.left -= isFresh;
+    head.rows += isFresh;
+    head.filled = (head.filled & (isFresh - 1)) | mask;
     return head.row;
   }
 
@@ -132,7 +130,7 @@ class Store {
   // An empty store but for `rows` rows of one block, to be filled in.
   void restart(std::uint32_t block, std::uint32_t rows) {
     reset();
-    bool isFresh = false;
+    std::uint32_t isFresh = 0;
     for (std::uint32_t i = 0; i < rows; ++i) static_cast<void>(rowFor(block, 0xffffU, isFresh));
   }
 
@@ -145,6 +143,7 @@ class Store {
   struct Head {
     std::uint32_t filled = 0xffffU; // pixels of the last row: all, so that the first fragment opens one
     std::uint32_t rows = 0;
+    std::uint32_t left = 0; // rows of the last chunk that are free
     std::uint32_t chunk = 0;
     Row row = nullptr; // the last one
   };
@@ -162,6 +161,7 @@ class Store {
     previous_[used_] = head.chunk;
     head.chunk = used_++;
     head.row = rowAt(head.chunk, 0);
+    head.left = kChunkRows;
     return true;
   }
 

@@ -157,7 +157,7 @@ class TileWorker final : public TileWorkspace {
   std::array<std::uint8_t, kBatch * kBlocks + 64> tags_{};
   std::array<Work, kBatch * kBlocks + 64> work_{};
   std::array<std::array<std::uint16_t, kBatch * kBlocks + 64>, kMaxSamples> sampleMasks_{};
-  alignas(64) std::int32_t layers_[kBlocks][kLanes]; // fragments of each pixel
+  alignas(64) std::int32_t layers_[kLanes]; // fragments of each pixel of the block that was sorted last
   std::vector<Row> rows_;
   std::vector<double> keyMemory_;
   std::vector<std::uint32_t> coverageMemory_;
@@ -262,7 +262,7 @@ HWY_INLINE std::uint32_t TileWorker::cover(std::uint64_t blocks, std::uint32_t i
     }
     const std::uint32_t mask = ~signsOf(outside) & 0xffffU;
     work_[count] = {static_cast<std::uint8_t>(t), static_cast<std::uint8_t>(block), static_cast<std::uint16_t>(mask)};
-    count += static_cast<std::uint32_t>(mask != 0 && (blocks >> block & 1U) != 0);
+    count += static_cast<std::uint32_t>(mask != 0) & static_cast<std::uint32_t>(blocks >> block & 1U);
   }
   return count;
 }
@@ -289,7 +289,7 @@ HWY_INLINE std::uint32_t TileWorker::coverSamples(std::uint64_t blocks, std::uin
       any |= mask;
     }
     work_[count] = {static_cast<std::uint8_t>(t), static_cast<std::uint8_t>(block), static_cast<std::uint16_t>(any)};
-    count += static_cast<std::uint32_t>(any != 0 && (blocks >> block & 1U) != 0);
+    count += static_cast<std::uint32_t>(any != 0) & static_cast<std::uint32_t>(blocks >> block & 1U);
   }
   return count;
 }
@@ -400,36 +400,33 @@ HWY_INLINE bool TileWorker::emitTransparent(const Frame& frame, std::uint32_t it
     mask &= ~later & bitsOf(key > load(window->after));
   }
   if (mask == 0) return true;
-  bool isFresh = false;
+  std::uint32_t isFresh = 0;
   const Row row = store_.rowFor(block, mask, isFresh);
   if (HWY_UNLIKELY(row == nullptr)) return false;
   const M here = maskOf(mask);
-  store(layers_[block], load(layers_[block]) + keep(here, set(1)));
-  const auto put = [&](std::uint32_t vector, const I& value) HWY_ATTR {
+  const M fresh = maskOf(0U - isFresh); // without a branch: nobody could tell which it takes
+  const auto put = [&](std::uint32_t vector, const I& value, const I& elsewhere) HWY_ATTR {
     std::int32_t* to = row + kLanes * vector;
-    store(to, isFresh ? value : select(here, value, load(to)));
+    store(to, select(here, value, select(fresh, elsewhere, load(to))));
   };
-  store(row, select(here, key, isFresh ? set(kFarKey) : load(row)));
+  put(RowShape::kKey, key, set(kFarKey));
   if (!frame.needs.shaded) {
     const std::uint32_t number = static_cast<std::uint32_t>(batch_.number[t]) & ~kFrontBit;
-    const auto draw = static_cast<std::int32_t>(frame.jobs[number >> kJobBits].draw);
-    std::int32_t* to = row + kLanes * RowShape::kNumber;
-    // Where nothing is, the pair that does nothing.
-    const I before = isFresh ? set(static_cast<std::int32_t>(frame.draws.size())) : load(to);
-    store(to, select(here, set(draw), before));
+    put(RowShape::kNumber, set(static_cast<std::int32_t>(frame.jobs[number >> kJobBits].draw)), set(shape_.nothing));
   } else {
     F weights[6];
     perspective(t, second, third, frame.needs.derivatives, weights);
-    put(RowShape::kNumber, set(batch_.number[t]));
+    const I number = set(batch_.number[t]);
+    put(RowShape::kNumber, number, number); // where nothing is, there is still the number of one that exists
     const std::uint32_t count = frame.needs.derivatives ? 6 : 2;
-    for (std::uint32_t i = 0; i < count; ++i) put(RowShape::kSecond + i, bitsOf(weights[i]));
+    for (std::uint32_t i = 0; i < count; ++i) put(RowShape::kSecond + i, bitsOf(weights[i]), bitsOf(weights[i]));
   }
   if (shape_.coverage != 0) {
     I covered = set(0);
     for (std::uint32_t s = 0; s < frame.info.samples; ++s) {
       covered = covered | keep(maskOf(sampleMasks_[s][item]), set(static_cast<std::int32_t>(1U << s)));
     }
-    put(shape_.coverage, covered);
+    put(shape_.coverage, covered, set(0));
   }
   return true;
 }
@@ -574,7 +571,6 @@ inline void TileWorker::drawOpaque(const Frame& frame, std::uint32_t tile) {
 
 inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, TileCounts& counts) {
   store_.reset();
-  std::memset(layers_, 0, sizeof(layers_));
   const bool hasFitted =
       rasterise(frame, blocks, [&](std::uint32_t item) HWY_ATTR { return emitTransparent(frame, item, nullptr); });
   if (hasFitted) {
@@ -644,7 +640,6 @@ inline void TileWorker::shrink(Window& window, std::uint32_t block) {
       const Row from = rows_[lists[lane][r].second];
       for (std::size_t v = 0; v < shape_.vectors; ++v) copy[r * stride + v * kLanes + lane] = from[v * kLanes + lane];
     }
-    layers_[block][lane] = static_cast<std::int32_t>(lists[lane].size());
   }
   store_.restart(block, static_cast<std::uint32_t>(most));
   store_.collect(block, rows_);
@@ -662,7 +657,7 @@ inline void TileWorker::drawInWindows(const Frame& frame, std::uint32_t block, T
     window.isCut = false;
     std::fill(std::begin(window.until), std::end(window.until), kFarKey);
     store_.reset();
-    std::memset(layers_[block], 0, sizeof(layers_[block]));
+    store(layers_, set(0));
     rasterise(frame, std::uint64_t{1} << block, [&](std::uint32_t item) HWY_ATTR {
       while (!emitTransparent(frame, item, &window)) {
         if (frame.info.list != nullptr) {
@@ -682,7 +677,7 @@ inline void TileWorker::drawInWindows(const Frame& frame, std::uint32_t block, T
       }
     }
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      layers[lane] += layers_[block][lane];
+      layers[lane] += layers_[lane];
       window.after[lane] = window.until[lane] - 1;
     }
   } while (window.isCut);
@@ -710,21 +705,24 @@ inline SortedRows TileWorker::sortBlock(const Frame& frame, std::uint32_t block)
   if (keyMemory_.size() < sorted.rows * kLanes + kLanes) keyMemory_.resize(2 * sorted.rows * kLanes + kLanes);
   sorted.keys = aligned(keyMemory_.data());
   const I places = load(kPairPlaces.place);
+  I layers = set(0);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const Row row = rows_[r];
     I place;
     if (frame.needs.shaded) {
-      const std::uint32_t gone = shadeRow(frame, row, x, y, fragments_);
-      if (gone != 0) store(layers_[block], load(layers_[block]) - keep(maskOf(gone), set(1)));
+      shadeRow(frame, row, x, y, fragments_);
       const std::ptrdiff_t first = reinterpret_cast<const float*>(row + kLanes * RowShape::kPairs) - store_.base();
       place = places + set(static_cast<std::int32_t>(first / 4));
     } else {
       place = load(row + kLanes * RowShape::kNumber);
     }
+    const I depths = load(row);
+    layers = layers + keep(set(kFarKey) > depths, set(1));
     Key keys[kKeyVectors];
-    keysOf(load(row), place, keys);
+    keysOf(depths, place, keys);
     for (std::size_t v = 0; v < kKeyVectors; ++v) hn::Store(keys[v], kD, sorted.keys + r * kLanes + v * kKeyLanes);
   }
+  store(layers_, layers);
   // What fills the list up is farther than what is not there: it comes last, and nothing looks at it.
   for (std::size_t r = rows_.size(); r < sorted.rows; ++r) {
     Key keys[kKeyVectors];
@@ -789,7 +787,7 @@ inline Row TileWorker::rowOf(const Frame& /*frame*/, const SortedRows& sorted, s
 
 inline void TileWorker::resolveBlock(const Frame& frame, std::uint32_t block, TileCounts& counts) {
   const SortedRows sorted = sortBlock(frame, block);
-  count(layers_[block], counts);
+  count(layers_, counts);
   if (frame.info.list != nullptr) return listBlock(frame, block, sorted);
   State state;
   state.clear(frame.info.samples);
