@@ -448,7 +448,9 @@ TEST_P(WrongMethods, CrossingSurfacesLookWrong) {
 // The opaque scene stands as it was drawn: without anything before it, and where it hides what is transparent.
 TEST_P(MethodsTest, OpaqueSurfacesStand) {
   const TestScene nothing = nothingTransparent();
-  EXPECT_TRUE(draw(nothing, options()).picture.rgba == exactPicture(nothing).rgba);
+  // On the processor the colour is not rounded to 16-bit floats before it is to 8 bits.
+  EXPECT_LE(largestDifference(draw(nothing, options()).picture, exactPicture(nothing)),
+            GetParam().name == "cpu" ? 1 : 0);
   const TestScene stack = occludedStack();
   const Picture drawn = draw(stack, options()).picture;
   const Picture bare = draw(withoutTransparent(stack), options()).picture;

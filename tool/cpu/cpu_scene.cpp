@@ -213,7 +213,8 @@ void CpuScene::Impl::describe(Group& group, const Scene& scene, VitrailCpuInstru
   VitrailCpuDraw& draw = group.prototype;
   draw.surface = group.isTransparent ? VITRAIL_CPU_TRANSPARENT : VITRAIL_CPU_OPAQUE;
   draw.topology = topologyOf(mesh.primitive);
-  draw.cull = cullOf(group, scene.materials[group.source.material]);
+  const bool hasSides = mesh.primitive == Primitive::Triangles;
+  draw.cull = hasSides ? cullOf(group, scene.materials[group.source.material]) : VITRAIL_CPU_CULL_NONE;
   draw.blend = blendOf(group.surface.features);
   draw.positions = &mesh.positions.data()->x;
   draw.components = 3;
