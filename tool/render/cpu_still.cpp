@@ -125,6 +125,19 @@ bool hasCodes(const RenderOptions& picture) {
   return glm::all(glm::lessThan(glm::abs(codes - glm::round(codes)), glm::vec3(1.0e-3F)));
 }
 
+// Where the fragments of each pixel of a band are counted.
+struct LayerCounts {
+  std::uint32_t* firstRow;
+  std::size_t width;
+};
+
+int countLayers(void* user, std::uint32_t x, std::uint32_t y, const VitrailLayer* /*layers*/, std::uint32_t count,
+                float* /*color*/) {
+  const LayerCounts& counts = *static_cast<const LayerCounts*>(user);
+  counts.firstRow[y * counts.width + x] = count;
+  return 1; // nobody looks at the picture
+}
+
 int tellTiles(void* user, std::uint32_t tilesDone, std::uint32_t /*tiles*/) {
   static_cast<const RenderOptions*>(user)->onTile(tilesDone);
   return 0;
@@ -211,6 +224,7 @@ FrameReport CpuStillRenderer::Impl::draw(const RenderOptions& picture, Encoded* 
   }
   FrameReport& report = totals.report;
   report.layersMean = meanLayers(report.fragmentsStored, totals.coveredPixels);
+  if (!report.pixelLayers.empty()) report.layersMax = std::ranges::max(report.pixelLayers);
   finish(report, picture, totals.clock.passes());
   return report;
 }
@@ -243,11 +257,19 @@ void CpuStillRenderer::Impl::drawBands(const RenderOptions& picture, VitrailCpuF
   }
   frame.colorFormat = VITRAIL_CPU_RGBA32F;
   frame.color = band.get();
+  std::vector<std::uint32_t>& layers = totals.report.pixelLayers;
+  LayerCounts counts{nullptr, picture.width};
+  if (method.name == kLayerCount) {
+    layers.resize(std::size_t{picture.width} * picture.height);
+    frame.list = countLayers;
+    frame.listUser = &counts;
+  }
   for (frame.originY = 0; frame.originY < picture.height; frame.originY += rows) {
     frame.height = std::min(rows, picture.height - frame.originY);
     drawBackground(picture.background, picture.view, picture.width, picture.height, frame.originY, frame.height,
                    band.get());
     totals.clock.end("background");
+    counts.firstRow = layers.data() + frame.originY * counts.width;
     VitrailStats stats{};
     rasterizer.render(frame, draws, stats);
     totals.add(stats);

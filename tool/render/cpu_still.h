@@ -26,7 +26,8 @@ std::string processorDevice();
 // are the same.
 class CpuStillRenderer final : public Renderer {
  public:
-  // As StillRenderer's; the method is `cpu`. Throws GpuError. The scene need not outlive it.
+  // As StillRenderer's; the method is `cpu`, or layer-count for measure() alone. Throws GpuError. The scene need not
+  // outlive it.
   CpuStillRenderer(const Scene& scene, std::optional<float> opacity, DrawOrder order, const MethodOptions& method);
   CpuStillRenderer(Scene&& scene, std::optional<float> opacity, const MethodOptions& method);
   ~CpuStillRenderer() override;

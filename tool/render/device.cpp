@@ -4,8 +4,6 @@
 #include <cctype>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "../gpu/presence.h"
 #include "../methods/methods.h"
 #include "cpu_still.h"
@@ -37,9 +35,9 @@ Device::Device(const DeviceOptions& options) {
 
 std::string_view Device::exactMethod() const { return gpu_ ? std::string_view(kListMethod) : kCpuMethod; }
 
-Gpu& Device::gpuFor(const MethodOptions& method) const {
+Gpu& Device::vulkan() const {
   if (gpu_) return *gpu_;
-  throw GpuError(fmt::format("the method {} needs a Vulkan device: {}", method.name, reason_));
+  throw GpuError("methods but cpu need a Vulkan device: " + reason_);
 }
 
 bool Device::onProcessor(const MethodOptions& method) const {
@@ -49,13 +47,13 @@ bool Device::onProcessor(const MethodOptions& method) const {
 std::unique_ptr<Renderer> Device::makeRenderer(const Scene& scene, std::optional<float> opacity, DrawOrder order,
                                                const MethodOptions& method) const {
   if (onProcessor(method)) return std::make_unique<CpuStillRenderer>(scene, opacity, order, method);
-  return std::make_unique<StillRenderer>(gpuFor(method), scene, opacity, order, method);
+  return std::make_unique<StillRenderer>(vulkan(), scene, opacity, order, method);
 }
 
 std::unique_ptr<Renderer> Device::makeRenderer(Scene&& scene, std::optional<float> opacity,
                                                const MethodOptions& method) const {
   if (onProcessor(method)) return std::make_unique<CpuStillRenderer>(std::move(scene), opacity, method);
-  return std::make_unique<StillRenderer>(gpuFor(method), std::move(scene), opacity, method);
+  return std::make_unique<StillRenderer>(vulkan(), std::move(scene), opacity, method);
 }
 
 } // namespace vitrail::tool

@@ -53,7 +53,7 @@ class Device {
 
  private:
   bool onProcessor(const MethodOptions& method) const;
-  Gpu& gpuFor(const MethodOptions& method) const;
+  Gpu& vulkan() const;
 
   std::unique_ptr<Gpu> gpu_;
   std::string reason_; // why there is no Vulkan device
