@@ -15,6 +15,7 @@
 #include "../cpu/cpu_scene.h"
 #include "../gpu/device.h"
 #include "../image/encode.h"
+#include "../image/large_array.h"
 #include "../methods/methods.h"
 #include "../scene/threads.h"
 #include "rasterizer.h"
@@ -106,6 +107,16 @@ class Encoded {
   const RenderOptions& picture_;
 };
 
+void fillBackground(const RenderOptions& picture, std::uint32_t firstRow, std::uint32_t rows, float* linear) {
+  const auto parts = static_cast<std::uint32_t>(partsFor(rows, kRowsOfAThread));
+  inParts(parts, [&](std::size_t part) {
+    const auto first = static_cast<std::uint32_t>(std::uint64_t{rows} * part / parts);
+    const auto end = static_cast<std::uint32_t>(std::uint64_t{rows} * (part + 1) / parts);
+    drawBackground(picture.background, picture.view, picture.width, picture.height, firstRow + first, end - first,
+                   linear + std::size_t{first} * picture.width * 4);
+  });
+}
+
 // Whether the picture is the background alone. Models tend to be in the middle, so most pictures show at once that
 // there is more.
 bool isBackgroundAlone(const RenderOptions& picture, const Encoded& encoded) {
@@ -176,8 +187,7 @@ struct CpuStillRenderer::Impl {
   CpuScene scene;
   std::string device;
   std::span<const VitrailCpuDraw> draws; // of the picture at hand
-  std::unique_ptr<float[]> band;         // linear rows, those that are drawn at once
-  std::size_t bandNumbers = 0;
+  LargeArray band;                       // linear rows, those that are drawn at once
 
   template <class GivenScene>
   Impl(GivenScene&& given, std::optional<float> opacity, DrawOrder order, const MethodOptions& chosen)
@@ -249,14 +259,9 @@ void CpuStillRenderer::Impl::drawBands(const RenderOptions& picture, VitrailCpuF
                                        Totals& totals) {
   const auto most = static_cast<std::uint32_t>(std::max<std::uint64_t>(kBandPixels / picture.width, 1));
   const std::uint32_t rows = std::min(picture.height, most);
-  const std::size_t numbers = std::size_t{picture.width} * rows * 4;
-  if (numbers > bandNumbers) {
-    band = nullptr; // the old one and the new one need not fit together
-    band = std::make_unique_for_overwrite<float[]>(numbers);
-    bandNumbers = numbers;
-  }
+  float* const pixels = band.atLeast(std::size_t{picture.width} * rows * 4);
   frame.colorFormat = VITRAIL_CPU_RGBA32F;
-  frame.color = band.get();
+  frame.color = pixels;
   std::vector<std::uint32_t>& layers = totals.report.pixelLayers;
   LayerCounts counts{nullptr, picture.width};
   if (method.name == kLayerCount) {
@@ -266,8 +271,7 @@ void CpuStillRenderer::Impl::drawBands(const RenderOptions& picture, VitrailCpuF
   }
   for (frame.originY = 0; frame.originY < picture.height; frame.originY += rows) {
     frame.height = std::min(rows, picture.height - frame.originY);
-    drawBackground(picture.background, picture.view, picture.width, picture.height, frame.originY, frame.height,
-                   band.get());
+    fillBackground(picture, frame.originY, frame.height, pixels);
     totals.clock.end("background");
     counts.firstRow = layers.data() + frame.originY * counts.width;
     VitrailStats stats{};
@@ -275,7 +279,7 @@ void CpuStillRenderer::Impl::drawBands(const RenderOptions& picture, VitrailCpuF
     totals.add(stats);
     totals.clock.end("draw");
     if (encoded == nullptr) continue;
-    encoded->set(frame.originY, frame.height, band.get());
+    encoded->set(frame.originY, frame.height, pixels);
     totals.clock.end("encode");
   }
 }
