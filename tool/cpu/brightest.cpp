@@ -58,6 +58,12 @@ double largestLobe(const Roughness& r, double halfAngle) {
   return most;
 }
 
+double largestLobe(LightBounds& lights, const Roughness& r, double halfAngle) {
+  const auto [known, isNew] = lights.highlights.try_emplace({r.least, r.most, halfAngle}, 0.0);
+  if (isNew) known->second = largestLobe(r, halfAngle);
+  return known->second;
+}
+
 Roughness roughnessOf(const ShadeSurface& surface) {
   const double factor = surface.material.roughness;
   const double low = std::clamp(factor, 0.045, 1.0);
@@ -102,10 +108,10 @@ Reflects reflectsOf(const ShadeSurface& surface, const glm::vec4& largestVertex,
 }
 
 // What a light adds at the most, of its strength.
-double reflectedOf(const ShadeSurface& surface, const Reflects& r, const Roughness& roughness, double halfAngle) {
+double reflectedOf(const ShadeSurface& surface, const Reflects& r, double lobe, double halfAngle) {
   const double grazing = std::pow(1.0 - std::cos(halfAngle), 5.0);
   const double fresnel = r.f0 + std::max(r.f90 - r.f0, 0.0) * grazing;
-  double reflected = r.diffuse / kPi + fresnel * largestLobe(roughness, halfAngle);
+  double reflected = r.diffuse / kPi + fresnel * lobe;
   if (r.sheen > 0.0) {
     // NL / (4 (NL + NV - NL NV)) <= 1 / 4, and the sine is at most 1.
     const bool varies = samples(surface, shaders::SLOT_SHEEN_ROUGHNESS);
@@ -115,7 +121,7 @@ double reflectedOf(const ShadeSurface& surface, const Reflects& r, const Roughne
   return reflected;
 }
 
-double brightestChannel(const ShadeSurface& surface, const glm::vec4& largestVertex, const LightBounds& lights, int c) {
+double brightestChannel(const ShadeSurface& surface, const glm::vec4& largestVertex, LightBounds& lights, int c) {
   const Reflects r = reflectsOf(surface, largestVertex, c);
   const Roughness roughness = roughnessOf(surface);
   // 1 + strength * (texture - 1), textures being between 0 and 1
@@ -131,9 +137,11 @@ double brightestChannel(const ShadeSurface& surface, const glm::vec4& largestVer
                           ? std::clamp(double{surface.material.clearcoatRoughness}, 0.045, 1.0)
                           : rough;
   for (const DistantLight& light : lights.lights) {
-    color += double{light.strength[c]} * reflectedOf(surface, r, roughness, light.halfAngle);
+    const double angle =
+        surface.mesh.corners == 3 ? light.halfAngle : 0.5 * kPi; // lines may be seen from beyond the edge
+    color += double{light.strength[c]} * reflectedOf(surface, r, largestLobe(lights, roughness, angle), angle);
     if (!hasFeature(surface, shaders::FEATURE_CLEARCOAT)) continue;
-    coat += double{light.strength[c]} * largestLobe({rough, most}, light.halfAngle);
+    coat += double{light.strength[c]} * largestLobe(lights, {rough, most}, angle);
   }
   // The coat is mixed in.
   return hasFeature(surface, shaders::FEATURE_CLEARCOAT) ? std::max(color, coat) : color;
@@ -162,18 +170,14 @@ LightBounds lightBoundsOf(const ShadeFrame& frame) {
   return bounds;
 }
 
-float brightestOf(const ShadeSurface& surface, const glm::vec4& largestVertex, const LightBounds& lights) {
+float brightestOf(const ShadeSurface& surface, const glm::vec4& largestVertex, LightBounds& lights) {
   double most = 0.0;
   const bool unlit = hasFeature(surface, shaders::FEATURE_UNLIT);
   // Grooves stretch a highlight, and light that comes through adds to it: no bound is derived for these.
   if (!unlit && (!lights.bounded || hasFeature(surface, shaders::FEATURE_RARE))) return shaders::LARGEST_HALF;
-  LightBounds own = lights;
-  if (surface.mesh.corners < 3) { // they may be seen from beyond the picture's edge
-    for (DistantLight& light : own.lights) light.halfAngle = 0.5 * kPi;
-  }
   for (int c = 0; c < 3; ++c) {
     const double channel = unlit ? double{surface.material.baseColor[c]} * double{largestVertex[c]}
-                                 : brightestChannel(surface, largestVertex, own, c);
+                                 : brightestChannel(surface, largestVertex, lights, c);
     most = std::max(most, channel * kMargin);
   }
   return static_cast<float>(std::min(most, double{shaders::LARGEST_HALF}));

@@ -123,12 +123,6 @@ class CpuScene::Impl {
   void describe(Group& group, const Scene& scene, VitrailCpuInstructions instructions) const;
   void placeInstances(const Scene& scene);
 
-  // An instance of a group.
-  struct Instance {
-    const Group* group = nullptr;
-    glm::mat4 place{1.0F};
-  };
-
   glm::dvec3 origin_;
   std::vector<std::string> warnings_;
   CpuTextures textures_;
@@ -136,8 +130,8 @@ class CpuScene::Impl {
   std::vector<Group> groups_; // in the order in which they are drawn
   std::vector<Mesh> meshes_;
   std::vector<std::vector<std::uint32_t>> reordered_; // by mesh: indices in the order of transparent draws
-  std::vector<Instance> instances_;
-  // What draws point to, by instance.
+  // By instance of a group: the group, and what draws point to.
+  std::vector<std::uint32_t> groupOf_;
   std::vector<ShadeDraw> shades_;
   std::vector<std::array<float, 16>> transforms_;
   std::vector<glm::vec4> clipPlanes_; // as many for each as the scene has
@@ -167,6 +161,7 @@ void CpuScene::Impl::listGroups(const Scene& scene, std::optional<float> opacity
     group.surface.features = featuresOf(scene, material, mesh, textures_.isPremultiplied(source.material));
     group.surface.isOpaque = !transparent;
     group.surface.material = makeMaterialData(material, opacity);
+    group.surface.plain = makePlainSurface(group.surface.material);
     group.surface.slots = textures_.slots(scene, source.material, group.surface.features);
     group.surface.mesh.corners = static_cast<std::uint32_t>(cornersOf(mesh.primitive));
     group.largestVertex = largestColor(mesh);
@@ -231,10 +226,17 @@ void CpuScene::Impl::describe(Group& group, const Scene& scene, VitrailCpuInstru
 }
 
 void CpuScene::Impl::placeInstances(const Scene& scene) {
-  for (const Group& group : groups_) {
+  std::size_t count = 0;
+  for (const Group& group : groups_) count += group.source.draws.size();
+  groupOf_.reserve(count);
+  shades_.reserve(count);
+  draws_.reserve(count);
+  clipPlanes_.reserve(count * scene.clipPlanes.size());
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    const Group& group = groups_[i];
     for (const std::uint32_t source : group.source.draws) {
       const glm::mat4 place = placed(scene.draws[source].transform, origin_);
-      instances_.push_back({&group, place});
+      groupOf_.push_back(static_cast<std::uint32_t>(i));
       shades_.push_back(makeShadeDraw(frame_, group.surface, place, group.source.mirrored));
       draws_.push_back(group.prototype);
       draws_.back().word = source;
@@ -257,7 +259,7 @@ std::span<const VitrailCpuDraw> CpuScene::Impl::draws(const View& view, std::uin
   shaders::FrameData data = makeFrameData(view, width, height, origin_);
   data.toLight.w = static_cast<float>(frame_.lights.size());
   frame_ = makeShadeFrame(data, std::move(frame_.lights));
-  const LightBounds lights = lightBoundsOf(frame_);
+  LightBounds lights = lightBoundsOf(frame_);
   std::vector<float> brightest(groups_.size());
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const Group& group = groups_[i];
@@ -272,11 +274,12 @@ std::span<const VitrailCpuDraw> CpuScene::Impl::draws(const View& view, std::uin
   const std::size_t parts = partsFor(draws_.size(), 20000);
   inParts(parts, [&](std::size_t part) {
     for (std::size_t i = draws_.size() * part / parts; i < draws_.size() * (part + 1) / parts; ++i) {
-      const Instance& instance = instances_[i];
-      const bool isLine = instance.group->prototype.topology == VITRAIL_CPU_LINES;
-      const glm::mat4 matrix((isLine ? lines : surfaces) * glm::dmat4(instance.place));
+      const std::array<glm::vec4, 3>& rows = shades_[i].rows;
+      const glm::mat4 place = glm::transpose(glm::mat4(rows[0], rows[1], rows[2], glm::vec4(0.0F, 0.0F, 0.0F, 1.0F)));
+      const bool isLine = draws_[i].topology == VITRAIL_CPU_LINES;
+      const glm::mat4 matrix((isLine ? lines : surfaces) * glm::dmat4(place));
       std::copy_n(glm::value_ptr(matrix), 16, transforms_[i].begin());
-      draws_[i].brightest = brightest[static_cast<std::size_t>(instance.group - groups_.data())];
+      draws_[i].brightest = brightest[groupOf_[i]];
     }
   });
   return draws_;

@@ -35,7 +35,6 @@ class SrgbCodes {
     }
   }
 
-  const float* linear() const { return linear_.data(); }
   float linear(std::uint32_t code) const { return linear_[code]; }
 
   std::uint32_t code(float linear) const {
@@ -143,8 +142,6 @@ void copyBase(CpuTexture& texture, const Image& image) {
 }
 
 } // namespace
-
-const float* linearOfSrgbCodes() { return srgbCodes().linear(); }
 
 CpuTexture makeCpuTexture(const Image& image, Texels kind) {
   CpuTexture texture;

@@ -30,9 +30,6 @@ struct CpuTexture {
   std::vector<std::uint32_t> blueAlpha;
 };
 
-// The linear values of the 256 codes on the sRGB curve.
-const float* linearOfSrgbCodes();
-
 // Throws std::length_error for an image that is too large.
 CpuTexture makeCpuTexture(const Image& image, Texels kind);
 

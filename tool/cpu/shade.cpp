@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "targets.h"
 
@@ -11,6 +12,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "shade_plain-inl.h"
 #include "shade_surface-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -22,14 +24,15 @@ VitrailCpuShade functionOf(std::uint32_t features) {
   using namespace shaders;
   constexpr std::uint32_t kUnlit =
       FEATURE_UNLIT | FEATURE_VERTEX_COLOR | FEATURE_MASK | FEATURE_PREMULTIPLIED | slotBit(SLOT_BASE_COLOR);
-  constexpr std::uint32_t kLit = FEATURE_VERTEX_COLOR | FEATURE_TRANSMISSION | FEATURE_FLAT;
+  constexpr std::uint32_t kLit = FEATURE_VERTEX_COLOR | FEATURE_TRANSMISSION | FEATURE_FLAT | FEATURE_LIGHTS;
   constexpr std::uint32_t kTextured = kLit | FEATURE_MASK | FEATURE_PREMULTIPLIED | slotBit(SLOT_BASE_COLOR) |
                                       slotBit(SLOT_METALLIC_ROUGHNESS) | slotBit(SLOT_NORMAL) |
                                       slotBit(SLOT_OCCLUSION) | slotBit(SLOT_EMISSIVE);
   // What the draw's blend mode, or its corners, say.
+  const bool triangles = (features & (FEATURE_LINES | FEATURE_POINTS)) == 0;
   features &= ~(FEATURE_ADDITIVE | FEATURE_SOLID);
   if ((features & FEATURE_UNLIT) != 0 && (features & ~kUnlit) == 0) return shadeSurface<kUnlit>;
-  if (features == 0) return shadeSurface<0>;
+  if (features == 0 && triangles) return shadePlain;
   if ((features & ~kLit) == 0) return shadeSurface<kLit>;
   if ((features & ~kTextured) == 0) return shadeSurface<kTextured>;
   return shadeSurface<~0U>;
@@ -101,6 +104,10 @@ std::size_t dispatchIndex(VitrailCpuInstructions instructions) {
   return target.GetIndex();
 }
 
+float constantAlpha(const shaders::MaterialData& material) {
+  return material.opacity * glm::mix(1.0F, material.baseColor.a, material.alphaFromBase);
+}
+
 bool hasConstantColor(std::uint32_t features) {
   constexpr std::uint32_t kVaries =
       shaders::FEATURE_VERTEX_COLOR | ((1U << shaders::SLOT_COUNT) - 1U); // MASK cuts all of it or nothing
@@ -119,6 +126,29 @@ ShadeFrame makeShadeFrame(const shaders::FrameData& data, std::vector<shaders::L
   frame.toEyeY = axes[1] * ray.y;
   frame.lights = std::move(lights);
   return frame;
+}
+
+PlainSurface makePlainSurface(const shaders::MaterialData& material) {
+  const glm::dvec3 low(0.18, 0.17, 0.16);
+  const glm::dvec3 rise(0.18, 0.21, 0.26);
+  const double metallic = std::clamp(double{material.metallic}, 0.0, 1.0);
+  const double roughness = std::clamp(double{material.roughness}, 0.045, 1.0);
+  const glm::dvec3 base{glm::vec3(material.baseColor)};
+  const glm::dvec3 f0 = glm::mix(glm::dvec3(0.04), base, metallic);
+  const glm::dvec3 diffuse = (1.0 - metallic) * base;
+  PlainSurface plain;
+  plain.a2 = static_cast<float>(std::pow(roughness, 4.0));
+  plain.alpha = constantAlpha(material);
+  for (int c = 0; c < 3; ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    plain.diffuseOverPi.at(i) = static_cast<float>(diffuse[c] / std::numbers::pi);
+    plain.f0.at(i) = static_cast<float>(f0[c]);
+    plain.rest.at(i) = static_cast<float>(1.0 - f0[c]);
+    plain.ambientRise.at(i) = static_cast<float>(std::max(1.0 - roughness, f0[c]) - f0[c]);
+    plain.ambientAndOwn.at(i) = static_cast<float>(low[c] * diffuse[c] + double{material.emissive[c]});
+    plain.ambientSky.at(i) = static_cast<float>(rise[c] * diffuse[c]);
+  }
+  return plain;
 }
 
 ShadeDraw makeShadeDraw(const ShadeFrame& frame, const ShadeSurface& surface, const glm::mat4& place, bool mirrored) {
@@ -141,6 +171,7 @@ ShadeDraw makeShadeDraw(const ShadeFrame& frame, const ShadeSurface& surface, co
   draw.mirrored = determinant < 0.0 ? -1.0F : 1.0F;
   draw.normals = cofactors * static_cast<double>(draw.mirrored);
   draw.tangents = rows;
+  draw.keepsDirections = rows == glm::dmat3(rows[0][0]) && rows[0][0] > 0.0;
   draw.longer = static_cast<float>(size * std::cbrt(std::abs(determinant)));
   constexpr std::uint32_t kAll = 0xffffU;
   // A mirror turns the triangles round, and glTF means the side that was outside before. Lines and points have no back.
@@ -162,8 +193,7 @@ ShadeFunction shadeFunction(const ShadeSurface& surface, VitrailCpuInstructions 
 
 glm::vec4 constantColor(const ShadeSurface& surface) {
   const shaders::MaterialData& material = surface.material;
-  const float alpha = material.opacity * glm::mix(1.0F, material.baseColor.a, material.alphaFromBase);
-  return {glm::vec3(material.baseColor), alpha};
+  return {glm::vec3(material.baseColor), constantAlpha(material)};
 }
 
 bool isMaskedAway(const ShadeSurface& surface) {

@@ -41,12 +41,27 @@ struct ShadeMesh {
   const std::uint64_t* colors = nullptr;
 };
 
+// What the plainest lit surfaces are shaded with, worked out from their material (shade_plain-inl.h). By channel.
+struct PlainSurface {
+  float a2 = 1.0F; // of the roughness
+  float alpha = 1.0F;
+  std::array<float, 3> diffuseOverPi{};
+  std::array<float, 3> f0{};
+  std::array<float, 3> rest{};          // 1 - f0
+  std::array<float, 3> ambientRise{};   // how much more of the ambient light is mirrored at grazing angles
+  std::array<float, 3> ambientAndOwn{}; // the ambient light that is scattered where it comes from below, and emission
+  std::array<float, 3> ambientSky{};    // how much more there is where it comes from above
+};
+
+PlainSurface makePlainSurface(const shaders::MaterialData& material);
+
 // What draws of one mesh with one material share.
 struct ShadeSurface {
   ShadeMesh mesh;
   std::uint32_t features = 0; // surface_shared.h
   bool isOpaque = false;
   shaders::MaterialData material{};
+  PlainSurface plain; // of the material
   CpuSlots slots;
 };
 
@@ -58,10 +73,11 @@ struct ShadeDraw {
   std::array<glm::vec4, 3> rows{};
   glm::mat3 normals{1.0F}; // turns normals: columns are what each row's dot product is taken with
   glm::mat3 tangents{1.0F};
-  float longer = 1.0F;       // how much longer things become
-  std::uint32_t flipped = 0; // bits to turn round of those that say which fragments show the front, and
-  std::uint32_t front = 0;   // bits to set
-  float mirrored = 1.0F;     // -1: the transform turns counter-clockwise into clockwise
+  float longer = 1.0F;          // how much longer things become
+  std::uint32_t flipped = 0;    // bits to turn round of those that say which fragments show the front, and
+  std::uint32_t front = 0;      // bits to set
+  bool keepsDirections = false; // the transform moves and scales alike in all directions, and does nothing else
+  float mirrored = 1.0F;        // -1: the transform turns counter-clockwise into clockwise
 };
 
 ShadeDraw makeShadeDraw(const ShadeFrame& frame, const ShadeSurface& surface, const glm::mat4& place, bool mirrored);

@@ -44,7 +44,7 @@ struct Job {
 // Triangle numbers in chunks, of one thread and one tile; in the order in which they were added.
 class Bins {
  public:
-  static constexpr std::uint32_t kChunk = 15;
+  static constexpr std::uint32_t kChunk = 31;
   static constexpr std::uint32_t kNone = ~0U;
 
   void reset(std::size_t tiles) {

@@ -12,6 +12,8 @@
 #include <cstring>
 #include <vector>
 
+#include <hwy/cache_control.h>
+
 #include "raster/cpu/batch-inl.h"
 #include "raster/cpu/picture.h"
 #include "raster/cpu/resolve-inl.h"
@@ -119,13 +121,22 @@ class TileWorker final : public TileWorkspace {
   bool rasterise(const Frame& frame, std::uint64_t blocks, Emit emit);
   template <class Emit>
   bool flush(const Frame& frame, std::uint64_t blocks, Emit emit);
+  struct Fetched {
+    const VitrailCpuDraw* draw;
+    std::array<const Corner*, 3> corners; // the first is null where it is no triangle
+  };
+  void fetch(const Frame& frame, std::size_t first, std::uint32_t count, Fetched* fetched) const;
+  void add(std::uint32_t number, const VitrailCpuDraw& draw, const Corner& a, const Corner& b, const Corner& c);
   template <class Emit>
-  bool stage(const Frame& frame, std::uint32_t number, std::uint64_t blocks, Emit emit);
+  bool stage(const Frame& frame, std::uint32_t number, const Fetched& f, std::uint64_t blocks, Emit emit);
+  template <class Emit>
+  bool stagePieces(const Frame& frame, std::uint32_t number, std::uint64_t blocks, Emit emit);
   HWY_INLINE std::uint32_t cover(std::uint64_t blocks, std::uint32_t items);
   HWY_INLINE std::uint32_t coverSamples(std::uint64_t blocks, std::uint32_t items, std::uint32_t samples);
 
   HWY_INLINE void perspective(std::uint32_t t, const F& flatSecond, const F& flatThird, bool derivatives,
                               F* weights) const;
+  template <bool kShaded>
   HWY_INLINE bool emitTransparent(const Frame& frame, std::uint32_t item, Window* window);
   HWY_INLINE void emitOpaque(const Frame& frame, std::uint32_t item);
   HWY_INLINE std::uint32_t testDepth(const Frame& frame, const Work& work, std::uint32_t item, const F& depth, I* keys);
@@ -142,6 +153,9 @@ class TileWorker final : public TileWorkspace {
   void coveragesOf(const Frame& frame, const SortedRows& sorted, std::uint32_t* coverages) const;
   Row rowOf(const Frame& frame, const SortedRows& sorted, std::size_t r, std::size_t lane) const;
   void behind(const Frame& frame, std::uint32_t block, std::uint32_t sample, F* color);
+  float* pixelsOf(const Frame& frame, std::uint32_t block, std::size_t& stride) const;
+  void write(const Frame& frame, std::uint32_t block, const F* color);
+  void blendedOver(const Frame& frame, std::uint32_t block, const State* state, F* sum);
   void finishBlock(const Frame& frame, std::uint32_t block, const State* state);
   void listBlock(const Frame& frame, std::uint32_t block, const SortedRows& sorted);
   void layersOf(const Frame& frame, const SortedRows& sorted, std::uint32_t lane);
@@ -151,6 +165,7 @@ class TileWorker final : public TileWorkspace {
   Batch batch_{};
   TileBox tile_{};
   std::vector<std::uint32_t> numbers_;
+  std::array<std::array<Fetched, kBatch>, 2> fetched_{};
   std::unique_ptr<OpaqueTile> opaque_;
   bool hasDepth_ = false; // opaque surfaces may hide fragments of this tile
   std::array<std::uint8_t, kBatch * kBlocks + 64> ids_{};
@@ -163,6 +178,7 @@ class TileWorker final : public TileWorkspace {
   std::vector<std::uint32_t> coverageMemory_;
   std::vector<VitrailLayer> list_;
   PixelBlock pixels_;
+  PixelBlock behind_;
   alignas(64) VitrailCpuFragments fragments_{};
 };
 
@@ -192,40 +208,76 @@ T* aligned(T* p) {
   return reinterpret_cast<T*>((reinterpret_cast<std::uintptr_t>(p) + 63) & ~std::uintptr_t{63});
 }
 
-template <class Emit>
-inline bool TileWorker::stage(const Frame& frame, std::uint32_t number, std::uint64_t blocks, Emit emit) {
-  const Job& job = frame.jobs[number >> kJobBits];
-  const DrawInfo& info = frame.draws[job.draw];
-  const VitrailCpuDraw& draw = info.draw;
-  const std::uint32_t primitive = job.first + (number & (kJobTriangles - 1));
-  const auto add = [&](const Corner& a, const Corner& b, const Corner& c, const Piece* piece) HWY_ATTR {
-    const std::uint32_t at = batch_.count++;
-    batch_.corners[0][at] = a;
-    batch_.corners[1][at] = b;
-    batch_.corners[2][at] = c;
-    batch_.number[at] = static_cast<std::int32_t>(number);
-    batch_.cull[at] = draw.cull;
-    batch_.isPiece[at] = piece != nullptr;
-    if (piece == nullptr) return;
-    for (std::size_t i = 0; i < 3; ++i) {
-      batch_.second[i][at] = piece->second[i];
-      batch_.third[i][at] = piece->third[i];
+// Finds the corners of up to kBatch triangles, so that they are in cache when they are staged.
+HWY_INLINE void TileWorker::fetch(const Frame& frame, std::size_t first, std::uint32_t count, Fetched* fetched) const {
+  std::uint32_t jobNumber = ~0U;
+  const VitrailCpuDraw* draw = nullptr;
+  const Corner* corners = nullptr;
+  std::uint32_t firstPrimitive = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t number = numbers_[first + i];
+    if (number >> kJobBits != jobNumber) {
+      jobNumber = number >> kJobBits;
+      const Job& job = frame.jobs[jobNumber];
+      const DrawInfo& info = frame.draws[job.draw];
+      draw = &info.draw;
+      corners = frame.corners.data() + info.firstVertex;
+      firstPrimitive = job.first;
     }
-  };
-  if (HWY_LIKELY(draw.topology == VITRAIL_CPU_TRIANGLES)) {
-    const Corner* corners = frame.corners.data() + info.firstVertex;
-    const std::uint64_t at = std::uint64_t{primitive} * 3;
-    const Corner& a = corners[vertexOf(draw, at)];
-    const Corner& b = corners[vertexOf(draw, at + 1)];
-    const Corner& c = corners[vertexOf(draw, at + 2)];
+    Fetched& f = fetched[i];
+    f.draw = draw;
+    if (HWY_UNLIKELY(draw->topology != VITRAIL_CPU_TRIANGLES)) {
+      f.corners[0] = nullptr;
+      continue;
+    }
+    const std::uint64_t at = std::uint64_t{firstPrimitive + (number & (kJobTriangles - 1))} * 3;
+    for (std::uint64_t c = 0; c < 3; ++c) {
+      f.corners[c] = corners + vertexOf(*draw, at + c);
+      hwy::Prefetch(f.corners[c]);
+    }
+  }
+}
+
+HWY_INLINE void TileWorker::add(std::uint32_t number, const VitrailCpuDraw& draw, const Corner& a, const Corner& b,
+                                const Corner& c) {
+  const std::uint32_t at = batch_.count++;
+  batch_.corners[0][at] = a;
+  batch_.corners[1][at] = b;
+  batch_.corners[2][at] = c;
+  batch_.number[at] = static_cast<std::int32_t>(number);
+  batch_.cull[at] = draw.cull;
+  batch_.isPiece[at] = false;
+}
+
+// Adds a triangle to the batch, or what it is rasterised as. False: the store is full.
+template <class Emit>
+HWY_INLINE bool TileWorker::stage(const Frame& frame, std::uint32_t number, const Fetched& f, std::uint64_t blocks,
+                                  Emit emit) {
+  if (HWY_LIKELY(f.corners[0] != nullptr)) {
+    const Corner& a = *f.corners[0];
+    const Corner& b = *f.corners[1];
+    const Corner& c = *f.corners[2];
     if (HWY_LIKELY(a.x != kNeedsClipping && b.x != kNeedsClipping && c.x != kNeedsClipping)) {
-      add(a, b, c, nullptr);
+      add(number, *f.draw, a, b, c);
       return batch_.count < kBatch || flush(frame, blocks, emit);
     }
   }
-  const Pieces pieces = piecesOf(frame, info, primitive);
+  return stagePieces(frame, number, blocks, emit);
+}
+
+template <class Emit>
+HWY_NOINLINE bool TileWorker::stagePieces(const Frame& frame, std::uint32_t number, std::uint64_t blocks, Emit emit) {
+  const Job& job = frame.jobs[number >> kJobBits];
+  const DrawInfo& info = frame.draws[job.draw];
+  const Pieces pieces = piecesOf(frame, info, job.first + (number & (kJobTriangles - 1)));
   for (const Piece& piece : pieces.all()) {
-    add(piece.corners[0], piece.corners[1], piece.corners[2], &piece);
+    const std::uint32_t at = batch_.count;
+    add(number, info.draw, piece.corners[0], piece.corners[1], piece.corners[2]);
+    batch_.isPiece[at] = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      batch_.second[i][at] = piece.second[i];
+      batch_.third[i][at] = piece.third[i];
+    }
     if (batch_.count == kBatch && !flush(frame, blocks, emit)) return false;
   }
   return true;
@@ -235,8 +287,18 @@ inline bool TileWorker::stage(const Frame& frame, std::uint32_t number, std::uin
 template <class Emit>
 inline bool TileWorker::rasterise(const Frame& frame, std::uint64_t blocks, Emit emit) {
   batch_.count = 0;
-  for (const std::uint32_t number : numbers_) {
-    if (!stage(frame, number, blocks, emit)) return false;
+  const std::size_t total = numbers_.size();
+  const auto countAt = [total](std::size_t i) {
+    return i < total ? static_cast<std::uint32_t>(std::min<std::size_t>(kBatch, total - i)) : 0U;
+  };
+  std::size_t turn = 0;
+  fetch(frame, 0, countAt(0), fetched_[turn].data());
+  for (std::size_t i = 0; i < total; i += kBatch, turn ^= 1U) {
+    fetch(frame, i + kBatch, countAt(i + kBatch), fetched_[turn ^ 1U].data());
+    const std::uint32_t count = countAt(i);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      if (!stage(frame, numbers_[i + k], fetched_[turn][k], blocks, emit)) return false;
+    }
   }
   return flush(frame, blocks, emit);
 }
@@ -301,7 +363,8 @@ inline bool TileWorker::flush(const Frame& frame, std::uint64_t blocks, Emit emi
   batch_.isBig = false;
   if (triangles == 0) return true;
   const std::uint32_t samples = frame.info.samples;
-  for (std::uint32_t i = triangles; i % kLanes != 0; ++i) { // what is set up with them is one that covers nothing
+  const auto padded = std::min<std::uint32_t>(kBatch, (triangles + kLanes - 1) / kLanes * kLanes);
+  for (std::uint32_t i = triangles; i < padded; ++i) { // what is set up with them is one that covers nothing
     for (auto& corners : batch_.corners) corners[i] = {};
     batch_.number[i] = 0;
     batch_.cull[i] = 0;
@@ -382,6 +445,7 @@ HWY_INLINE std::uint32_t TileWorker::testDepth(const Frame& frame, const Work& w
 }
 
 // Stores the fragments of a triangle in a block. False: the store is full.
+template <bool kShaded>
 HWY_INLINE bool TileWorker::emitTransparent(const Frame& frame, std::uint32_t item, Window* window) {
   const Work work = work_[item];
   const std::uint32_t t = work.triangle;
@@ -410,7 +474,7 @@ HWY_INLINE bool TileWorker::emitTransparent(const Frame& frame, std::uint32_t it
     store(to, select(here, value, select(fresh, elsewhere, load(to))));
   };
   put(RowShape::kKey, key, set(kFarKey));
-  if (!frame.needs.shaded) {
+  if constexpr (!kShaded) {
     const std::uint32_t number = static_cast<std::uint32_t>(batch_.number[t]) & ~kFrontBit;
     put(RowShape::kNumber, set(static_cast<std::int32_t>(frame.jobs[number >> kJobBits].draw)), set(shape_.nothing));
   } else {
@@ -421,7 +485,7 @@ HWY_INLINE bool TileWorker::emitTransparent(const Frame& frame, std::uint32_t it
     const std::uint32_t count = frame.needs.derivatives ? 6 : 2;
     for (std::uint32_t i = 0; i < count; ++i) put(RowShape::kSecond + i, bitsOf(weights[i]), bitsOf(weights[i]));
   }
-  if (shape_.coverage != 0) {
+  if (kShaded && shape_.coverage != 0) {
     I covered = set(0);
     for (std::uint32_t s = 0; s < frame.info.samples; ++s) {
       covered = covered | keep(maskOf(sampleMasks_[s][item]), set(static_cast<std::int32_t>(1U << s)));
@@ -572,7 +636,10 @@ inline void TileWorker::drawOpaque(const Frame& frame, std::uint32_t tile) {
 inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, TileCounts& counts) {
   store_.reset();
   const bool hasFitted =
-      rasterise(frame, blocks, [&](std::uint32_t item) HWY_ATTR { return emitTransparent(frame, item, nullptr); });
+      frame.needs.shaded
+          ? rasterise(frame, blocks, [&](std::uint32_t i) HWY_ATTR { return emitTransparent<true>(frame, i, nullptr); })
+          : rasterise(frame, blocks,
+                      [&](std::uint32_t i) HWY_ATTR { return emitTransparent<false>(frame, i, nullptr); });
   if (hasFitted) {
     for (std::uint64_t left = blocks; left != 0; left &= left - 1) {
       const auto block = static_cast<std::uint32_t>(__builtin_ctzll(left));
@@ -659,7 +726,8 @@ inline void TileWorker::drawInWindows(const Frame& frame, std::uint32_t block, T
     store_.reset();
     store(layers_, set(0));
     rasterise(frame, std::uint64_t{1} << block, [&](std::uint32_t item) HWY_ATTR {
-      while (!emitTransparent(frame, item, &window)) {
+      while (!(frame.needs.shaded ? emitTransparent<true>(frame, item, &window)
+                                  : emitTransparent<false>(frame, item, &window))) {
         if (frame.info.list != nullptr) {
           store_.grow(); // the hook takes whole lists
         } else {
@@ -795,19 +863,55 @@ inline void TileWorker::resolveBlock(const Frame& frame, std::uint32_t block, Ti
   finishBlock(frame, block, &state);
 }
 
+// Pixels of a block that lies within a picture of floats: the address of each one's four.
+HWY_INLINE float* TileWorker::pixelsOf(const Frame& frame, std::uint32_t block, std::size_t& stride) const {
+  const std::uint32_t x = block % kBlocksAcross * kBlockSide;
+  const std::uint32_t y = block / kBlocksAcross * kBlockSide;
+  const bool isWithin = static_cast<std::int32_t>(x + kBlockSide) <= tile_.lastX + 1 &&
+                        static_cast<std::int32_t>(y + kBlockSide) <= tile_.lastY + 1;
+  if (!isWithin || frame.info.colorFormat != VITRAIL_CPU_RGBA32F || frame.info.sampleColors != nullptr) return nullptr;
+  stride = frame.info.colorStride / sizeof(float);
+  return static_cast<float*>(frame.info.color) + (static_cast<std::uint32_t>(tile_.y) + y) * stride +
+         (static_cast<std::uint32_t>(tile_.x) + x) * std::size_t{4};
+}
+
 // What is behind the transparent fragments of a block, in each sample.
 inline void TileWorker::behind(const Frame& frame, std::uint32_t block, std::uint32_t sample, F* color) {
   if (opaque_ != nullptr && (opaque_->drawn >> block & 1U) != 0) {
     for (std::size_t c = 0; c < 4; ++c) color[c] = load(opaque_->color[sample].value[c][block]);
     return;
   }
-  if (sample == 0 || frame.info.sampleColors != nullptr) readPixels(frame, tile_, block, sample, pixels_);
-  for (std::size_t c = 0; c < 4; ++c) color[c] = load(pixels_.color[c]);
+  std::size_t stride = 0;
+  if (const float* first = pixelsOf(frame, block, stride)) {
+    loadFours([&](std::size_t lane) HWY_ATTR { return first + lane / kBlockSide * stride + lane % kBlockSide * 4; },
+              color[0], color[1], color[2], color[3]);
+    return;
+  }
+  if (sample == 0 || frame.info.sampleColors != nullptr) readPixels(frame, tile_, block, sample, behind_);
+  for (std::size_t c = 0; c < 4; ++c) color[c] = load(behind_.color[c]);
 }
 
-inline void TileWorker::finishBlock(const Frame& frame, std::uint32_t block, const State* state) {
+// Writes the picture's pixels: r, g, b, alpha.
+inline void TileWorker::write(const Frame& frame, std::uint32_t block, const F* color) {
+  std::size_t stride = 0;
+  float* const first = pixelsOf(frame, block, stride);
+  if (first == nullptr) {
+    for (std::size_t c = 0; c < 4; ++c) store(pixels_.color[c], color[c]);
+    writePixels(frame, tile_, block, pixels_);
+    return;
+  }
+  alignas(64) float fours[4 * kLanes];
+  storeFours(fours, color[0], color[1], color[2], color[3]);
+  const hn::FixedTag<float, 4> four;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    hn::StoreU(hn::Load(four, fours + 4 * placeOfFour(lane)), four,
+               first + lane / kBlockSide * stride + lane % kBlockSide * 4);
+  }
+}
+
+// The mean of the samples, each over what is behind it.
+inline void TileWorker::blendedOver(const Frame& frame, std::uint32_t block, const State* state, F* sum) {
   const std::uint32_t samples = frame.info.samples;
-  F sum[4];
   for (std::uint32_t s = 0; s < samples; ++s) {
     F color[4];
     behind(frame, block, s, color);
@@ -820,9 +924,14 @@ inline void TileWorker::finishBlock(const Frame& frame, std::uint32_t block, con
     }
     for (std::size_t c = 0; c < 4; ++c) sum[c] = s == 0 ? color[c] : sum[c] + color[c];
   }
-  const F share = set(1.0F / static_cast<float>(samples));
-  for (std::size_t c = 0; c < 4; ++c) store(pixels_.color[c], samples == 1 ? sum[c] : sum[c] * share);
-  writePixels(frame, tile_, block, pixels_);
+  if (samples == 1) return;
+  for (std::size_t c = 0; c < 4; ++c) sum[c] = sum[c] * set(1.0F / static_cast<float>(samples));
+}
+
+inline void TileWorker::finishBlock(const Frame& frame, std::uint32_t block, const State* state) {
+  F color[4];
+  blendedOver(frame, block, state, color);
+  write(frame, block, color);
 }
 
 // Hands each pixel's fragments to the host, and blends those that it does not.
@@ -838,8 +947,9 @@ inline void TileWorker::listBlock(const Frame& frame, std::uint32_t block, const
     behind(frame, block, s, color);
     for (std::size_t c = 0; c < 4; ++c) store(behindColors[s][c], color[c]);
   }
-  finishBlock(frame, block, &state);
-  for (std::size_t c = 0; c < 4; ++c) store(result[c], load(pixels_.color[c]));
+  F blended[4];
+  blendedOver(frame, block, &state, blended);
+  for (std::size_t c = 0; c < 4; ++c) store(result[c], blended[c]);
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
     const std::uint32_t x =
         static_cast<std::uint32_t>(tile_.x) + block % kBlocksAcross * kBlockSide + lane % kBlockSide;
@@ -861,8 +971,8 @@ inline void TileWorker::listBlock(const Frame& frame, std::uint32_t block, const
       result[c][lane] = sum / static_cast<float>(samples);
     }
   }
-  for (std::size_t c = 0; c < 4; ++c) store(pixels_.color[c], load(result[c]));
-  writePixels(frame, tile_, block, pixels_);
+  for (std::size_t c = 0; c < 4; ++c) blended[c] = load(result[c]);
+  write(frame, block, blended);
 }
 
 // A pixel's fragments as the host sees them, in list_.
