@@ -145,6 +145,7 @@ Bytes compress(const Bytes& data, bool isLast) {
   stream.avail_out = static_cast<uInt>(result.size());
   const int status = deflate(&stream, isLast ? Z_FINISH : Z_SYNC_FLUSH);
   result.resize(stream.total_out);
+  result.shrink_to_fit(); // many wait for each other
   deflateEnd(&stream);
   if (status != (isLast ? Z_STREAM_END : Z_OK)) throw std::runtime_error("the PNG could not be compressed");
   return result;
