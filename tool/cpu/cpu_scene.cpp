@@ -7,6 +7,7 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
+#include "../scene/message.h"
 #include "../scene/srgb.h"
 #include "../scene/threads.h"
 #include "../scene/volume.h"
@@ -30,11 +31,18 @@ std::vector<std::uint32_t> drawnMaterials(const Scene& scene) {
 }
 
 std::vector<std::string> volumeWarnings(const Scene& scene) {
-  if (!Solids(scene, false).any()) return {};
+  const Solids solids(scene, false);
+  if (!solids.any()) {
+    if (!solids.open() || !scene.clipPlanes.empty()) return {};
+    const std::uint32_t material = *solids.open();
+    return {objectName("material", material, scene.materials[material].name) +
+            ": an object of it is not closed, so that light is absorbed there by the file's thickness, not by its true "
+            "way"};
+  }
   if (!scene.clipPlanes.empty()) {
     return {"volumes are attenuated by the file's thickness, not by the true path: --clip-plane cuts them open"};
   }
-  return {"volumes are attenuated by the file's thickness, not by the true path: leave --device cpu out"};
+  return {"volumes are attenuated by the file's thickness, not by the true path: use --method linked-list"};
 }
 
 // The meshes that are drawn; the others are left empty, so that all keep their numbers.
@@ -200,7 +208,9 @@ void CpuScene::Impl::describe(Group& group, const Scene& scene, VitrailCpuInstru
   VitrailCpuDraw& draw = group.prototype;
   draw.surface = group.isTransparent ? VITRAIL_CPU_TRANSPARENT : VITRAIL_CPU_OPAQUE;
   draw.topology = topologyOf(mesh.primitive);
-  draw.cull = cullOf(scene.materials[group.source.material], group.isTransparent, group.source.mirrored);
+  const bool hasSides = mesh.primitive == Primitive::Triangles;
+  draw.cull = hasSides ? cullOf(scene.materials[group.source.material], group.isTransparent, group.source.mirrored)
+                       : VITRAIL_CPU_CULL_NONE;
   draw.blend = blendOf(group.surface.features);
   draw.positions = &mesh.positions.data()->x;
   draw.components = 3;
