@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
 namespace vitrail::tests::raster {
@@ -61,24 +62,29 @@ void addCovered(const CoverageFrame& frame, std::uint32_t number, const std::arr
   }
 }
 
-// ---- Kinds. Places are in pixels; those that are multiples of 1/256 stay so in clip space, since sides are powers of 2.
+// ---- Kinds. Places are in pixels from the frame's corner, and reach out of it, but not out of the picture, where
+// drivers clip. Those that are multiples of 1/256 stay so in clip space, since sides are powers of 2.
 
 constexpr std::uint32_t kSide = 128;
 
-CoverageFrame empty(std::uint32_t samples) { return {kSide, kSide, samples, {}}; }
+CoverageFrame empty(std::uint32_t samples, std::uint32_t picture = 1024) {
+  return {kSide, kSide, samples, {}, picture, (picture - kSide) / 2};
+}
 
 void addAt(CoverageFrame& frame, double x, double y, float w = 1.0F) {
-  frame.positions.push_back(inPixels(frame.width, frame.height, x, y, 0.5F, w));
+  frame.positions.push_back(inPixels(frame.picture, frame.picture, x + frame.origin, y + frame.origin, 0.5F, w));
 }
 
 double onGrid(double v) { return std::nearbyint(v * 256.0) / 256.0; }
 
 // Three corners within `size` of a random place.
 CoverageFrame around(Random& random, std::uint32_t samples, std::size_t count, double size, double step) {
-  CoverageFrame frame = empty(samples);
+  // Off the grid, how a driver rounds depends on where its coordinates begin: then the frame is the picture.
+  CoverageFrame frame = step == 0.0 ? empty(samples, kSide) : empty(samples);
+  const double margin = step == 0.0 ? -size : 4.0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double x = random.real(-4.0, kSide + 4.0);
-    const double y = random.real(-4.0, kSide + 4.0);
+    const double x = random.real(-margin, kSide + margin);
+    const double y = random.real(-margin, kSide + margin);
     const auto place = [&](double v) {
       const double p = v + random.real(-size, size);
       return step == 0.0 ? p : std::nearbyint(p / step) * step;
@@ -96,7 +102,9 @@ CoverageFrame subpixelTriangles(Random& random, std::uint32_t samples) {
   return around(random, samples, 40000, 0.6, 1.0 / 256.0);
 }
 // Corners on samples' places, and so on the edges of others.
-CoverageFrame onSamples(Random& random, std::uint32_t samples) { return around(random, samples, 20000, 3.0, 1.0 / 16.0); }
+CoverageFrame onSamples(Random& random, std::uint32_t samples) {
+  return around(random, samples, 20000, 3.0, 1.0 / 16.0);
+}
 CoverageFrame onCentres(Random& random, std::uint32_t samples) { return around(random, samples, 20000, 4.0, 0.5); }
 
 // Two corners a few steps of the grid apart, the third far away, in every direction.
@@ -129,11 +137,11 @@ CoverageFrame degenerate(Random& random, std::uint32_t samples) {
   return frame;
 }
 
-// Corners up to the guard band, so that numbers are as large as they get.
-CoverageFrame huge(Random& random, std::uint32_t samples) {
-  CoverageFrame frame = empty(samples);
+// Corners up to the guard band, so that numbers are as large as they get; or up to the border of a large picture.
+CoverageFrame hugeOf(Random& random, std::uint32_t samples, std::uint32_t picture, double exponent) {
+  CoverageFrame frame = empty(samples, picture);
   for (std::size_t i = 0; i < 120; ++i) {
-    const double reach = std::pow(10.0, random.real(2.0, 4.51));
+    const double reach = std::pow(10.0, random.real(2.0, exponent));
     for (int corner = 0; corner < 3; ++corner) {
       const double x = kSide / 2.0 + random.real(-reach, reach);
       addAt(frame, onGrid(x), onGrid(kSide / 2.0 + random.real(-reach, reach)));
@@ -142,12 +150,15 @@ CoverageFrame huge(Random& random, std::uint32_t samples) {
   return frame;
 }
 
-// Long thin ones through the picture whose corners are far out of it.
+CoverageFrame huge(Random& random, std::uint32_t samples) { return hugeOf(random, samples, 1024, 4.51); }
+CoverageFrame large(Random& random, std::uint32_t samples) { return hugeOf(random, samples, 16384, 3.9); }
+
+// Long thin ones through the frame whose corners are far out of it.
 CoverageFrame farSlivers(Random& random, std::uint32_t samples) {
-  CoverageFrame frame = empty(samples);
+  CoverageFrame frame = empty(samples, 16384);
   for (std::size_t i = 0; i < 1000; ++i) {
     const double angle = random.real(0.0, 6.283185307179586);
-    const double reach = random.real(200.0, 30000.0);
+    const double reach = random.real(200.0, 8000.0);
     const double x = random.real(0.0, kSide);
     const double y = random.real(0.0, kSide);
     const double thin = random.real(0.0, 2.0);
@@ -160,10 +171,10 @@ CoverageFrame farSlivers(Random& random, std::uint32_t samples) {
 
 // Different w at the corners, places that are not on the grid.
 CoverageFrame inPerspective(Random& random, std::uint32_t samples) {
-  CoverageFrame frame = empty(samples);
+  CoverageFrame frame = empty(samples, kSide);
   for (std::size_t i = 0; i < 15000; ++i) {
-    const double x = random.real(-4.0, kSide + 4.0);
-    const double y = random.real(-4.0, kSide + 4.0);
+    const double x = random.real(7.0, kSide - 7.0);
+    const double y = random.real(7.0, kSide - 7.0);
     for (int corner = 0; corner < 3; ++corner) {
       const double cornerX = x + random.real(-6.0, 6.0);
       addAt(frame, cornerX, y + random.real(-6.0, 6.0), static_cast<float>(std::exp(random.real(-8.0, 8.0))));
@@ -191,10 +202,12 @@ CoverageFrame boxes(Random& random, std::uint32_t samples) {
 
 const std::vector<TriangleKind>& triangleKinds() {
   static const std::vector<TriangleKind> kinds = {
-      {"Small", smallTriangles},     {"Subpixel", subpixelTriangles}, {"OnSamples", onSamples},
-      {"OnCentres", onCentres},      {"Slivers", slivers},            {"Degenerate", degenerate},
-      {"Huge", huge},                {"FarSlivers", farSlivers},      {"Perspective", inPerspective},
-      {"Boxes", boxes},
+      {"Small", smallTriangles, true},  {"Subpixel", subpixelTriangles, true},
+      {"OnSamples", onSamples, true},   {"OnCentres", onCentres, true},
+      {"Slivers", slivers, true},       {"Degenerate", degenerate, true},
+      {"Large", large, true},           {"Huge", huge, false},
+      {"FarSlivers", farSlivers, true}, {"Perspective", inPerspective, true},
+      {"Boxes", boxes, true},
   };
   return kinds;
 }
@@ -205,6 +218,8 @@ Sums coveredBy(Raster& raster, const CoverageFrame& coverage) {
   Picture picture(coverage.width, coverage.height);
   VitrailCpuFrame frame = picture.frame();
   frame.samples = coverage.samples;
+  frame.pictureWidth = frame.pictureHeight = coverage.picture;
+  frame.originX = frame.originY = coverage.origin;
   frame.list = takeList;
   frame.listUser = &taker;
   VitrailCpuDraw draw = drawOf(coverage.positions);
@@ -216,10 +231,17 @@ Sums coveredBy(Raster& raster, const CoverageFrame& coverage) {
 
 Sums coveredByRules(const CoverageFrame& frame) {
   Sums sums(frame.pixels());
-  const Viewport viewport{frame.width, frame.height, 0, 0, false, false};
+  const auto origin = static_cast<std::int32_t>(frame.origin);
+  const Viewport viewport{frame.picture == 0 ? frame.width : frame.picture,
+                          frame.picture == 0 ? frame.height : frame.picture,
+                          origin,
+                          origin,
+                          false,
+                          false};
   for (std::size_t t = 0; t < frame.triangles(); ++t) {
     const Position* p = &frame.positions[3 * t];
-    if (std::none_of(p, p + 3, [&](const Position& corner) { return vitrail::raster::needsClipping(viewport, corner); })) {
+    if (std::none_of(p, p + 3,
+                     [&](const Position& corner) { return vitrail::raster::needsClipping(viewport, corner); })) {
       addCovered(frame, static_cast<std::uint32_t>(t),
                  {vitrail::raster::placed(viewport, p[0]), vitrail::raster::placed(viewport, p[1]),
                   vitrail::raster::placed(viewport, p[2])},
@@ -232,6 +254,94 @@ Sums coveredByRules(const CoverageFrame& frame) {
     for (const Piece& piece : pieces.all()) addCovered(frame, static_cast<std::uint32_t>(t), piece.corners, sums);
   }
   return sums;
+}
+
+CoverageFrame throughTheNearPlane(Random& random) {
+  CoverageFrame frame{32, 32, 1, {}, 0, 0};
+  for (std::size_t i = 0; i < 800; ++i) {
+    const double scale = std::pow(10.0, random.real(-2.0, 2.0));
+    for (int corner = 0; corner < 3; ++corner) {
+      const double w = random.real(-1.0, 1.5) * scale;
+      frame.positions.push_back({random.single(-2.0 * scale, 2.0 * scale), random.single(-2.0 * scale, 2.0 * scale),
+                                 static_cast<float>(w - 0.1 * scale), static_cast<float>(w)});
+    }
+  }
+  return frame;
+}
+
+CoverageFrame beyondTheGuardBand(Random& random) {
+  CoverageFrame frame{32, 32, 1, {}, 0, 0};
+  for (std::size_t i = 0; i < 800; ++i) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const double reach = std::pow(10.0, random.real(1.0, 7.0));
+      const double x = random.real(-reach, reach);
+      frame.positions.push_back(inPixels(32, 32, x, random.real(-reach, reach)));
+    }
+  }
+  return frame;
+}
+
+TrueTriangle::TrueTriangle(const Position* p, std::uint32_t side) : side_(side) {
+  using Vector = std::array<long double, 3>;
+  const auto cross = [](const Vector& a, const Vector& b) {
+    return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  };
+  std::array<Vector, 3> corners{};
+  for (std::size_t i = 0; i < 3; ++i) corners[i] = {p[i][0], p[i][1], p[i][3]};
+  for (std::size_t i = 0; i < 3; ++i) lines_[i] = cross(corners[(i + 1) % 3], corners[(i + 2) % 3]);
+  long double volume = 0.0L;
+  for (std::size_t i = 0; i < 3; ++i) volume += lines_[0][i] * corners[0][i];
+  isEmpty_ = volume == 0.0L;
+  if (isEmpty_) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (long double& v : lines_[i]) v /= volume;
+  }
+  // Line i at (x, y, 1) is a barycentric coordinate over w. z and w - z over w are sums of those.
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      lines_[3][c] += lines_[i][c] * p[i][2];
+      lines_[4][c] += lines_[i][c] * (static_cast<long double>(p[i][3]) - p[i][2]);
+    }
+  }
+}
+
+long double TrueTriangle::inside(long double x, long double y) const {
+  const long double u = x / side_ * 2.0L - 1.0L;
+  const long double v = y / side_ * 2.0L - 1.0L;
+  constexpr long double kFar = 1e30L;
+  long double least = kFar;
+  for (const auto& line : lines_) {
+    const long double slope = std::hypot(line[0], line[1]) * 2.0L / side_;
+    const long double value = line[0] * u + line[1] * v + line[2];
+    least = std::min(least, slope > 0.0L ? value / slope : value < 0.0L ? -kFar : kFar);
+  }
+  return least;
+}
+
+void Distances::print(const char* what) const {
+  std::printf("  %s: of %llu triangles %llu of %llu samples differ, at most %.5f pixels from an edge\n", what,
+              static_cast<unsigned long long>(triangles), static_cast<unsigned long long>(wrong),
+              static_cast<unsigned long long>(samples), farthest);
+}
+
+Distances distancesOf(const CoverageFrame& frame, const std::function<Sums(const CoverageFrame&)>& cover) {
+  Distances distances;
+  for (std::size_t t = 0; t < frame.triangles(); ++t) {
+    const Position* p = &frame.positions[3 * t];
+    const TrueTriangle triangle(p, frame.width);
+    if (triangle.isEmpty()) continue;
+    const Sums sums = cover({frame.width, frame.height, 1, {p[0], p[1], p[2]}, 0, 0});
+    ++distances.triangles;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const long double x = static_cast<long double>(i % frame.width) + 0.5L;
+      const long double inside = triangle.inside(x, static_cast<long double>(i / frame.width) + 0.5L);
+      ++distances.samples;
+      if ((sums[i].count > 0) == (inside >= 0.0L)) continue;
+      ++distances.wrong;
+      distances.farthest = std::max(distances.farthest, static_cast<double>(std::fabs(inside)));
+    }
+  }
+  return distances;
 }
 
 std::uint32_t roundsOfTests() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "host.h"
@@ -30,6 +31,9 @@ struct CoverageFrame {
   std::uint32_t height = 0;
   std::uint32_t samples = 1;
   std::vector<Position> positions; // three a triangle, clip space of Vulkan
+  // The side of the square picture that the frame is a part of, and where it begins; 0: it is the picture.
+  std::uint32_t picture = 0;
+  std::uint32_t origin = 0;
 
   std::size_t triangles() const { return positions.size() / 3; }
   std::size_t pixels() const { return std::size_t{width} * height; }
@@ -49,11 +53,44 @@ std::uint32_t roundsOfTests();
 // How many pixels differ.
 std::size_t differences(const Sums& a, const Sums& b);
 
-// Triangles of every kind that is hard, by the name of the kind.
+// Triangles of every kind that is hard, by the name of the kind. None needs clipping.
 struct TriangleKind {
   const char* name;
   CoverageFrame (*make)(Random& random, std::uint32_t samples);
+  bool isInView; // all lie within the picture: no driver clips them
 };
 const std::vector<TriangleKind>& triangleKinds();
+
+// Triangles that do.
+CoverageFrame throughTheNearPlane(Random& random);
+CoverageFrame beyondTheGuardBand(Random& random);
+
+// A triangle in exact arithmetic, near enough: a place is in it where its three homogeneous edge functions (Olano and
+// Greer 1997) have the sign of the triangle's volume, and its depth lies between the planes.
+class TrueTriangle {
+ public:
+  TrueTriangle(const Position* p, std::uint32_t side);
+
+  bool isEmpty() const { return isEmpty_; }
+  // How far inside a place is, in pixels, by the nearest of its edges; negative outside.
+  long double inside(long double x, long double y) const;
+
+ private:
+  std::uint32_t side_;
+  bool isEmpty_ = false;
+  std::array<std::array<long double, 3>, 5> lines_{};
+};
+
+// How far what is drawn of triangles, one by one, is from the truth.
+struct Distances {
+  std::uint64_t triangles = 0;
+  std::uint64_t samples = 0;
+  std::uint64_t wrong = 0;
+  double farthest = 0.0; // of a wrong sample from the true edge, in pixels
+
+  void print(const char* what) const;
+};
+// `cover` draws a frame of one triangle.
+Distances distancesOf(const CoverageFrame& frame, const std::function<Sums(const CoverageFrame&)>& cover);
 
 } // namespace vitrail::tests::raster

@@ -6,8 +6,8 @@ namespace vitrail::tests::raster {
 
 std::vector<VitrailCpuInstructions> instructionsHere() {
   std::vector<VitrailCpuInstructions> here;
-  for (const VitrailCpuInstructions instructions : {VITRAIL_CPU_AVX512, VITRAIL_CPU_AVX2, VITRAIL_CPU_SSE4,
-                                                    VITRAIL_CPU_NEON, VITRAIL_CPU_BASELINE}) {
+  for (const VitrailCpuInstructions instructions :
+       {VITRAIL_CPU_AVX512, VITRAIL_CPU_AVX2, VITRAIL_CPU_SSE4, VITRAIL_CPU_NEON, VITRAIL_CPU_BASELINE}) {
     VitrailCpuContextDesc desc{};
     desc.threads = 1;
     desc.instructions = instructions;

@@ -63,7 +63,9 @@ class Random {
   explicit Random(std::uint64_t seed) : engine_(seed) {}
   double real(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
   float single(double low, double high) { return static_cast<float>(real(low, high)); }
-  std::uint32_t below(std::uint32_t count) { return std::uniform_int_distribution<std::uint32_t>(0, count - 1)(engine_); }
+  std::uint32_t below(std::uint32_t count) {
+    return std::uniform_int_distribution<std::uint32_t>(0, count - 1)(engine_);
+  }
   int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine_); }
   std::mt19937_64& engine() { return engine_; }
 
