@@ -112,7 +112,7 @@ typedef struct VitrailCpuFragments {
   uint32_t mask;  /* bit i: entry i is a fragment; at least one is */
   uint32_t draw;  /* index of the draw */
   uint32_t front; /* bit i: the triangle shows its front */
-  uint32_t x;     /* pixel of the block's upper left corner: entry i is at x + i % 4, y + i / 4 */
+  uint32_t x;     /* in the picture, the block's first pixel: entry i is at x + i % 4, y + i / 4 */
   uint32_t y;
 } VitrailCpuFragments;
 
@@ -210,9 +210,9 @@ typedef enum VitrailCpuColorFormat {
  * VITRAIL_BLEND_ADDITIVE and _MULTIPLY come with what they amount to at an alpha of 1. A fragment with a filter
  * (VITRAIL_CPU_SHADE_FILTER) is two layers at one depth, the first VITRAIL_BLEND_PREMULTIPLIED, the second
  * VITRAIL_BLEND_MULTIPLY. Called on several threads at once, for each pixel that has layers.
- * Return 0 for the pixel to be blended as ever, or 1 to have blended it: `color` holds the opaque colour of each
- * sample, 4 floats (linear, premultiplied) times `samples`, and takes what becomes of them. No fragment is left out for
- * what is in front of it. */
+ * x and y are in the picture. Return 0 for the pixel to be blended as ever, or 1 to have blended it: `color` holds the
+ * opaque colour of each sample, 4 floats (linear, premultiplied) times `samples`, and takes what becomes of them. No
+ * fragment is left out for what is in front of it. */
 typedef int (*VitrailCpuList)(void* user, uint32_t x, uint32_t y, const VitrailLayer* layers, uint32_t count,
                               float* color);
 

@@ -133,8 +133,9 @@ class CpuScene::Impl {
   // By instance of a group: the group, and what draws point to.
   std::vector<std::uint32_t> groupOf_;
   std::vector<ShadeDraw> shades_;
-  std::vector<std::array<float, 16>> transforms_;
-  std::vector<glm::vec4> clipPlanes_; // as many for each as the scene has
+  glm::mat4 transform_{1.0F};
+  glm::mat4 lineTransform_{1.0F};
+  std::vector<glm::vec4> clipPlanes_; // in the world
   std::vector<VitrailCpuDraw> draws_;
 };
 
@@ -232,7 +233,6 @@ void CpuScene::Impl::placeInstances(const Scene& scene) {
   groupOf_.reserve(count);
   shades_.reserve(count);
   draws_.reserve(count);
-  clipPlanes_.reserve(count * scene.clipPlanes.size());
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const Group& group = groups_[i];
     for (const std::uint32_t source : group.source.draws) {
@@ -241,18 +241,15 @@ void CpuScene::Impl::placeInstances(const Scene& scene) {
       shades_.push_back(makeShadeDraw(frame_, group.surface, place, group.source.mirrored));
       draws_.push_back(group.prototype);
       draws_.back().word = source;
-      // A point on the positive side of a plane in the world is there in the mesh's space, too.
-      const glm::dmat4 toPlane = glm::transpose(glm::dmat4(place));
-      for (const glm::dvec4& plane : scene.clipPlanes) {
-        clipPlanes_.emplace_back(toPlane * glm::dvec4(placedClipPlane(plane, origin_)));
-      }
     }
   }
-  transforms_.resize(draws_.size());
+  for (const glm::dvec4& plane : scene.clipPlanes) clipPlanes_.emplace_back(placedClipPlane(plane, origin_));
   for (std::size_t i = 0; i < draws_.size(); ++i) {
-    draws_[i].transform = transforms_[i].data();
+    draws_[i].model = &shades_[i].rows[0].x;
+    const bool isLine = draws_[i].topology == VITRAIL_CPU_LINES;
+    draws_[i].transform = glm::value_ptr(isLine ? lineTransform_ : transform_);
     if (draws_[i].shade != nullptr) draws_[i].shadeUser = &shades_[i];
-    if (draws_[i].clipPlaneCount > 0) draws_[i].clipPlanes = &clipPlanes_[i * draws_[i].clipPlaneCount].x;
+    if (!clipPlanes_.empty()) draws_[i].clipPlanes = &clipPlanes_[0].x;
   }
 }
 
@@ -270,19 +267,9 @@ std::span<const VitrailCpuDraw> CpuScene::Impl::draws(const View& view, std::uin
     if (alphaFollows) brightest[i] *= largestAlphaOf(group.surface, group.largestVertex);
     brightest[i] = std::max(brightest[i], 1e-6F); // 0 would stand for the default
   }
-  const glm::dmat4 surfaces = clipMatrix(data, false);
-  const glm::dmat4 lines = clipMatrix(data, true);
-  const std::size_t parts = partsFor(draws_.size(), 20000);
-  inParts(parts, [&](std::size_t part) {
-    for (std::size_t i = draws_.size() * part / parts; i < draws_.size() * (part + 1) / parts; ++i) {
-      const std::array<glm::vec4, 3>& rows = shades_[i].rows;
-      const glm::mat4 place = glm::transpose(glm::mat4(rows[0], rows[1], rows[2], glm::vec4(0.0F, 0.0F, 0.0F, 1.0F)));
-      const bool isLine = draws_[i].topology == VITRAIL_CPU_LINES;
-      const glm::mat4 matrix((isLine ? lines : surfaces) * glm::dmat4(place));
-      std::copy_n(glm::value_ptr(matrix), 16, transforms_[i].begin());
-      draws_[i].brightest = brightest[groupOf_[i]];
-    }
-  });
+  transform_ = data.viewProjection;
+  lineTransform_ = glm::mat4(clipMatrix(data, true));
+  for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].brightest = brightest[groupOf_[i]];
   return draws_;
 }
 
