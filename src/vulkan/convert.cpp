@@ -22,6 +22,8 @@ VkResult toVk(VitrailResult result) {
   switch (result) {
     case VITRAIL_SUCCESS:
       return VK_SUCCESS;
+    case VITRAIL_INCOMPLETE:
+      return VK_INCOMPLETE;
     case VITRAIL_ERROR_UNSUPPORTED:
       return VK_ERROR_FEATURE_NOT_PRESENT;
     case VITRAIL_ERROR_FORMAT:
