@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "raster/cpu/lanes-inl.h"
@@ -71,29 +72,71 @@ HWY_NOINLINE void sortRows(double* keys) {
   }
 }
 
-HWY_NOINLINE void sortInMemory(double* keys, std::size_t rows) {
-  mergeExchange(rows, [keys](std::size_t i, std::size_t j) HWY_ATTR {
-    for (std::size_t v = 0; v < kKeyVectors; ++v) {
-      double* a = keys + i * kLanes + v * kKeyLanes;
-      double* b = keys + j * kLanes + v * kKeyLanes;
-      Key low = hn::Load(kD, a);
-      Key high = hn::Load(kD, b);
-      order(low, high);
-      hn::Store(low, kD, a);
-      hn::Store(high, kD, b);
+// ---- Longer lists: runs that were sorted in registers are merged two by two (Batcher's bitonic merge). A run that is
+// shorter than its partner is merged as if it went on with keys beyond all others, which never move.
+
+constexpr std::size_t kRun = 32;
+
+// Compares the keys of two rows.
+HWY_INLINE void orderRows(double* column, std::size_t i, std::size_t j) {
+  Key low = hn::Load(kD, column + i * kLanes);
+  Key high = hn::Load(kD, column + j * kLanes);
+  order(low, high);
+  hn::Store(low, kD, column + i * kLanes);
+  hn::Store(high, kD, column + j * kLanes);
+}
+
+// Sorts up to kRun rows that first grow and then shrink, or the other way round.
+HWY_INLINE void cleanRun(double* column, std::size_t rows) {
+  Key keys[kRun];
+  for (std::size_t r = 0; r < kRun; ++r) keys[r] = hn::Load(kD, column + (r < rows ? r : rows - 1) * kLanes);
+  if (HWY_UNLIKELY(rows < kRun)) {
+    const Key beyond = hn::Set(kD, std::numeric_limits<double>::max());
+    for (std::size_t r = rows; r < kRun; ++r) keys[r] = beyond;
+  }
+  for (std::size_t s = kRun / 2; s > 0; s /= 2) {
+    for (std::size_t r = 0; r < kRun; ++r) {
+      if ((r & s) == 0) order(keys[r], keys[r + s]);
     }
-  });
+  }
+  for (std::size_t r = 0; r < rows && r < kRun; ++r) hn::Store(keys[r], kD, column + r * kLanes);
+}
+
+// The same of any number of rows up to `width`, a power of two.
+HWY_INLINE void clean(double* column, std::size_t rows, std::size_t width) {
+  for (std::size_t s = width / 2; s >= kRun; s /= 2) {
+    for (std::size_t first = 0; first + s < rows; first += 2 * s) {
+      const std::size_t last = rows - s < first + s ? rows - s : first + s;
+      for (std::size_t r = first; r < last; ++r) orderRows(column, r, r + s);
+    }
+  }
+  for (std::size_t r = 0; r < rows; r += kRun) cleanRun(column + r * kLanes, rows - r < kRun ? rows - r : kRun);
+}
+
+HWY_NOINLINE void mergeRuns(double* keys, std::size_t rows) {
+  for (std::size_t v = 0; v < kKeyVectors; ++v) {
+    double* const column = keys + v * kKeyLanes;
+    for (std::size_t width = kRun; width < rows; width *= 2) {
+      for (std::size_t first = 0; first + width < rows; first += 2 * width) {
+        double* const low = column + first * kLanes;
+        const std::size_t behind = rows - first - width < width ? rows - first - width : width;
+        for (std::size_t r = 0; r < behind; ++r) orderRows(low, width - 1 - r, width + r);
+        clean(low, width, width);
+        clean(low + width * kLanes, behind, width);
+      }
+    }
+  }
 }
 
 // How many rows a list of so many is sorted with: those that are added hold kFarKey.
 constexpr std::size_t sortedRows(std::size_t rows) {
+  if (rows > kRun) return rows / kRun * kRun + sortedRows(rows % kRun);
   if (rows <= 8) return rows;
   if (rows <= 16) return (rows + 1) / 2 * 2;
-  if (rows <= 32) return (rows + 3) / 4 * 4;
-  return rows;
+  return (rows + 3) / 4 * 4;
 }
 
-inline void sortKeys(double* keys, std::size_t rows) {
+inline void sortRun(double* keys, std::size_t rows) {
   switch (rows) {
     case 0:
     case 1:
@@ -118,8 +161,14 @@ inline void sortKeys(double* keys, std::size_t rows) {
       VITRAIL_SORT(32)
 #undef VITRAIL_SORT
     default:
-      return sortInMemory(keys, rows);
+      return;
   }
+}
+
+// As many rows as sortedRows() says.
+inline void sortKeys(double* keys, std::size_t rows) {
+  for (std::size_t r = 0; r < rows; r += kRun) sortRun(keys + r * kLanes, rows - r < kRun ? rows - r : kRun);
+  if (rows > kRun) mergeRuns(keys, rows);
 }
 
 } // namespace vitrail::raster::HWY_NAMESPACE
