@@ -27,7 +27,7 @@ Usage:
   vitrail compare A.png B.png             compare two pictures
   vitrail bench                           measure what transparency costs on a device
   vitrail info MODEL                      tell what is in a model's file
-  vitrail info                            list the Vulkan devices and what they can do for Vitrail
+  vitrail info                            list the devices that pictures are drawn on, and what they can do
 
   vitrail COMMAND --help                  all about one command
   vitrail --version

@@ -112,7 +112,7 @@ typedef struct VitrailCpuFragments {
   uint32_t mask;  /* bit i: entry i is a fragment; at least one is */
   uint32_t draw;  /* index of the draw */
   uint32_t front; /* bit i: the triangle shows its front */
-  uint32_t x;     /* pixel of the block's upper left corner: entry i is at x + i % 4, y + i / 4 */
+  uint32_t x;     /* in the picture, the block's first pixel: entry i is at x + i % 4, y + i / 4 */
   uint32_t y;
 } VitrailCpuFragments;
 
@@ -162,18 +162,20 @@ typedef struct VitrailCpuDraw {
   VitrailCpuCull cull;
   VitrailBlend blend; /* of transparent draws */
   /* Vertices: `vertexCount` times `components` floats, 3 (w is 1) or 4 (default), `vertexStride` bytes apart (default:
-   * without gaps). With `transform`, a 4 x 4 matrix in columns, clip space is transform * (x, y, z, w); without it they
-   * are in clip space. */
+   * without gaps). With `model`, three rows of four floats, (x, y, z) becomes those rows times (x, y, z, w). With
+   * `transform`, a 4 x 4 matrix in columns, clip space is transform * (x, y, z, w); without it they are in clip space.
+   * Products are added from w to x, each sum rounded: in the order of Mesa's drivers. */
   const float* positions; /* required */
   uint32_t components;
   uint32_t vertexStride;
   uint32_t vertexCount;
+  const float* model;     /* optional */
   const float* transform; /* optional */
   /* Optional: `indexCount` numbers of vertices, each below vertexCount. Without them vertices are taken in order. */
   const uint32_t* indices;
   uint32_t indexCount;
-  /* Optional: what is on the negative side of a plane is cut away: four floats each, times (x, y, z, w) of `positions`.
-   * At most VITRAIL_CPU_MAX_CLIP_PLANES. */
+  /* Optional: what is on the negative side of a plane is cut away: four floats each, times (x, y, z, w) before
+   * `transform` and after `model`. At most VITRAIL_CPU_MAX_CLIP_PLANES. */
   const float* clipPlanes;
   uint32_t clipPlaneCount;
   float pointSize; /* of points; default 1 */
@@ -208,9 +210,9 @@ typedef enum VitrailCpuColorFormat {
  * VITRAIL_BLEND_ADDITIVE and _MULTIPLY come with what they amount to at an alpha of 1. A fragment with a filter
  * (VITRAIL_CPU_SHADE_FILTER) is two layers at one depth, the first VITRAIL_BLEND_PREMULTIPLIED, the second
  * VITRAIL_BLEND_MULTIPLY. Called on several threads at once, for each pixel that has layers.
- * Return 0 for the pixel to be blended as ever, or 1 to have blended it: `color` holds the opaque colour of each
- * sample, 4 floats (linear, premultiplied) times `samples`, and takes what becomes of them. No fragment is left out for
- * what is in front of it. */
+ * x and y are in the picture. Return 0 for the pixel to be blended as ever, or 1 to have blended it: `color` holds the
+ * opaque colour of each sample, 4 floats (linear, premultiplied) times `samples`, and takes what becomes of them. No
+ * fragment is left out for what is in front of it. */
 typedef int (*VitrailCpuList)(void* user, uint32_t x, uint32_t y, const VitrailLayer* layers, uint32_t count,
                               float* color);
 

@@ -6,6 +6,9 @@
 #include <cstdlib>
 #include <memory>
 
+#include "../../tool/methods/methods.h"
+#include "../../tool/render/cpu_still.h"
+
 namespace vitrail::tool::test {
 
 namespace {
@@ -39,10 +42,15 @@ void GpuTest::TearDown() {
   for (const std::string& error : sharedGpu()->validationErrors()) ADD_FAILURE() << error;
 }
 
+std::unique_ptr<Renderer> rendererOf(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order,
+                                     const MethodOptions& method) {
+  if (traitsOf(method.name).onProcessor) return std::make_unique<CpuStillRenderer>(scene, opacity, order, method);
+  return std::make_unique<StillRenderer>(gpu, scene, opacity, order, method);
+}
+
 RenderResult renderOnce(Gpu& gpu, const Scene& scene, const RenderOptions& options, std::optional<float> opacity,
                         DrawOrder order, const MethodOptions& method) {
-  StillRenderer renderer(gpu, scene, opacity, order, method);
-  return renderer.render(options);
+  return rendererOf(gpu, scene, opacity, order, method)->render(options);
 }
 
 std::vector<MethodOptions> methodVariety(const Gpu& gpu) {

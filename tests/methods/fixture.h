@@ -1,6 +1,7 @@
 // What the GPU tests share: one device under the validation layer, and the rule that a validation error fails a test.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,10 @@ class GpuTest : public ::testing::Test {
   // Fails the test for every error that the validation layer has reported so far.
   void TearDown() override;
 };
+
+// A renderer of a scene: on the processor for the method that is drawn there.
+std::unique_ptr<Renderer> rendererOf(Gpu& gpu, const Scene& scene, std::optional<float> opacity = {},
+                                     DrawOrder order = DrawOrder::Forward, const MethodOptions& method = {});
 
 // Renders once, with a renderer of its own.
 RenderResult renderOnce(Gpu& gpu, const Scene& scene, const RenderOptions& options, std::optional<float> opacity = {},

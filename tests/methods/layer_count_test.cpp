@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "../../tool/methods/methods.h"
+#include "../../tool/render/cpu_still.h"
 #include "../../tool/scene/builtin/builtin.h"
 #include "../reference/reference.h"
 #include "../reference/test_scenes.h"
@@ -53,6 +54,17 @@ class LayerCountTest : public GpuTest {
               stored.fragmentsStored);
     EXPECT_EQ(report.layersMax, stored.layersMax);
     EXPECT_DOUBLE_EQ(report.layersMean, stored.layersMean);
+
+    // The processor counts as many, but where an edge passes through a pixel's centre to within its rounding.
+    MethodOptions counting;
+    counting.name = kLayerCount;
+    const FrameReport onProcessor = CpuStillRenderer(scene, {}, DrawOrder::Forward, counting).measure(options);
+    ASSERT_EQ(onProcessor.pixelLayers.size(), report.pixelLayers.size());
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < report.pixelLayers.size(); ++i) {
+      different += onProcessor.pixelLayers[i] != report.pixelLayers[i] ? 1 : 0;
+    }
+    EXPECT_LE(different, report.pixelLayers.size() / 200);
   }
 };
 

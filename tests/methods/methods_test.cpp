@@ -77,6 +77,7 @@ const std::vector<MethodRow>& rows() {
        .exact = Exact::Everywhere,
        .orderFree = true,
        .options = {"--nodes", "--resolve", "--msaa-resolve", "--layers", "--memory-budget"}},
+      {.name = "cpu", .exact = Exact::Everywhere, .orderFree = true, .options = {"--memory-budget"}},
       {.name = "unsorted", .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "sorted", .exact = Exact::ParallelPanes, .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "sorted-triangles", .exact = Exact::ParallelParts, .options = {}, .wrongWhereSurfacesCross = true},
@@ -447,7 +448,9 @@ TEST_P(WrongMethods, CrossingSurfacesLookWrong) {
 // The opaque scene stands as it was drawn: without anything before it, and where it hides what is transparent.
 TEST_P(MethodsTest, OpaqueSurfacesStand) {
   const TestScene nothing = nothingTransparent();
-  EXPECT_TRUE(draw(nothing, options()).picture.rgba == exactPicture(nothing).rgba);
+  // On the processor the colour is not rounded to 16-bit floats before it is to 8 bits.
+  EXPECT_LE(largestDifference(draw(nothing, options()).picture, exactPicture(nothing)),
+            GetParam().name == "cpu" ? 1 : 0);
   const TestScene stack = occludedStack();
   const Picture drawn = draw(stack, options()).picture;
   const Picture bare = draw(withoutTransparent(stack), options()).picture;
@@ -479,13 +482,13 @@ TEST_P(OrderRoundsMethods, SubmissionOrderRounds) {
 
 TEST_P(MethodsTest, RunsAreOne) {
   const TestScene scene = builtin("interlocked");
-  StillRenderer renderer(gpu(), scene.scene, {}, DrawOrder::Forward, options());
-  const RenderResult first = renderer.render(scene.picture);
-  EXPECT_TRUE(renderer.render(scene.picture).picture.rgba == first.picture.rgba);
+  const std::unique_ptr<Renderer> renderer = rendererOf(gpu(), scene.scene, {}, DrawOrder::Forward, options());
+  const RenderResult first = renderer->render(scene.picture);
+  EXPECT_TRUE(renderer->render(scene.picture).picture.rgba == first.picture.rgba);
   RenderOptions other = scene.picture; // another size in between
   other.width = 75;
-  renderer.render(other);
-  EXPECT_TRUE(renderer.render(scene.picture).picture.rgba == first.picture.rgba);
+  renderer->render(other);
+  EXPECT_TRUE(renderer->render(scene.picture).picture.rgba == first.picture.rgba);
 }
 
 TEST_P(MethodsTest, PassesAreNamed) {

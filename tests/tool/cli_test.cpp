@@ -26,7 +26,7 @@ const std::string kModels = VITRAIL_TEST_MODELS; // assimp-testmodels
 
 // A small picture that is quick to draw.
 Words smallRender(const std::string& output) {
-  return {"render", "--scene", "interlocked", "--size", "96x64", "--validate", "-o", output};
+  return {"render", "--scene", "interlocked", "--size", "96x64", "--device", "cpu", "-o", output};
 }
 
 TEST(Cli, HelpPagesAndVersion) {
@@ -160,7 +160,8 @@ TEST(Cli, WhatCannotBeDoneIsOneLineAndExitCode1) {
   }
   expectRefusal(kTool, {"render", "--scene", "spheres", "-o", "a.png", "--device", "abacus"}, 1, "abacus");
   expectRefusal(kTool, {"render", "--scene", "spheres", "-o", "a.png", "--device", "99"}, 1, "99");
-  expectRefusal(kTool, {"render", "--scene", "spheres", "-o", "a.png", "--size", "65536x1"}, 1, "too large");
+  expectRefusal(kTool, {"render", "--scene", "spheres", "-o", "a.png", "--size", "65536x1", "--device", "0"}, 1,
+                "too large");
 }
 
 TEST(Cli, WhatAModelDoesNotHaveIsRefusedWithWhatItHas) {
@@ -186,16 +187,6 @@ TEST(Cli, EveryBadFileOfTheCorpusIsRefused) {
   EXPECT_GE(files, 30U);
 }
 
-TEST(Cli, AMachineWithoutADriverIsToldWhatToInstall) {
-  const TemporaryFolder folder;
-  const ProcessResult result =
-      vitrail({"info"}, {.folder = folder.path(),
-                         .environment = {"VK_ICD_FILENAMES=/none.json", "VK_DRIVER_FILES=/none.json"},
-                         .running = {}});
-  EXPECT_EQ(result.exitCode, 1);
-  EXPECT_NE(result.error.find("mesa-vulkan-drivers"), std::string::npos) << result.error;
-}
-
 TEST(Cli, InfoAndScenesListWhatThereIs) {
   const ProcessResult info = vitrail({"info"});
   EXPECT_EQ(info.exitCode, 0) << info.error;
@@ -209,8 +200,8 @@ TEST(Cli, InfoAndScenesListWhatThereIs) {
 
 TEST(Cli, APictureAndItsReport) {
   const TemporaryFolder folder;
-  Words arguments = smallRender("a.png");
-  arguments.insert(arguments.end(), {"--json", "a.json"});
+  const Words arguments = {"render",     "--scene", "interlocked", "--size", "96x64",
+                           "--validate", "-o",      "a.png",       "--json", "a.json"};
   const ProcessResult result = vitrail(folder, arguments);
   ASSERT_EQ(result.exitCode, 0) << result.error;
   EXPECT_EQ(folder.names(), (Words{"a.json", "a.png"}));
@@ -462,13 +453,13 @@ TEST(Cli, AModelIsNeverWrittenOver) {
 // Sample counts are the device's: those of lavapipe are 1 and 4.
 TEST(Cli, ASampleCountThatTheDeviceLacksIsRefusedByName) {
   const std::string info = vitrail({"info"}).out;
-  const std::size_t at = info.find("samples");
+  const std::size_t at = info.find("samples", info.find("  0  "));
   ASSERT_NE(at, std::string::npos) << info;
   const std::string line = info.substr(at, info.find('\n', at) - at);
   for (const std::string samples : {"2", "4", "8"}) {
     if (line.find(samples) != std::string::npos) continue;
     for (const char* command : {"render", "compare"}) {
-      expectRefusal(kTool, {command, "--scene", "interlocked", "-o", "a.png", "--samples", samples}, 1,
+      expectRefusal(kTool, {command, "--scene", "interlocked", "-o", "a.png", "--samples", samples, "--device", "0"}, 1,
                     "not " + samples);
     }
   }
@@ -559,20 +550,25 @@ TEST(Cli, ALinkStaysALink) {
   EXPECT_EQ(readPng(folder.file("real.png")).width, 96U);
 }
 
-TEST(Cli, AnInterruptedRenderLeavesNothing) {
-  for (const int milliseconds : {20, 150, 600, 1500}) {
+void expectInterruptLeavesNothing(const std::string& device, std::initializer_list<int> times) {
+  for (const int milliseconds : times) {
     const TemporaryFolder folder;
     const auto interrupt = [&](pid_t child) {
       std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
       ::kill(child, SIGINT);
     };
     const ProcessResult result =
-        vitrail({"render", "--scene", "hairball", "--size", "1920x1080", "--validate", "-o", "a.png"},
+        vitrail({"render", "--scene", "hairball", "--size", "3840x2160", "--device", device, "-o", "a.png"},
                 {.folder = folder.path(), .environment = {}, .running = interrupt});
     if (result.exitCode == 0) continue; // a machine so fast that it was done
     EXPECT_EQ(result.exitCode, 128 + SIGINT) << milliseconds;
     EXPECT_EQ(folder.names(), Words{}) << milliseconds;
   }
+}
+
+TEST(Cli, AnInterruptedRenderLeavesNothing) {
+  expectInterruptLeavesNothing("llvmpipe", {20, 150, 600, 1500});
+  expectInterruptLeavesNothing("cpu", {5, 50, 100, 200, 400});
 }
 
 TEST(Cli, AFullDeviceIsAnError) {
@@ -595,8 +591,7 @@ TEST(Cli, AMovedProgramNeedsNoFilesBesideIt) {
   const TemporaryFolder folder;
   fs::copy_file(kTool, folder.path() / "moved");
   const ProcessResult result =
-      vitrail(folder, {"render", "--scene", "interlocked", "--size", "32x32", "--validate", "-o", "a.png"},
-              folder.file("moved"));
+      vitrail(folder, {"render", "--scene", "interlocked", "--size", "32x32", "-o", "a.png"}, folder.file("moved"));
   EXPECT_EQ(result.exitCode, 0) << result.error;
   EXPECT_EQ(readPng(folder.file("a.png")).width, 32U);
 }

@@ -61,7 +61,7 @@ TEST(Compare, ReportsEveryMethod) {
     const std::string name = method.at("method");
     EXPECT_NE(result.out.find("\n " + name + " "), std::string::npos) << result.out;
     EXPECT_GT(method.at("cost_ms").at("median"), 0.0);
-    EXPECT_GT(method.at("frame_ms").at("median"), method.at("cost_ms").at("median"));
+    EXPECT_GE(method.at("frame_ms").at("median"), method.at("cost_ms").at("median")); // of cpu they are the same
     EXPECT_GT(method.at("cost_ratio"), 0.0);
     EXPECT_FALSE(method.at("passes_ms").empty());
     for (const std::string& file : {name + ".png", name + "-error.png"}) {

@@ -20,7 +20,7 @@ TEST(MethodTable, EveryRowIsWhole) {
     EXPECT_TRUE(names.insert(name).second) << "twice";
     EXPECT_EQ(traits.name, name);
     EXPECT_TRUE(traits.listed);
-    EXPECT_NE(traits.make, nullptr);
+    EXPECT_NE(traits.make != nullptr, traits.onProcessor);
     EXPECT_FALSE(traits.help.empty());
     EXPECT_LE(traits.help.size(), 65U);
     EXPECT_TRUE(traits.orderIndependent || !traits.wrong.empty()) << "exact pictures know no order";

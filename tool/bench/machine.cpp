@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <vitrail/types.h>
+
+#include "../render/cpu_still.h"
+
 namespace vitrail::tool {
 
 namespace {
@@ -13,14 +17,25 @@ constexpr std::uint32_t kCpuWarmups = 1;
 
 } // namespace
 
-Machine machineOf(const Gpu& gpu) {
+Machine machineOf(const Device& device) {
+  Machine machine;
+  machine.processor = processorDevice();
+  if (device.gpu() == nullptr) {
+    machine.device = machine.processor;
+    machine.driver =
+        fmt::format("Vitrail {}.{}.{}", VITRAIL_VERSION_MAJOR, VITRAIL_VERSION_MINOR, VITRAIL_VERSION_PATCH);
+    machine.api = "CPU";
+    machine.isCpu = true;
+    machine.hasVulkan = false;
+    return machine;
+  }
+  const Gpu& gpu = *device.gpu();
   VkPhysicalDeviceDriverProperties driver{};
   driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
   VkPhysicalDeviceProperties2 properties{};
   properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
   properties.pNext = &driver;
   vkGetPhysicalDeviceProperties2(gpu.physicalDevice(), &properties);
-  Machine machine;
   machine.device = gpu.properties().deviceName;
   machine.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
   machine.api = "Vulkan 1.3";

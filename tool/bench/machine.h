@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "../gpu/device.h"
+#include "../render/device.h"
 
 namespace vitrail::tool {
 
@@ -13,10 +13,12 @@ struct Machine {
   std::string device;
   std::string driver;
   std::string api;
-  bool isCpu = false; // only ratios mean anything
+  bool isCpu = false;      // only ratios mean anything
+  std::string processor{}; // what draws the method `cpu`
+  bool hasVulkan = true;   // false: the processor is all there is, and nothing has a ratio
 };
 
-Machine machineOf(const Gpu& gpu);
+Machine machineOf(const Device& device);
 
 // The number that was asked for, or the machine's default.
 std::uint32_t roundsOn(const Machine& machine, std::optional<std::uint32_t> asked);

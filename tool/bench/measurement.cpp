@@ -85,8 +85,10 @@ void compare(std::vector<Measurement>& measurements, double bytesPerSecond) {
     const auto baseline = std::ranges::find_if(measurements, [&](const Measurement& each) {
       return each.options.name == kBaselineMethod && sameSamples(each, measured);
     });
-    measured.costRatio = ratioOfMedians(measured.costMs, baseline->costMs);
-    measured.frameRatio = ratioOfMedians(measured.frameMs, baseline->frameMs);
+    if (baseline != measurements.end()) {
+      measured.costRatio = ratioOfMedians(measured.costMs, baseline->costMs);
+      measured.frameRatio = ratioOfMedians(measured.frameMs, baseline->frameMs);
+    }
     const std::optional<double> fragments = fragmentsOf(measured, measurements);
     if (fragments && measured.costMs.median > 0.0) {
       measured.fragmentsPerSecond = *fragments / (measured.costMs.median * 1e-3);

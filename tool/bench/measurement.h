@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,9 +23,10 @@ struct Measurement {
   std::vector<std::pair<std::string, Spread>> passes; // milliseconds, in order
   Spread costMs;  // of what transparency costs in a frame: all passes but the opaque one
   Spread frameMs; // of all passes
-  // Over the baseline's in the same scene with as many samples, from medians. NaN where the baseline took no time.
-  double costRatio = 0.0;
-  double frameRatio = 0.0;
+  // Over the baseline's in the same scene with as many samples, from medians. NaN where there is none, or it took no
+  // time.
+  double costRatio = std::numeric_limits<double>::quiet_NaN();
+  double frameRatio = std::numeric_limits<double>::quiet_NaN();
   // Transparent fragments over the median cost; of the baseline, which counts none, those of another method. None where
   // nothing counted them.
   std::optional<double> fragmentsPerSecond;

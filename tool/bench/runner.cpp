@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "../methods/methods.h"
 
 namespace vitrail::tool {
 
@@ -14,7 +17,7 @@ namespace {
 // A setting that the device can do, with what it has drawn so far.
 struct Contender {
   MethodOptions options;
-  std::unique_ptr<StillRenderer> renderer;
+  std::unique_ptr<Renderer> renderer;
   FrameReport report; // of the first frame
   std::vector<PassTimes> frames;
 };
@@ -27,49 +30,51 @@ struct WarmScene {
   std::vector<SkippedSetting> skipped;
 };
 
-Contender prepare(Gpu& gpu, const Scene& scene, const BenchRun& run, const MethodOptions& options) {
+Contender prepare(Device& device, const Scene& scene, const BenchRun& run, const MethodOptions& options) {
   Contender contender;
   contender.options = options;
-  contender.renderer = std::make_unique<StillRenderer>(gpu, scene, run.opacity, DrawOrder::Forward, options);
+  contender.renderer = device.makeRenderer(scene, run.opacity, DrawOrder::Forward, options);
   for (std::uint32_t i = 0; i < run.warmups; ++i) contender.report = contender.renderer->measure(run.picture);
   return contender;
 }
 
 // The transparent fragments of a picture, by a method that counts them.
-std::uint64_t countFragments(Gpu& gpu, const Scene& scene, const BenchRun& run, std::uint32_t samples) {
+std::uint64_t countFragments(Device& device, const Scene& scene, const BenchRun& run, std::uint32_t samples) {
   MethodOptions options;
+  options.name = device.exactMethod();
   options.nodes = VITRAIL_NODE_HDR; // which rounds no surface away
   options.samples = samples;
-  return StillRenderer(gpu, scene, run.opacity, DrawOrder::Forward, options).measure(run.picture).fragmentsRequested;
+  return device.makeRenderer(scene, run.opacity, DrawOrder::Forward, options)->measure(run.picture).fragmentsRequested;
 }
 
-// Looks at the picture of each sample count that has a baseline.
-void checkFragments(Gpu& gpu, const Scene& scene, const BenchRun& run, const std::vector<Contender>& contenders) {
-  for (const Contender& baseline : contenders) {
-    if (baseline.options.name != kBaselineMethod) continue;
+// Looks at the picture of each sample count that is measured.
+void checkFragments(Device& device, const Scene& scene, const BenchRun& run, const std::vector<Contender>& contenders) {
+  std::set<std::uint32_t> counts;
+  for (const Contender& each : contenders) counts.insert(each.options.samples);
+  for (const std::uint32_t samples : counts) {
     const auto counting = std::ranges::find_if(contenders, [&](const Contender& contender) {
-      return contender.report.counted && contender.options.samples == baseline.options.samples;
+      return contender.report.counted && contender.options.samples == samples;
     });
     requireFragments(counting != contenders.end() ? counting->report.fragmentsRequested
-                                                  : countFragments(gpu, scene, run, baseline.options.samples));
+                                                  : countFragments(device, scene, run, samples));
   }
 }
 
 // Sets up and warms up all settings; what cannot be done goes to `skipped`. `place` is that of a step.
-std::vector<Contender> prepareAll(Gpu& gpu, const Scene& scene, const BenchRun& run, const std::string& place,
+std::vector<Contender> prepareAll(Device& device, const Scene& scene, const BenchRun& run, const std::string& place,
                                   std::vector<SkippedSetting>& skipped) {
   std::vector<Contender> contenders;
   for (const MethodOptions& options : run.settings) {
     const auto refused = std::ranges::find_if(skipped, [&](const SkippedSetting& each) {
       return each.options.name == kBaselineMethod && each.options.samples == options.samples;
     });
-    if (refused != skipped.end()) {
+    if (refused != skipped.end() && !traitsOf(options.name).onProcessor) {
       skipped.push_back({options, refused->reason});
       continue;
     }
     if (run.progress) run.progress(place.empty() ? describe(options) : place + ", " + describe(options));
     try {
-      contenders.push_back(prepare(gpu, scene, run, options));
+      contenders.push_back(prepare(device, scene, run, options));
     } catch (const GpuError& error) {
       skipped.push_back({options, error.what()});
     }
@@ -77,10 +82,10 @@ std::vector<Contender> prepareAll(Gpu& gpu, const Scene& scene, const BenchRun& 
   return contenders;
 }
 
-WarmScene prepareScene(Gpu& gpu, const Scene& scene, const BenchRun& run, const std::string& place = {}) {
+WarmScene prepareScene(Device& device, const Scene& scene, const BenchRun& run, const std::string& place = {}) {
   WarmScene warm{run, triangleCount(scene), {}, {}};
-  warm.contenders = prepareAll(gpu, scene, run, place, warm.skipped);
-  checkFragments(gpu, scene, run, warm.contenders);
+  warm.contenders = prepareAll(device, scene, run, place, warm.skipped);
+  checkFragments(device, scene, run, warm.contenders);
   return warm;
 }
 
@@ -119,35 +124,35 @@ void requireOne(const std::vector<SceneMeasurement>& measured) {
   if (std::ranges::all_of(measured, isEmpty)) throw GpuError(measured.front().skipped.front().reason);
 }
 
-// What scenes that wait for their rounds may hold on the device, so that methods are measured as if they had it alone.
-std::uint64_t memoryToHold(const Gpu& gpu) {
+// Whether scenes that wait for their rounds hold so little that methods are measured as if they had the device alone.
+bool hasMemoryLeft(const Gpu& gpu) {
   const VkPhysicalDeviceMemoryProperties& memory = gpu.memoryProperties();
   VkDeviceSize largest = 0;
   for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
     const VkMemoryHeap& heap = memory.memoryHeaps[i];
     if ((heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0) largest = std::max(largest, heap.size);
   }
-  return largest / 4;
+  return gpu.memoryHeld() < largest / 4;
 }
 
 } // namespace
 
-SceneMeasurement measureScene(Gpu& gpu, const Scene& scene, const BenchRun& run) {
+SceneMeasurement measureScene(Device& device, const Scene& scene, const BenchRun& run) {
   std::vector<WarmScene> scenes;
-  scenes.push_back(prepareScene(gpu, scene, run));
+  scenes.push_back(prepareScene(device, scene, run));
   if (scenes[0].contenders.empty()) throw GpuError(scenes[0].skipped.front().reason);
   drawRounds(scenes);
   return finish(scenes[0]);
 }
 
-std::vector<SceneMeasurement> measureSteps(Gpu& gpu, std::size_t count,
+std::vector<SceneMeasurement> measureSteps(Device& device, std::size_t count,
                                            const std::function<BenchStep(std::size_t index)>& step) {
   std::vector<SceneMeasurement> results;
   std::vector<WarmScene> waiting;
   for (std::size_t i = 0; i < count; ++i) {
     const BenchStep made = step(i);
-    waiting.push_back(prepareScene(gpu, made.scene, made.run, made.place));
-    if (i + 1 < count && gpu.memoryHeld() < memoryToHold(gpu)) continue;
+    waiting.push_back(prepareScene(device, made.scene, made.run, made.place));
+    if (i + 1 < count && (device.gpu() == nullptr || hasMemoryLeft(*device.gpu()))) continue;
     drawRounds(waiting);
     for (WarmScene& warm : waiting) results.push_back(finish(warm));
     waiting.clear();

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../render/still.h"
+#include "../render/device.h"
 #include "measurement.h"
 
 namespace vitrail::tool {
@@ -35,15 +35,16 @@ struct BenchStep {
 
 // Every round draws one frame of each setting, starting one setting later than the round before it, so that a device
 // that grows warm or busy slows all of them alike. A setting that the device refuses is skipped, and all of a sample
-// count whose baseline it refuses. Throws GpuError where nothing is left or where a frame fails that could be drawn
-// before, std::runtime_error where nothing transparent is in the picture, which is counted where no method does.
-SceneMeasurement measureScene(Gpu& gpu, const Scene& scene, const BenchRun& run);
+// count whose baseline it refuses but those of the processor. Throws GpuError where nothing is left or where a frame
+// fails that could be drawn before, std::runtime_error where nothing transparent is in the picture, which is counted
+// where no method does.
+SceneMeasurement measureScene(Device& device, const Scene& scene, const BenchRun& run);
 
 // The same for several scenes, `count` of them, each made by `step` when its turn to be set up comes: a round draws one
 // frame of each setting of each scene. All have as many rounds. Where what is set up holds a quarter of the device's
 // memory, its rounds are drawn before more is set up. A scene in which every setting is skipped has no measurements;
 // throws GpuError where that is so for all.
-std::vector<SceneMeasurement> measureSteps(Gpu& gpu, std::size_t count,
+std::vector<SceneMeasurement> measureSteps(Device& device, std::size_t count,
                                            const std::function<BenchStep(std::size_t index)>& step);
 
 // Throws std::runtime_error where a picture has none: then there is nothing to measure.

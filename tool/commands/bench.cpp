@@ -16,6 +16,7 @@
 #include "../scene/split.h"
 #include "bench_options.h"
 #include "commands.h"
+#include "device_options.h"
 #include "errors.h"
 #include "output_file.h"
 #include "output_folder.h"
@@ -51,9 +52,9 @@ Subject openSubject(const BenchArguments& arguments, std::size_t index) {
   return openNamed(arguments.scenes[index], count);
 }
 
-BenchReport describeRun(const BenchArguments& arguments, const Gpu& gpu) {
+BenchReport describeRun(const BenchArguments& arguments, const Device& device) {
   BenchReport report;
-  static_cast<Machine&>(report) = machineOf(gpu);
+  static_cast<Machine&>(report) = machineOf(device);
   report.repeats = roundsOn(report, arguments.repeats);
   report.warmups = warmupsOn(report, arguments.warmups);
   report.limits = arguments.matrix.limits;
@@ -89,7 +90,7 @@ void addScene(BenchReport& report, SceneMeasurement measured, const Subject& sub
   report.scenes.push_back(std::move(measured));
 }
 
-void measureScenes(Gpu& gpu, const BenchArguments& arguments, const std::vector<Subject>& subjects,
+void measureScenes(Device& device, const BenchArguments& arguments, const std::vector<Subject>& subjects,
                    const Progress& progress, BenchReport& report) {
   SweepStep all; // one for all
   all.width = arguments.width != 0 ? arguments.width : 1280;
@@ -99,7 +100,7 @@ void measureScenes(Gpu& gpu, const BenchArguments& arguments, const std::vector<
     std::vector<SkippedSetting> refused;
     BenchRun run = runOf(arguments, report, subject.scene, all, refused);
     run.progress = [&](const std::string& what) { progress.show(fmt::format("{}: {}", subject.name, what)); };
-    addScene(report, measureScene(gpu, subject.scene, run), subject, refused);
+    addScene(report, measureScene(device, subject.scene, run), subject, refused);
   }
 }
 
@@ -109,7 +110,7 @@ Subject subjectOf(const BenchArguments& arguments, SweepKind kind, const Subject
   return isDefault && (isCpu || kind == SweepKind::Triangles) ? openNamed(chosen.name, kSweepCount) : chosen;
 }
 
-void measureSweep(Gpu& gpu, const BenchArguments& arguments, SweepKind kind, const Subject& chosen,
+void measureSweep(Device& device, const BenchArguments& arguments, SweepKind kind, const Subject& chosen,
                   const Progress& progress, BenchReport& report) {
   const Subject base =
       kind == SweepKind::Layers ? Subject{"planes", {}, {}} : subjectOf(arguments, kind, chosen, report.isCpu);
@@ -122,7 +123,7 @@ void measureSweep(Gpu& gpu, const BenchArguments& arguments, SweepKind kind, con
   const std::vector<SweepStep> steps = planSweep(kind, start);
   std::vector<std::vector<SkippedSetting>> refused(steps.size());
 
-  std::vector<SceneMeasurement> measured = measureSteps(gpu, steps.size(), [&](std::size_t i) {
+  std::vector<SceneMeasurement> measured = measureSteps(device, steps.size(), [&](std::size_t i) {
     BenchStep made;
     made.scene =
         steps[i].panes ? openNamed(base.name, steps[i].panes).scene : splitTriangles(base.scene, steps[i].splits);
@@ -156,12 +157,12 @@ BenchReport measure(const BenchArguments& arguments) {
   }
   reportWarnings(warnings, arguments);
 
-  Gpu gpu({arguments.device});
-  BenchReport report = describeRun(arguments, gpu);
+  Device device({arguments.device, false, wishFor(arguments.matrix.methods)});
+  BenchReport report = describeRun(arguments, device);
   report.warnings = std::move(warnings);
-  report.bytesPerSecond = measureBandwidth(gpu);
-  if (arguments.sweeps.empty()) measureScenes(gpu, arguments, subjects, progress, report);
-  for (const SweepKind kind : arguments.sweeps) measureSweep(gpu, arguments, kind, subjects[0], progress, report);
+  if (device.gpu() != nullptr) report.bytesPerSecond = measureBandwidth(*device.gpu());
+  if (arguments.sweeps.empty()) measureScenes(device, arguments, subjects, progress, report);
+  for (const SweepKind kind : arguments.sweeps) measureSweep(device, arguments, kind, subjects[0], progress, report);
   return report;
 }
 

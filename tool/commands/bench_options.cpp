@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "device_options.h"
 #include "errors.h"
 #include "option_values.h"
 #include "scene_options.h"
@@ -67,8 +68,7 @@ Where to:
                         that the file has, or shows nothing
 
 Which device:
-  --device D            a number or a part of a name from `vitrail info`, or cpu
-                        (default: the best GPU, else the CPU)
+@device@
 
 Examples:
   vitrail bench --sweep layers,triangles,resolution -o bench
@@ -108,7 +108,7 @@ void checkSweeps(const CLI::App& command, BenchArguments& arguments) {
 
 } // namespace
 
-std::string benchHelp() { return withText(kBenchHelp, "@load@", kLoadHelp); }
+std::string benchHelp() { return withDeviceHelp(withText(kBenchHelp, "@load@", kLoadHelp)); }
 
 void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
   command.add_option("MODEL", arguments.model);

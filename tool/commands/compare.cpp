@@ -18,6 +18,7 @@
 #include "../report/comparison_table.h"
 #include "commands.h"
 #include "compare_options.h"
+#include "device_options.h"
 #include "file_comparison.h"
 #include "output_folder.h"
 #include "progress.h"
@@ -35,8 +36,8 @@ Comparison measure(const CompareArguments& arguments) {
   std::vector<std::string> warnings = scene.warnings;
   const bool isUnseen = warnIfUnseen(scene, seenOf(picture, arguments.opacity), warnings);
   reportWarnings(warnings, arguments);
-  Gpu gpu({arguments.device, arguments.validate});
-  const Machine machine = machineOf(gpu);
+  Device device({arguments.device, arguments.validate, wishFor(arguments.methods)});
+  const Machine machine = machineOf(device);
   ComparisonRun run;
   run.methods = arguments.methods;
   run.samples = arguments.samples;
@@ -46,10 +47,10 @@ Comparison measure(const CompareArguments& arguments) {
   run.repeats = roundsOn(machine, arguments.repeats);
   run.warmups = warmupsOn(machine, arguments.warmups);
   run.progress = [&](const std::string& step) { progress.show(step); };
-  Comparison comparison = compareMethods(gpu, scene, run);
+  Comparison comparison = compareMethods(device, scene, run);
   comparison.scene = nameOfScene(arguments);
   comparison.count = arguments.count;
-  closeValidated(gpu);
+  closeValidated(device);
   if (comparison.isEmpty && !isUnseen) { // for a reason that the scene alone does not show
     progress.show("");
     warnings.push_back(nothingSeenWarning(scene, seenOf(picture, arguments.opacity)));
@@ -123,7 +124,7 @@ void runCompare(const CLI::App& command, CompareArguments arguments) {
 
 void addCompareCommand(CLI::App& app, std::function<void()>& run) {
   CLI::App* command = app.add_subcommand("compare");
-  setHelpPage(*command, withSceneHelp(kCompareHelp));
+  setHelpPage(*command, withDeviceHelp(withSceneHelp(kCompareHelp)));
   const auto arguments = std::make_shared<CompareArguments>();
   addCompareOptions(*command, *arguments);
   command->callback([command, arguments, &run] { run = [command, arguments] { runCompare(*command, *arguments); }; });

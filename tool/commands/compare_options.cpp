@@ -48,8 +48,7 @@ Where to:
                         that the file has, or shows nothing
 
 Which device:
-  --device D            a number or a part of a name from `vitrail info`, or cpu
-                        (default: the best GPU, else the CPU)
+@device@
   --validate            run under the Vulkan validation layer and fail on any error
 
 Examples:

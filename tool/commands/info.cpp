@@ -1,4 +1,4 @@
-// `vitrail info`: what is in model files; or the Vulkan devices of this machine and what each can do for Vitrail.
+// `vitrail info`: what is in model files; or the devices of this machine and what each can do for Vitrail.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "../gpu/device.h"
+#include "../render/cpu_still.h"
+#include "../render/device.h"
 #include "../report/model_info.h"
 #include "../scene/message.h"
 #include "commands.h"
@@ -21,7 +23,8 @@ namespace vitrail::tool {
 namespace {
 
 constexpr const char* kInfoHelp =
-    R"(Tells what is in model files; without one, lists the Vulkan devices of this machine.
+    R"(Tells what is in model files; without one, lists what this machine can draw with: the processor and
+Vulkan devices.
 
 Usage:
   vitrail info MODEL... [--json]
@@ -29,12 +32,14 @@ Usage:
 
 Of a model: its format and size, its box in the file's own coordinates, meshes, materials, images,
 extensions and which of them are drawn, lights, cameras, animations, variants, and what a picture of
-it lacks. It needs no Vulkan device.
+it lacks.
 
   --json                the same as JSON, on standard output
 
 Of each device: its driver, the limits that bound a picture, and what it can and cannot do for
-Vitrail. The number in front of a device, or a part of its name, is what --device takes.
+Vitrail. What stands in front of a device, or a part of a Vulkan device's name, is what --device
+takes. The processor, cpu, draws by Vitrail's own rasteriser, without Vulkan; it stands first where
+there is no GPU, and is the default there.
 
 Examples:
   vitrail info car.glb
@@ -80,9 +85,31 @@ void printDevice(const DeviceSummary& device) {
   line("pass times", device.timestamps ? "yes" : "no, the queue has no timestamps");
 }
 
+void printProcessor() {
+  fmt::print("  {} {}\n", kProcessor, processorDevice());
+  line("driver", "none: Vitrail's own rasteriser, without Vulkan");
+  line("renders", "yes, exactly");
+  line("fragments", "any number");
+  line("samples", "1, 2, 4, 8 a pixel");
+  line("layers", "any number in one pixel");
+  line("picture", fmt::format("at most {0}x{0}", kMaxProcessorSide));
+  line("pass times", "yes, by the clock");
+}
+
 void runDevices() {
-  fmt::print("Vulkan devices\n");
-  for (const DeviceSummary& device : listDevices()) printDevice(device);
+  std::vector<DeviceSummary> devices;
+  std::string reason; // why there is none
+  try {
+    devices = listDevices();
+  } catch (const GpuError& error) {
+    reason = error.what();
+  }
+  const bool hasGpu = std::ranges::any_of(devices, isUsableGpu);
+  fmt::print("Devices\n");
+  if (!hasGpu) printProcessor();
+  for (const DeviceSummary& device : devices) printDevice(device);
+  if (hasGpu) printProcessor();
+  if (devices.empty()) fmt::print("  no Vulkan device: {}\n", reason);
 }
 
 // Of formats whose readers leave it to the name: OBJ.

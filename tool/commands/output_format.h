@@ -9,7 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "../render/still.h"
+#include "../render/renderer.h"
 
 namespace vitrail::tool {
 

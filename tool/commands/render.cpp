@@ -10,9 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "../render/still.h"
+#include "../render/device.h"
 #include "../report/frame.h"
+#include "../scene/volume.h"
 #include "commands.h"
+#include "device_options.h"
 #include "errors.h"
 #include "output_file.h"
 #include "output_format.h"
@@ -58,36 +60,54 @@ Job prepare(const RenderArguments& arguments, const Progress& progress) {
   return job;
 }
 
+// Light goes its true way through volumes by lists on a Vulkan device alone: worth one where nothing else was asked
+// for.
+Device openDevice(const Job& job) {
+  const RenderArguments& arguments = job.arguments;
+  Wish wish = arguments.wish;
+  if (wish == Wish::Fastest && job.scene.clipPlanes.empty() && Solids(job.scene, false).any()) {
+    wish = Wish::VulkanIfThere;
+  }
+  return Device({arguments.device, arguments.validate, wish});
+}
+
+// Where neither a method nor a device was asked for, the device has its own exact one.
+std::unique_ptr<Renderer> makeRenderer(const Device& device, Job& job) {
+  MethodOptions method = job.arguments.method;
+  if (job.arguments.wish == Wish::Fastest) method.name = device.exactMethod();
+  return device.makeRenderer(std::move(job.scene), job.arguments.opacity, method);
+}
+
 RenderResult renderOne(Job& job) {
-  Gpu gpu({job.arguments.device, job.arguments.validate});
+  Device device = openDevice(job);
   RenderResult result;
   {
-    StillRenderer renderer(gpu, std::move(job.scene), job.arguments.opacity, job.arguments.method);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(device, job);
     job.progress.show("drawing");
-    result = renderer.render(job.options);
+    result = renderer->render(job.options);
   }
-  closeValidated(gpu);
+  closeValidated(device);
   return result;
 }
 
 std::vector<NamedFrame> renderTurn(Job& job, TurntableOutput& output) {
   const RenderArguments& arguments = job.arguments;
   const std::uint32_t count = *arguments.turntable;
-  Gpu gpu({arguments.device, arguments.validate});
+  Device device = openDevice(job);
   std::vector<NamedFrame> frames;
   {
-    StillRenderer renderer(gpu, std::move(job.scene), arguments.opacity, arguments.method);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(device, job);
     RenderOptions options = job.options;
     options.onTile = nullptr;
     for (std::uint32_t i = 0; i < count; ++i) {
       job.progress.show(fmt::format("picture {} of {}", i + 1, count), i, count);
       options.view = job.views[i];
-      const RenderResult result = renderer.render(options);
+      const RenderResult result = renderer->render(options);
       output.add(result);
       frames.push_back({output.nameOf(i), result.report});
     }
   }
-  closeValidated(gpu);
+  closeValidated(device);
   return frames;
 }
 
@@ -152,7 +172,7 @@ void runTurn(const RenderArguments& arguments, std::optional<OutputFile>& report
   tell(arguments, report && report->isSpecial(), output.name(), toSummary(frames));
 }
 
-void runRender(const RenderArguments& arguments) {
+void runRender(RenderArguments arguments) {
   checkRenderArguments(arguments);
   std::optional<OutputFile> report;
   if (!arguments.json.empty()) report.emplace(arguments.json);

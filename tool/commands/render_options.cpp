@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "../methods/methods.h"
+#include "device_options.h"
 #include "errors.h"
 #include "option_values.h"
 
@@ -53,8 +54,7 @@ Where to:
                         that the file has, or shows nothing
 
 Which device:
-  --device D            a number or a part of a name from `vitrail info`, or cpu
-                        (default: the best GPU, else the CPU)
+@device@
   --validate            run under the Vulkan validation layer; its errors fail the command
 
 Examples:
@@ -68,7 +68,7 @@ Examples:
 
 void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   MethodOptions& method = arguments.method;
-  command.add_option("--method", method.name);
+  command.add_option("--method", arguments.methodName);
   addPositive(command, "--samples", method.samples);
   addPositive(command, "--layers", method.maxLayers);
   addPositive(command, "--passes", method.passes);
@@ -77,6 +77,40 @@ void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   addChoice(command, "--resolve", "compute and fragment", method.resolve, resolveNamed);
   addChoice(command, "--list-build", "fragment and compute", method.listBuild, listBuildNamed);
   addChoice(command, "--msaa-resolve", "per-pixel and per-sample", method.msaaResolve, msaaResolveNamed);
+}
+
+// An option that only Vulkan devices have; empty where there is none.
+std::string vulkanOption(const RenderArguments& arguments) {
+  const MethodOptions defaults;
+  const MethodOptions& method = arguments.method;
+  if (arguments.methodName) return "--method " + *arguments.methodName;
+  if (method.nodes != defaults.nodes) return "--nodes";
+  if (method.resolve != defaults.resolve) return "--resolve";
+  if (method.listBuild != defaults.listBuild) return "--list-build";
+  if (method.msaaResolve != defaults.msaaResolve) return "--msaa-resolve";
+  if (method.maxLayers != defaults.maxLayers) return "--layers";
+  if (method.passes != defaults.passes) return "--passes";
+  return arguments.validate ? "--validate" : "";
+}
+
+void chooseDevice(RenderArguments& arguments) {
+  const bool isCpuMethod = arguments.methodName == kCpuMethod;
+  const bool isCpuDevice = isProcessor(arguments.device);
+  if (isCpuMethod && arguments.validate) throw UsageError("the method cpu is without Vulkan: leave --validate out");
+  if (isCpuMethod && !isCpuDevice && !arguments.device.empty()) {
+    throw UsageError("the method cpu draws on the processor: leave --device out, or name cpu");
+  }
+  const std::string needsVulkan = isCpuMethod ? "" : vulkanOption(arguments);
+  if (isCpuDevice && !needsVulkan.empty()) {
+    throw UsageError(
+        fmt::format("{} needs a Vulkan device, which cpu is not: leave it out, or --device cpu", needsVulkan));
+  }
+  if (isCpuMethod || isCpuDevice) {
+    arguments.wish = Wish::Processor;
+    arguments.method.name = kCpuMethod;
+  } else if (!needsVulkan.empty()) {
+    arguments.wish = Wish::Vulkan;
+  }
 }
 
 void checkMethod(const RenderArguments& arguments) {
@@ -91,7 +125,8 @@ void checkMethod(const RenderArguments& arguments) {
 } // namespace
 
 std::string renderHelp() {
-  return withText(withText(withSceneHelp(kRenderHelp), "@methods@", methodsHelp()), "@output@", kOutputHelp);
+  return withDeviceHelp(
+      withText(withText(withSceneHelp(kRenderHelp), "@methods@", methodsHelp()), "@output@", kOutputHelp));
 }
 
 void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
@@ -105,9 +140,11 @@ void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
   addMethodOptions(command, arguments);
 }
 
-void checkRenderArguments(const RenderArguments& arguments) {
+void checkRenderArguments(RenderArguments& arguments) {
   checkSceneArguments(arguments, "render");
+  arguments.method.name = arguments.methodName.value_or(arguments.method.name);
   checkMethod(arguments);
+  chooseDevice(arguments);
   static_cast<void>(outputFormatOf(arguments));
 }
 

@@ -8,13 +8,16 @@
 #include <CLI/CLI.hpp>
 
 #include "../methods/method_options.h"
+#include "../render/device.h"
 #include "output_format.h"
 #include "scene_options.h"
 
 namespace vitrail::tool {
 
 struct RenderArguments : SceneArguments, OutputArguments {
-  MethodOptions method;
+  MethodOptions method;                      // where neither it nor a device is named, the device has its own
+  std::optional<std::string> methodName;     // --method
+  Wish wish = Wish::Fastest;                 // what the other options need
   std::optional<std::uint32_t> memoryBudget; // MiB
   std::string device;
   std::string json; // empty: no report
@@ -24,8 +27,8 @@ struct RenderArguments : SceneArguments, OutputArguments {
 // Adds the options to a command. Texts that cannot be understood end the parse with a CLI::ValidationError.
 void addRenderOptions(CLI::App& command, RenderArguments& arguments);
 
-// Checks what one option alone does not show. Throws UsageError.
-void checkRenderArguments(const RenderArguments& arguments);
+// Checks what one option alone does not show, and finds out which device they need. Throws UsageError.
+void checkRenderArguments(RenderArguments& arguments);
 
 std::string renderHelp();
 

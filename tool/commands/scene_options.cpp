@@ -186,12 +186,4 @@ bool warnIfUnseen(const Scene& scene, const Seen& seen, std::vector<std::string>
   return true;
 }
 
-void closeValidated(Gpu& gpu) {
-  gpu.close(); // what was not destroyed by now is a validation error
-  const std::vector<std::string> errors = gpu.validationErrors();
-  if (errors.empty()) return;
-  throw std::runtime_error(
-      fmt::format("the validation layer reports {} errors, the first: {}", errors.size(), errors[0]));
-}
-
 } // namespace vitrail::tool

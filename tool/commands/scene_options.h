@@ -9,7 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "../render/still.h"
+#include "../render/renderer.h"
 #include "../scene/builtin/builtin.h"
 #include "../scene/camera.h"
 #include "../scene/load.h"
@@ -70,9 +70,5 @@ Seen seenOf(const RenderOptions& picture, std::optional<float> opacity);
 
 // Adds the warning of a picture that is sure to show nothing. Whether it is.
 bool warnIfUnseen(const Scene& scene, const Seen& seen, std::vector<std::string>& warnings);
-
-// Destroys the device once all that was made on it is gone. Throws std::runtime_error where the validation layer has
-// reported errors.
-void closeValidated(Gpu& gpu);
 
 } // namespace vitrail::tool

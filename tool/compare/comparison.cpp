@@ -16,20 +16,19 @@ void tell(const ComparisonRun& run, const std::string& step) {
   if (run.progress) run.progress(step);
 }
 
-RenderResult drawExact(Gpu& gpu, const Scene& scene, const ComparisonRun& run) {
+RenderResult drawExact(Device& device, const Scene& scene, const ComparisonRun& run) {
   MethodOptions options;
+  options.name = device.exactMethod();
   options.nodes = VITRAIL_NODE_HDR;
   options.samples = run.samples;
-  StillRenderer renderer(gpu, scene, run.opacity, DrawOrder::Forward, options);
-  return renderer.render(run.picture);
+  return device.makeRenderer(scene, run.opacity, DrawOrder::Forward, options)->render(run.picture);
 }
 
 // Fills in the fragments of each pixel.
-void countLayers(Gpu& gpu, const Scene& scene, const ComparisonRun& run, Comparison& result) {
+void countLayers(Device& device, const Scene& scene, const ComparisonRun& run, Comparison& result) {
   MethodOptions options;
   options.name = kLayerCount;
-  StillRenderer renderer(gpu, scene, run.opacity, DrawOrder::Forward, options);
-  const FrameReport frame = renderer.measure(run.picture);
+  const FrameReport frame = device.makeRenderer(scene, run.opacity, DrawOrder::Forward, options)->measure(run.picture);
   result.layers = Plane(run.picture.width, run.picture.height);
   std::ranges::copy(frame.pixelLayers, result.layers.values.begin());
   result.layersMax = frame.layersMax;
@@ -75,9 +74,9 @@ BenchRun benchOf(const ComparisonRun& run, std::vector<MethodOptions> settings) 
 
 } // namespace
 
-Comparison compareMethods(Gpu& gpu, const Scene& scene, const ComparisonRun& run) {
+Comparison compareMethods(Device& device, const Scene& scene, const ComparisonRun& run) {
   Comparison result;
-  static_cast<Machine&>(result) = machineOf(gpu);
+  static_cast<Machine&>(result) = machineOf(device);
   result.width = run.picture.width;
   result.height = run.picture.height;
   result.samples = run.samples;
@@ -85,13 +84,13 @@ Comparison compareMethods(Gpu& gpu, const Scene& scene, const ComparisonRun& run
   result.repeats = run.repeats;
   result.warmups = run.warmups;
   tell(run, "the exact picture");
-  RenderResult exact = drawExact(gpu, scene, run);
+  RenderResult exact = drawExact(device, scene, run);
   result.exact = std::move(exact.picture);
   result.isEmpty = exact.isEmpty;
   result.exactFrame = std::move(exact.report);
   requireFragments(result.exactFrame.fragmentsRequested);
   tell(run, "depth complexity");
-  countLayers(gpu, scene, run, result);
+  countLayers(device, scene, run, result);
 
   BenchRun bench = benchOf(run, settingsOf(run, result.refused));
   std::vector<Picture> pictures; // in the order of the measurements
@@ -99,7 +98,7 @@ Comparison compareMethods(Gpu& gpu, const Scene& scene, const ComparisonRun& run
     tell(run, "picture of " + options.name);
     pictures.push_back(std::move(drawn.picture));
   };
-  SceneMeasurement measured = measureScene(gpu, scene, bench);
+  SceneMeasurement measured = measureScene(device, scene, bench);
   result.triangles = measured.triangles;
   for (const SkippedSetting& skipped : measured.skipped)
     result.refused.push_back({skipped.options.name, skipped.reason});

@@ -11,7 +11,7 @@
 #include "../bench/matrix.h"
 #include "../bench/measurement.h"
 #include "../image/metrics.h"
-#include "../render/still.h"
+#include "../render/device.h"
 
 namespace vitrail::tool {
 
@@ -59,10 +59,10 @@ struct ComparisonRun {
   std::function<void(const std::string& step)> progress; // told of every step, for people who wait
 };
 
-// The exact picture is that of linked-list with hdr nodes and as many samples. Costs are measured as `vitrail bench`
-// measures them, the methods' frames taking turns, and compared with the baseline's (bench/matrix.h), which is always
-// there. Leaves `scene` and `count` to the caller. Throws GpuError where the exact picture cannot be drawn,
-// std::runtime_error where nothing in it is transparent.
-Comparison compareMethods(Gpu& gpu, const Scene& scene, const ComparisonRun& run);
+// The exact picture is that of linked-list with hdr nodes and as many samples, of `cpu` where there is no Vulkan
+// device. Costs are measured as `vitrail bench` measures them, the methods' frames taking turns, and compared with the
+// baseline's (bench/matrix.h), which is always there. Leaves `scene` and `count` to the caller. Throws GpuError where
+// the exact picture cannot be drawn, std::runtime_error where nothing in it is transparent.
+Comparison compareMethods(Device& device, const Scene& scene, const ComparisonRun& run);
 
 } // namespace vitrail::tool

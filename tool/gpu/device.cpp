@@ -272,7 +272,6 @@ std::string lower(std::string_view text) {
 // Whether `device` is what the user named; an empty name means any device that can render.
 bool matches(const DeviceSummary& device, const std::string& wanted) {
   if (wanted.empty()) return device.missing.empty();
-  if (wanted == "cpu") return device.kind == "CPU";
   if (std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
     return std::to_string(device.index) == wanted;
   }
@@ -286,13 +285,15 @@ int rank(const DeviceSummary& device) {
   return static_cast<int>(kind - std::begin(kKinds)) + (device.missing.empty() ? 0 : 100);
 }
 
-DeviceSummary choose(const std::vector<DeviceSummary>& devices, const std::string& wanted) {
+DeviceSummary choose(const std::vector<DeviceSummary>& devices, const GpuOptions& options) {
+  const std::string& wanted = options.device;
   const std::string name = lower(wanted);
   const DeviceSummary* best = nullptr;
   std::vector<std::string> known;
   for (const DeviceSummary& device : devices) {
     known.push_back(fmt::format("{}: {}{}", device.index, device.name,
                                 device.missing.empty() ? "" : fmt::format(" (lacks {})", device.missing)));
+    if (options.onlyGpus && !isUsableGpu(device)) continue;
     if (matches(device, name) && (best == nullptr || rank(device) < rank(*best))) best = &device;
   }
   if (best == nullptr) {
@@ -397,7 +398,7 @@ Gpu::Gpu(const GpuOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->instance = createInstance(options.validate ? &impl_->log : nullptr);
   if (options.validate) impl_->createMessenger();
   const std::vector<VkPhysicalDevice> devices = enumerate(impl_->instance);
-  const DeviceSummary chosen = choose(summarizeAll(devices), options.device);
+  const DeviceSummary chosen = choose(summarizeAll(devices), options);
   impl_->physicalDevice = devices[chosen.index];
   impl_->maxAllocation = chosen.maxAllocationBytes;
   impl_->queueFamily = findQueueFamily(impl_->physicalDevice).value(); // choose() made sure that there is one
@@ -439,6 +440,8 @@ void Gpu::memoryFreed(std::uint64_t bytes) { impl_->memory -= bytes; }
 std::uint64_t Gpu::memoryHeld() const { return impl_->memory; }
 
 std::uint64_t Gpu::peakMemory() const { return impl_->peak; }
+
+bool isUsableGpu(const DeviceSummary& device) { return device.missing.empty() && device.kind.ends_with("GPU"); }
 
 std::vector<DeviceSummary> listDevices() {
   VkInstance instance = createInstance(nullptr);

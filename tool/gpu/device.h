@@ -13,7 +13,8 @@
 
 namespace vitrail::tool {
 
-// A device, driver or memory that cannot do what was asked: what() is one line that says what and what to do.
+// A device, driver or memory that cannot do what was asked, the processor too: what() is one line that says what and
+// what to do.
 struct GpuError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -34,12 +35,16 @@ struct DeviceSummary {
   bool timestamps = false; // false: passes are not timed
 };
 
+// A GPU, not a CPU driver, that the tool can render on.
+bool isUsableGpu(const DeviceSummary& device);
+
 struct GpuOptions {
-  // "" takes the best device (discrete, integrated, virtual, CPU; the first of a kind), "cpu" a CPU driver, a number
-  // the device of that index, anything else a device whose name contains it, in any case.
+  // "" takes the best device (discrete, integrated, virtual, CPU; the first of a kind), a number the device of that
+  // index, anything else a device whose name contains it, in any case.
   std::string device;
   // Runs under the Khronos validation layer with synchronization validation; a missing layer is a GpuError.
   bool validate = false;
+  bool onlyGpus = false; // isUsableGpu()
 };
 
 // Instance, device and one queue with graphics and compute, made for Vulkan 1.3 with dynamic rendering,

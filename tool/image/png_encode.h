@@ -9,7 +9,7 @@
 namespace vitrail::tool {
 
 // Encodes an 8-bit sRGB PNG: RGB, or RGBA with straight alpha where the picture has alpha. The same picture gives the
-// same bytes. Throws std::runtime_error with libpng's reason.
+// same bytes.
 std::vector<std::byte> encodePng(const Picture& picture);
 
 // The same with 16 bits: of Encoding::Srgb16.

@@ -21,13 +21,18 @@ constexpr std::string_view kAveraged = "surfaces beyond the nearest ones are ave
 
 // All methods, the default first.
 constexpr std::array kMethods{
-    MethodTraits{.name = "linked-list",
+    MethodTraits{.name = kListMethod,
                  .help = "per-pixel linked lists of any length",
                  .make = makeLinkedList,
                  .options = kTakesSamples | kTakesNodes | kTakesResolve | kTakesListBuild | kTakesMsaaResolve |
                             kTakesLayers | kTakesMemoryBudget,
                  .lists = true,
                  .orderIndependent = true},
+    MethodTraits{.name = kCpuMethod,
+                 .help = "on the processor, without Vulkan; lists of any length",
+                 .options = kTakesSamples | kTakesMemoryBudget,
+                 .orderIndependent = true,
+                 .onProcessor = true},
     MethodTraits{.name = "unsorted",
                  .help = "plain blending in the order of the file",
                  .make = makeUnsorted,
@@ -195,9 +200,8 @@ void checkMethodOptions(const MethodOptions& options) {
 }
 
 std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions& options) {
-  const MethodOptions defaults;
   const bool cut = !scene.clipPlanes.empty();
-  const bool walks = options.name == defaults.name && options.maxLayers == 0;
+  const bool walks = options.name == kListMethod && options.maxLayers == 0;
   const Solids solids(scene, false);
   if (walks && !cut && solids.open()) {
     const std::uint32_t material = *solids.open();
@@ -208,7 +212,7 @@ std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions&
   }
   if ((walks && !cut) || !solids.any()) return {};
   if (cut) return {"volumes are attenuated by the file's thickness, not by the true path: --clip-plane cuts them open"};
-  return {options.name == defaults.name
+  return {options.name == kListMethod
               ? "volumes are attenuated by the file's thickness, not by the true path: leave --layers out"
               : "volumes are attenuated by the file's thickness, not by the true path: use --method linked-list"};
 }

@@ -45,6 +45,7 @@ struct MethodTraits {
   bool orderIndependent = false;
   std::string_view wrong{}; // what its pictures get wrong, in words; nothing: they are exact
   bool listed = true;       // false: no method to draw with
+  bool onProcessor = false; // drawn by render/cpu_still.h, without Vulkan: `make` is null
 
   bool takes(MethodOption option) const { return (options & option) != 0; }
 };
@@ -55,8 +56,8 @@ std::span<const std::string_view> methodNames();
 // The row of that name, also of one that is not listed; where there is none, throws std::logic_error.
 const MethodTraits& traitsOf(std::string_view name);
 
-// Makes a method. The options have passed checkMethodOptions(), or are kLayerCount's. Throws GpuError where the device
-// does not offer them.
+// Makes a method that is not drawn on the processor. The options have passed checkMethodOptions(), or are
+// kLayerCount's. Throws GpuError where the device does not offer them.
 std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& options);
 
 // Throws std::invalid_argument with a one-line reason for a name that is not listed, for options that the method does
@@ -68,6 +69,10 @@ void checkPictureOptions(std::string_view method, bool memoryBudget);
 
 // What the method draws otherwise of a scene than others would: lines as Scene::warnings has them.
 std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions& options);
+
+// The exact methods of choice: on a Vulkan device, and on the processor.
+inline constexpr std::string_view kListMethod = "linked-list";
+inline constexpr std::string_view kCpuMethod = "cpu";
 
 // Counts the fragments of each pixel and draws no picture; not listed.
 inline constexpr std::string_view kLayerCount = "layer-count";

@@ -12,6 +12,7 @@
 
 #include "../bench/matrix.h"
 #include "../bench/short_count.h"
+#include "../methods/methods.h"
 #include "cells.h"
 #include "recommendation.h"
 
@@ -203,9 +204,11 @@ std::string sweepTable(const BenchReport& report, SweepKind kind) {
     }
   }
   std::string table = sweepTitle(*steps.front(), kind);
-  table += gridOf(steps, settings, "cost, times unsorted",
-                  [](const Measurement& measured) { return ratio(measured.costRatio); });
-  if (!report.isCpu) {
+  if (report.hasVulkan) {
+    table += gridOf(steps, settings, "cost, times unsorted",
+                    [](const Measurement& measured) { return ratio(measured.costRatio); });
+  }
+  if (!report.isCpu || !report.hasVulkan) {
     table += gridOf(steps, settings, "cost, ms",
                     [](const Measurement& measured) { return milliseconds(measured.costMs.median); });
   }
@@ -224,11 +227,14 @@ std::string sweepTable(const BenchReport& report, SweepKind kind) {
 } // namespace
 
 std::string toTable(const BenchReport& report) {
-  std::string table =
-      fmt::format("{} ({}), {}\nrounds: {}, warm-up frames: {}; a copy moves {:.1f} GB/s\n", report.device,
-                  report.driver, report.api, report.repeats, report.warmups, report.bytesPerSecond * 1e-9);
+  std::string table = fmt::format(
+      "{} ({}), {}\nrounds: {}, warm-up frames: {}{}\n", report.device, report.driver, report.api, report.repeats,
+      report.warmups, report.hasVulkan ? fmt::format("; a copy moves {:.1f} GB/s", report.bytesPerSecond * 1e-9) : "");
   table += describe(report.limits);
-  if (report.isCpu) table += kCpuNote;
+  const auto isCpuMethod = [](const Measurement& each) { return each.options.name == kCpuMethod; };
+  table += notesOn(report, std::ranges::any_of(report.scenes, [&](const SceneMeasurement& scene) {
+                     return std::ranges::any_of(scene.measurements, isCpuMethod);
+                   }));
   bool hasScenes = false;
   for (const std::optional<SweepKind> sweep : sweepsOf(report)) {
     if (sweep) {

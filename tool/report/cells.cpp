@@ -6,6 +6,17 @@
 
 namespace vitrail::tool {
 
+std::string notesOn(const Machine& machine, bool hasCpuMethod) {
+  std::string notes;
+  if (machine.isCpu && machine.hasVulkan)
+    notes = "This device is a CPU: only the ratios say something, its times are the machine's.\n";
+  if (!hasCpuMethod) return notes;
+  return notes + (machine.hasVulkan ? fmt::format("The method cpu is drawn by {}.\nIts times are by the clock, and its "
+                                                  "cost is that of the whole frame.\n",
+                                                  machine.processor)
+                                    : "Times are by the clock, and the cost is that of the whole frame.\n");
+}
+
 std::string milliseconds(double value) { return fmt::format("{:.{}f}", value, value < 1000.0 ? 3 : 1); }
 
 std::string ratio(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; }

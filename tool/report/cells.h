@@ -11,9 +11,8 @@ namespace vitrail::tool {
 
 inline constexpr std::size_t kColumns = 120; // that a table may have
 
-// What is said of measurements on a CPU device, a line.
-inline constexpr const char* kCpuNote =
-    "This device is a CPU: only the ratios say something, its times are the machine's.\n";
+// What is said of where measurements were taken, in lines: of a CPU device, and of the method `cpu`, if it is there.
+std::string notesOn(const Machine& machine, bool hasCpuMethod);
 
 // "3.142"; from a second on "1234.5".
 std::string milliseconds(double value);

@@ -1,6 +1,10 @@
 #include "comparison_table.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
+
+#include "../methods/methods.h"
 
 #include "cells.h"
 #include "metrics_text.h"
@@ -41,7 +45,9 @@ std::string toTable(const Comparison& comparison) {
                        comparison.height, comparison.samples, comparison.samples > 1 ? "samples" : "sample",
                        comparison.exactFrame.fragmentsRequested, comparison.layersMax);
   table += describe(comparison.limits);
-  if (comparison.isCpu) table += kCpuNote;
+  table += notesOn(comparison, std::ranges::any_of(comparison.methods, [](const ComparedMethod& method) {
+                     return method.measurement.options.name == kCpuMethod;
+                   }));
   if (!isExact(comparison.exactFrame)) table += "The picture that all are compared with is itself not exact.\n";
   table += '\n';
   table +=

@@ -57,6 +57,7 @@ void addMachine(Json& json, const Machine& machine) {
   json[names::kDriver] = machine.driver;
   json[names::kApi] = machine.api;
   json[names::kCpu] = machine.isCpu;
+  json["processor"] = machine.processor;
 }
 
 void addRounds(Json& json, std::uint32_t repeats, std::uint32_t warmups) {

@@ -24,6 +24,8 @@ constexpr double kLeastSpread = 0.05;
 // What weighs less than a promise.
 constexpr double kTrifle = 0.1;
 
+constexpr const char* kUnknown = "unknown";
+
 using Scenes = std::vector<const SceneMeasurement*>;
 using Candidates = std::vector<const Measurement*>; // the best first
 using Wanted = std::function<bool(const Measurement&)>;
@@ -147,7 +149,7 @@ std::string rangeOf(const Scenes& scenes, const Run& run, const char* format, Nu
     least = std::min(least, value);
     most = std::max(most, value);
   }
-  if (!std::isfinite(least) || !std::isfinite(most)) return "unknown";
+  if (!std::isfinite(least) || !std::isfinite(most)) return kUnknown;
   const std::string low = fmt::format(fmt::runtime(format), least);
   const std::string high = fmt::format(fmt::runtime(format), most);
   return low == high ? low : fmt::format("{} to {}", low, high);
@@ -158,12 +160,12 @@ std::string numbersOf(const Scenes& scenes, const Run& run, bool isCpu) {
   const auto of = [&](const SceneMeasurement& scene) -> const Measurement& {
     return measurementOf(scene, run.setting);
   };
-  std::string text = rangeOf(scenes, run, "{:.2f}", [&](const SceneMeasurement& scene) { return of(scene).costRatio; });
-  text.append(" times the cost of ").append(kBaselineMethod);
-  if (!isCpu) {
-    text += fmt::format(" ({} ms)", rangeOf(scenes, run, "{:.3f}",
-                                            [&](const SceneMeasurement& scene) { return of(scene).costMs.median; }));
-  }
+  const std::string ratio =
+      rangeOf(scenes, run, "{:.2f}", [&](const SceneMeasurement& scene) { return of(scene).costRatio; });
+  const std::string milliseconds =
+      rangeOf(scenes, run, "{:.3f}", [&](const SceneMeasurement& scene) { return of(scene).costMs.median; }) + " ms";
+  std::string text = ratio == kUnknown ? milliseconds : fmt::format("{} times the cost of {}", ratio, kBaselineMethod);
+  if (!isCpu && ratio != kUnknown) text += fmt::format(" ({})", milliseconds);
   return text + fmt::format(" and {} MiB", rangeOf(scenes, run, "{:.1f}", [&](const SceneMeasurement& scene) {
                               return static_cast<double>(of(scene).report.totalBytes) / (1024.0 * 1024.0);
                             }));

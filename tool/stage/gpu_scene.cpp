@@ -6,16 +6,15 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <set>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "light_data.h"
 #include "material_data.h"
+#include "placement.h"
 
 namespace vitrail::tool {
 
@@ -25,16 +24,6 @@ constexpr Access kInstanceFetch{VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT, 
 constexpr Access kIndexFetch{VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, VK_ACCESS_2_INDEX_READ_BIT};
 constexpr Access kShaderRead{VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                              VK_ACCESS_2_UNIFORM_READ_BIT};
-
-// The middle of a scene that is far away compared with its size, else 0: most scenes keep their own numbers.
-glm::dvec3 farMiddle(const Scene& scene) {
-  if (scene.draws.empty()) return glm::dvec3(0.0);
-  const Bounds bounds = worldBounds(scene);
-  const glm::dvec3 low(bounds.min);
-  const glm::dvec3 high(bounds.max);
-  const glm::dvec3 middle = 0.5 * (low + high);
-  return glm::length(middle) > 8.0 * glm::length(high - low) ? middle : glm::dvec3(0.0);
-}
 
 // Counts the vertices or indices of a scene without wrapping round.
 void checkCount(std::uint64_t count, std::uint64_t limit, const char* what) {
@@ -67,25 +56,10 @@ GpuBuffer uploadUniforms(Gpu& gpu, Uploader& uploader, const std::vector<Data>& 
   return buffer;
 }
 
-// Draws that bind the same things go together: depth decides between opaque surfaces, and of those in one plane the
-// last one is seen. So masked ones, which may be decals, come after the others, and groups in the order of the file.
-void groupOpaque(std::vector<GpuDraw>& draws) {
-  std::map<std::tuple<bool, std::uint32_t, std::uint32_t>, std::size_t> groups; // the first draw of each
-  const auto keyOf = [](const GpuDraw& draw) {
-    return std::tuple((draw.features & shaders::FEATURE_MASK) != 0, draw.features, draw.materialOffset);
-  };
-  for (std::size_t i = 0; i < draws.size(); ++i) groups.try_emplace(keyOf(draws[i]), i);
-  std::stable_sort(draws.begin(), draws.end(), [&](const GpuDraw& a, const GpuDraw& b) {
-    const auto keyA = keyOf(a);
-    const auto keyB = keyOf(b);
-    return std::pair(std::get<0>(keyA), groups.at(keyA)) < std::pair(std::get<0>(keyB), groups.at(keyB));
-  });
-}
-
 } // namespace
 
 GpuScene::GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released)
-    : gpu_(gpu), order_(order), solids_(scene), opacity_(opacity.value_or(1.0F)), origin_(farMiddle(scene)) {
+    : gpu_(gpu), order_(order), solids_(scene), opacity_(opacity.value_or(1.0F)), origin_(drawnOrigin(scene)) {
   Uploader uploader(gpu);
   const std::vector<MeshRange> ranges = placeMeshes(scene, opacity.has_value());
   uploadMaterials(uploader, scene, opacity);
@@ -178,10 +152,7 @@ void GpuScene::uploadLights(Uploader& uploader, const Scene& scene) {
 }
 
 glm::mat4 GpuScene::placeOf(const Scene& scene, std::uint32_t instance) const {
-  const Draw& draw = scene.draws[sources_[instance]];
-  glm::mat4 place = draw.transform;
-  place[3] = glm::vec4(glm::dvec3(draw.transform[3]) - origin_, 1.0);
-  return place;
+  return placed(scene.draws[sources_[instance]].transform, origin_);
 }
 
 // In pieces: there may be millions.
@@ -239,7 +210,7 @@ void GpuScene::listDraws(const Scene& scene, const std::vector<MeshRange>& range
       sources_.insert(sources_.end(), group.draws.begin(), group.draws.end());
     }
   }
-  groupOpaque(opaque_);
+  orderOpaque(opaque_, [](const GpuDraw& draw) { return std::pair(draw.features, draw.materialOffset); });
 }
 
 void GpuScene::placeBoxes(const Scene& scene) {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "../scene/volume.h"
-#include "texture.h"
+#include "texels.h"
 
 namespace vitrail::tool {
 
@@ -98,7 +98,7 @@ std::uint32_t extensionsOf(const Material& material, std::uint32_t features) {
 } // namespace
 
 std::uint32_t featuresOf(const Scene& scene, const Material& material, const Mesh& mesh, bool premultiplied) {
-  std::uint32_t features = MaterialTextures::filledSlots(scene, material);
+  std::uint32_t features = filledSlots(scene, material);
   const bool triangles = mesh.primitive == Primitive::Triangles;
   const bool unlit = material.unlit || (!triangles && mesh.normals.empty());
   if (!triangles) features &= ~bit(shaders::SLOT_NORMAL); // they have no surface that tangents could lie in

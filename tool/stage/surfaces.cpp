@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "placement.h"
 #include "shaders/surface.vert.h"
 #include "shaders/surface_clipped.vert.h"
 
@@ -31,8 +32,7 @@ void setClipPlanes(const Scene& scene, const glm::dvec3& origin, shaders::FrameD
   for (std::size_t i = 0; i < shaders::CLIP_PLANE_COUNT; ++i) {
     view.clipPlanes[i] = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
     if (i >= scene.clipPlanes.size()) continue;
-    const glm::dvec4& plane = scene.clipPlanes[i];
-    view.clipPlanes[i] = glm::vec4(glm::dvec3(plane), glm::dot(glm::dvec3(plane), origin) - plane.w);
+    view.clipPlanes[i] = placedClipPlane(scene.clipPlanes[i], origin);
   }
 }
 

@@ -5,10 +5,8 @@
 #include <span>
 
 #include <fmt/format.h>
-#include <glm/gtc/packing.hpp>
 
 #include "../gpu/vk.h"
-#include "../scene/srgb.h"
 #include "material_data.h"
 
 namespace vitrail::tool {
@@ -17,44 +15,6 @@ namespace {
 
 constexpr VkImageUsageFlags kTextureUsage =
     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-
-bool isFilled(const Scene& scene, const TextureSlot& slot) {
-  if (slot.image < 0) return false;
-  const Image& image = scene.images.at(static_cast<std::size_t>(slot.image));
-  return image.width > 0 && image.height > 0;
-}
-
-bool isColor(const Material& material, std::uint32_t slot) {
-  return slot == shaders::SLOT_BASE_COLOR || slot == shaders::SLOT_EMISSIVE || slot == shaders::SLOT_SPECULAR_COLOR ||
-         slot == shaders::SLOT_SHEEN_COLOR || (slot == shaders::SLOT_METALLIC_ROUGHNESS && material.specularGlossiness);
-}
-
-bool isTranslucent(const Image& image) {
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
-    if (image.rgba[i] != 255) return true;
-  }
-  return false;
-}
-
-// Texels in linear light, times alpha, as 16-bit floats: 8 bits on the sRGB curve would leave little of the colours at
-// low alpha.
-std::vector<std::uint16_t> premultiply(const Image& image) {
-  std::array<float, 256> linear{};
-  for (std::size_t i = 0; i < linear.size(); ++i) {
-    linear.at(i) = linearFromSrgb(glm::vec3(static_cast<float>(i) / 255.0F)).r;
-  }
-  std::vector<std::uint16_t> products(std::size_t{256} * 256); // by alpha and colour
-  for (std::size_t i = 0; i < products.size(); ++i) {
-    products[i] = glm::packHalf1x16(linear.at(i % 256) * (static_cast<float>(i / 256) / 255.0F));
-  }
-  std::vector<std::uint16_t> texels(image.rgba.size());
-  for (std::size_t i = 0; i + 3 < texels.size(); i += 4) {
-    const std::size_t alpha = image.rgba[i + 3];
-    for (std::size_t c = i; c < i + 3; ++c) texels[c] = products[alpha * 256 + image.rgba[c]];
-    texels[i + 3] = glm::packHalf1x16(static_cast<float>(alpha) / 255.0F);
-  }
-  return texels;
-}
 
 VkSamplerAddressMode addressMode(Wrap wrap) {
   switch (wrap) {
@@ -91,8 +51,7 @@ MaterialTextures::MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& sc
       premultiplied_.insert(material);
     }
     for (std::uint32_t i = 0; i < shaders::SLOT_COUNT; ++i) {
-      Texels texels = isColor(source, i) ? Texels::Srgb : Texels::Linear;
-      if (i == shaders::SLOT_BASE_COLOR && isPremultiplied(material)) texels = Texels::Premultiplied;
+      const Texels texels = texelsOf(source, i, isPremultiplied(material));
       combination.at(i) = slotTexture(uploader, scene, *slots.at(i), texels);
     }
     const auto [found, isNew] = known.try_emplace(combination, combinations.size());
@@ -100,15 +59,6 @@ MaterialTextures::MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& sc
     setOfMaterial_[material] = found->second;
   }
   createSets(combinations);
-}
-
-std::uint32_t MaterialTextures::filledSlots(const Scene& scene, const Material& material) {
-  const auto slots = slotsOf(material);
-  std::uint32_t filled = 0;
-  for (std::uint32_t i = 0; i < shaders::SLOT_COUNT; ++i) {
-    if (isFilled(scene, *slots.at(i))) filled |= 1U << i;
-  }
-  return filled;
 }
 
 bool MaterialTextures::hasAlpha(const Scene& scene, const TextureSlot& slot) {

@@ -13,6 +13,7 @@
 #include "../gpu/upload.h"
 #include "../scene/scene.h"
 #include "surface_shared.h"
+#include "texels.h"
 
 namespace vitrail::tool {
 
@@ -27,16 +28,11 @@ class MaterialTextures {
   // The set of a material that was named in `used`.
   VkDescriptorSet set(std::uint32_t material) const { return sets_.at(setOfMaterial_.at(material)); }
 
-  // One bit a slot, as in surface_shared.h: which slots a material fills.
-  static std::uint32_t filledSlots(const Scene& scene, const Material& material);
-
   // Whether the base colour texture of a material that was named in `used` is kept premultiplied: where its alpha
   // counts and is not 1 everywhere.
   bool isPremultiplied(std::uint32_t material) const { return premultiplied_.contains(material); }
 
  private:
-  // How an image's texels are kept: its numbers; on the sRGB curve, colours; those in linear light times alpha.
-  enum class Texels { Linear, Srgb, Premultiplied };
   using Combination = std::array<std::pair<VkImageView, VkSampler>, shaders::SLOT_COUNT>;
 
   void createLayout();

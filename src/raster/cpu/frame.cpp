@@ -42,21 +42,22 @@ ClipVertex clipVertexOf(const DrawInfo& info, std::uint32_t vertex) {
       reinterpret_cast<const unsigned char*>(draw.positions) + std::uint64_t{vertex} * draw.vertexStride;
   std::array<float, 4> p{0.0F, 0.0F, 0.0F, 1.0F};
   std::memcpy(p.data(), bytes, draw.components * sizeof(float));
+  // In the order in which the vectors of placeVertices() add.
+  if (const float* m = draw.model) {
+    const std::array<float, 4> q = p;
+    for (std::size_t row = 0; row < 3; ++row, m += 4)
+      p[row] = ((m[3] * q[3] + m[2] * q[2]) + m[1] * q[1]) + m[0] * q[0];
+  }
   ClipVertex made;
   made.position = p;
-  if (draw.transform != nullptr) {
-    const float* m = draw.transform;
-    // In the order in which the vectors of placeVertices() add.
-    for (std::size_t row = 0; row < 4; ++row) {
-      float sum = m[row] * p[0];
-      sum = sum + m[4 + row] * p[1];
-      sum = sum + m[8 + row] * p[2];
-      made.position[row] = sum + m[12 + row] * p[3];
+  if (const float* m = draw.transform) {
+    for (std::size_t row = 0; row < 4; ++row, ++m) {
+      made.position[row] = ((m[12] * p[3] + m[8] * p[2]) + m[4] * p[1]) + m[0] * p[0];
     }
   }
   for (std::uint32_t i = 0; i < draw.clipPlaneCount; ++i) {
     const float* plane = draw.clipPlanes + std::size_t{4} * i;
-    made.distances[i] = plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] * p[3];
+    made.distances[i] = ((plane[3] * p[3] + plane[2] * p[2]) + plane[1] * p[1]) + plane[0] * p[0];
   }
   return made;
 }

@@ -82,7 +82,7 @@ HWY_INLINE std::uint32_t cutByPlanes(const VitrailCpuDraw& draw, const F& x, con
   M kept = set(0.0F) == set(0.0F);
   for (std::uint32_t i = 0; i < draw.clipPlaneCount; ++i) {
     const float* p = draw.clipPlanes + std::size_t{4} * i;
-    kept = kept & (set(p[0]) * x + set(p[1]) * y + set(p[2]) * z + set(p[3]) * w >= set(0.0F));
+    kept = kept & (((set(p[3]) * w + set(p[2]) * z) + set(p[1]) * y) + set(p[0]) * x >= set(0.0F));
   }
   return ~bitsOf(kept) & 0xffffU;
 }
@@ -90,19 +90,27 @@ HWY_INLINE std::uint32_t cutByPlanes(const VitrailCpuDraw& draw, const F& x, con
 inline void placeVertices(Frame& frame, const VertexChunk& chunk) {
   const DrawInfo& info = frame.draws[chunk.draw];
   const VitrailCpuDraw& draw = info.draw;
-  const float* m = draw.transform;
   Vertices vertices;
   for (std::uint32_t done = 0; done < chunk.count; done += kLanes) {
     const std::uint32_t count = std::min<std::uint32_t>(kLanes, chunk.count - done);
     fetchVertices(draw, chunk.first + done, count, vertices);
     F p[4];
     for (std::size_t c = 0; c < 4; ++c) p[c] = load(vertices.value[c]);
+    if (const float* m = draw.model) {
+      F moved[3];
+      for (F& v : moved) {
+        v = ((set(m[3]) * p[3] + set(m[2]) * p[2]) + set(m[1]) * p[1]) + set(m[0]) * p[0];
+        m += 4;
+      }
+      for (std::size_t c = 0; c < 3; ++c) p[c] = moved[c];
+    }
     const std::uint32_t cut = draw.clipPlaneCount == 0 ? 0 : cutByPlanes(draw, p[0], p[1], p[2], p[3]);
-    F q[4];
-    for (std::size_t row = 0; row < 4; ++row) {
-      q[row] = m == nullptr
-                   ? p[row]
-                   : set(m[row]) * p[0] + set(m[4 + row]) * p[1] + set(m[8 + row]) * p[2] + set(m[12 + row]) * p[3];
+    F q[4] = {p[0], p[1], p[2], p[3]};
+    if (const float* m = draw.transform) {
+      for (F& v : q) {
+        v = ((set(m[12]) * p[3] + set(m[8]) * p[2]) + set(m[4]) * p[1]) + set(m[0]) * p[0];
+        ++m;
+      }
     }
     placeSixteen(frame.viewport, q[0], q[1], q[2], q[3], cut, count,
                  &frame.corners[info.firstVertex + chunk.first + done]);

@@ -550,8 +550,8 @@ HWY_INLINE void TileWorker::emitOpaque(const Frame& frame, std::uint32_t item) {
   const VitrailCpuDraw& draw = frame.draws[frame.jobs[number >> kJobBits].draw].draw;
   if ((draw.shadeFlags & VITRAIL_CPU_SHADE_DISCARD) != 0) {
     ToShade s;
-    s.x = static_cast<std::uint32_t>(tile_.x) + block % kBlocksAcross * kBlockSide;
-    s.y = static_cast<std::uint32_t>(tile_.y) + block / kBlocksAcross * kBlockSide;
+    s.x = frame.info.originX + static_cast<std::uint32_t>(tile_.x) + block % kBlocksAcross * kBlockSide;
+    s.y = frame.info.originY + static_cast<std::uint32_t>(tile_.y) + block / kBlocksAcross * kBlockSide;
     s.numbers = set(batch_.number[t]);
     s.present = maskOf(mask);
     s.depth = depthOf(centre, frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE);
@@ -594,8 +594,8 @@ inline void TileWorker::shadeOpaque(const Frame& frame, std::uint32_t block) {
     const OpaqueTile::Surface& shown = opaque_->shown[s];
     const I number = load(shown.number[block]);
     ToShade job;
-    job.x = static_cast<std::uint32_t>(tile_.x) + block % kBlocksAcross * kBlockSide;
-    job.y = static_cast<std::uint32_t>(tile_.y) + block / kBlocksAcross * kBlockSide;
+    job.x = frame.info.originX + static_cast<std::uint32_t>(tile_.x) + block % kBlocksAcross * kBlockSide;
+    job.y = frame.info.originY + static_cast<std::uint32_t>(tile_.y) + block / kBlocksAcross * kBlockSide;
     job.present = maskOf(left[s]);
     // Where there is none, any number that exists.
     const auto lane = static_cast<std::uint32_t>(__builtin_ctz(left[s]));
@@ -928,8 +928,8 @@ inline bool TileWorker::isHidden(const Frame& frame, const State& state) {
 inline void TileWorker::shadeBlock(const Frame& frame, std::uint32_t block) {
   store_.collect(block, rows_);
   if (!frame.needs.shaded) return;
-  const std::uint32_t x = static_cast<std::uint32_t>(tile_.x) + block % kBlocksAcross * kBlockSide;
-  const std::uint32_t y = static_cast<std::uint32_t>(tile_.y) + block / kBlocksAcross * kBlockSide;
+  const std::uint32_t x = frame.info.originX + static_cast<std::uint32_t>(tile_.x) + block % kBlocksAcross * kBlockSide;
+  const std::uint32_t y = frame.info.originY + static_cast<std::uint32_t>(tile_.y) + block / kBlocksAcross * kBlockSide;
   for (std::size_t r = store_.shadedRows(block); r < rows_.size(); ++r) shadeRow(frame, rows_[r], x, y, fragments_);
   store_.setShaded(block);
 }
@@ -1129,8 +1129,8 @@ inline void TileWorker::listBlock(const Frame& frame, std::uint32_t block, const
     for (std::uint32_t s = 0; s < samples; ++s) {
       for (std::size_t c = 0; c < 4; ++c) color[4 * s + c] = behindColors[s][c][lane];
     }
-    const int isBlended =
-        frame.info.list(frame.info.listUser, x, y, list_.data(), static_cast<std::uint32_t>(list_.size()), color);
+    const int isBlended = frame.info.list(frame.info.listUser, frame.info.originX + x, frame.info.originY + y,
+                                          list_.data(), static_cast<std::uint32_t>(list_.size()), color);
     if (isBlended == 0) continue;
     for (std::size_t c = 0; c < 4; ++c) {
       float sum = 0.0F;

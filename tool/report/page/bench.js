@@ -36,7 +36,7 @@
 
   const MEASURES = [
     { id: "ratio", title: "Cost, times unsorted", of: (m) => m.cost_ratio, text: ratio },
-    ...(report.cpu ? [] : [{ id: "cost", title: "Cost, ms", of: (m) => m.cost_ms.median, text: (v) => v.toFixed(3) }]),
+    ...(report.cpu && report.api !== "CPU" ? [] : [{ id: "cost", title: "Cost, ms", of: (m) => m.cost_ms.median, text: (v) => v.toFixed(3) }]),
     { id: "memory", title: "Memory, MiB", of: (m) => m.memory_bytes / MIB, text: (v) => v.toFixed(1) },
   ];
 

@@ -33,7 +33,7 @@
 
   function fillTable() {
     const columns = ["method", "PSNR", "SSIM", "FLIP", "worst", "off", "cost", "frame"];
-    if (!report.cpu) columns.push("cost, ms", "frame, ms");
+    if (!report.cpu || report.api === "CPU") columns.push("cost, ms", "frame, ms");
     columns.push("memory, MiB");
     const table = byId("table");
     const head = add(add(table, "thead"), "tr");
@@ -46,7 +46,7 @@
       add(row, "td", psnr(m.psnr_db), m.psnr_db === null ? { class: "equal" } : {});
       const texts = [ssim(m.ssim), flip(m.flip), worst(m.worst), share(m.off_share), ratio(method.cost_ratio),
         ratio(method.frame_ratio)];
-      if (!report.cpu) texts.push(method.cost_ms.median.toFixed(3), method.frame_ms.median.toFixed(3));
+      if (!report.cpu || report.api === "CPU") texts.push(method.cost_ms.median.toFixed(3), method.frame_ms.median.toFixed(3));
       texts.push((method.memory_bytes / MIB).toFixed(1));
       for (const text of texts) add(row, "td", text);
     }

@@ -17,7 +17,7 @@ const ratio = (value) => (value === null ? "–" : value.toFixed(2) + "×");
 
 function machineText(report) {
   return `${report.device} (${report.driver}), ${report.api}; medians of ${report.repeats} ${report.repeats === 1 ? "round" : "rounds"}.` +
-    (report.cpu ? " This device is a CPU, whose times are the machine's: ratios alone are shown." : "");
+    (report.cpu && report.api !== "CPU" ? " This device is a CPU, whose times are the machine's: ratios alone are shown." : "");
 }
 
 function chartColors() {

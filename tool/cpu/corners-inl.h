@@ -1,0 +1,194 @@
+// The corners of the triangles that a call shades, and what is interpolated between them. Included once a target.
+//
+// A call's sixteen fragments belong to few triangles. What their corners have is fetched and unpacked once a triangle,
+// into an array of three numbers each for every attribute, from which each fragment takes its own three.
+#if defined(VITRAIL_TOOL_CPU_CORNERS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRAIL_TOOL_CPU_CORNERS_INL_H
+#undef VITRAIL_TOOL_CPU_CORNERS_INL_H
+#else
+#define VITRAIL_TOOL_CPU_CORNERS_INL_H
+#endif
+
+#include "lanes-inl.h"
+#include "shade.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrail::tool {
+namespace HWY_NAMESPACE {
+
+constexpr std::size_t kMostCorners = 3 * VITRAIL_CPU_LANES;
+
+// One number for each corner.
+struct CornerValues {
+  alignas(64) float of[kMostCorners];
+};
+
+struct Corners {
+  std::size_t count = 0;                             // three for each triangle
+  alignas(64) std::uint32_t vertex[kMostCorners];    // up to a multiple of 16 they are vertices of the draw
+  alignas(64) std::int32_t first[VITRAIL_CPU_LANES]; // by fragment: its triangle's first corner
+};
+
+HWY_INLINE std::size_t paddedCount(const Corners& corners) { return (corners.count + 15U) & ~std::size_t{15}; }
+
+// Finds the triangles of all fragments that are wanted. The others are given the first one.
+HWY_INLINE void findCorners(const VitrailCpuFragments& fragments, const ShadeMesh& mesh, Corners& corners) {
+  const IntTag di;
+  const auto* triangles = reinterpret_cast<const std::int32_t*>(fragments.triangle);
+  for (std::size_t i = 0; i < VITRAIL_CPU_LANES; i += kLanes) hn::Store(hn::Zero(di), di, corners.first + i);
+  std::size_t count = 0;
+  for (std::uint32_t left = fragments.mask; left != 0; count += 3) {
+    const std::uint32_t triangle = fragments.triangle[hwy::Num0BitsBelowLS1Bit_Nonzero32(left)];
+    std::uint32_t same = 0;
+    for (std::size_t i = 0; i < VITRAIL_CPU_LANES; i += kLanes) {
+      const auto equal = hn::LoadU(di, triangles + i) == setInt(static_cast<std::int32_t>(triangle));
+      same |= bitsOf(di, equal, i);
+      const VI first = loadInt(corners.first + i);
+      hn::Store(hn::IfThenElse(equal, setInt(static_cast<std::int32_t>(count)), first), di, corners.first + i);
+    }
+    left &= ~same;
+    // Lines and points stand for triangles whose further corners are the first one again.
+    const std::uint32_t* indices = mesh.indices + std::size_t{triangle} * mesh.corners;
+    corners.vertex[count] = indices[0];
+    corners.vertex[count + 1] = indices[mesh.corners > 1 ? 1 : 0];
+    corners.vertex[count + 2] = indices[mesh.corners > 2 ? 2 : 0];
+  }
+  corners.count = count;
+  for (std::size_t i = count; i < paddedCount(corners); ++i) corners.vertex[i] = corners.vertex[0];
+}
+
+// Where the fragments of some lanes are: their triangles and the weights of its corners.
+struct Places {
+  VI first;
+  V weight, second, third;
+};
+
+HWY_INLINE Places placesOf(const VitrailCpuFragments& fragments, const Corners& corners, const ShadeMesh& mesh,
+                           std::size_t lane) {
+  const Tag d;
+  const V second = mesh.corners > 1 ? hn::LoadU(d, fragments.second + lane) : zero();
+  const V third = mesh.corners > 2 ? hn::LoadU(d, fragments.third + lane) : zero();
+  return {loadInt(corners.first + lane), one() - second - third, second, third};
+}
+
+// What each fragment's triangle has at a corner, 0 to 2.
+HWY_INLINE V valueAt(const Corners& corners, const CornerValues& values, VI first, std::int32_t corner) {
+  const Tag d;
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
+  // Shuffles of whole vectors: calls have five triangles on average, and their corners fit into one or two.
+  const VI at = first + setInt(corner);
+  const auto within = hn::IndicesFromVec(d, hn::And(at, setInt(static_cast<std::int32_t>(kLanes - 1))));
+  V result = hn::TableLookupLanes(load(values.of), within);
+  for (std::size_t i = kLanes; i < corners.count; i += kLanes) {
+    const M further = hn::RebindMask(d, at > setInt(static_cast<std::int32_t>(i - 1)));
+    result = select(further, hn::TableLookupLanes(load(values.of + i), within), result);
+  }
+  return result;
+#else
+  if (corners.count > 12) return hn::GatherIndex(d, values.of, first + setInt(corner));
+  V result = set(values.of[corner]);
+  for (std::size_t i = 3; i < corners.count; i += 3) {
+    const M own = hn::RebindMask(d, first == setInt(static_cast<std::int32_t>(i)));
+    result = select(own, set(values.of[i + static_cast<std::size_t>(corner)]), result);
+  }
+  return result;
+#endif
+}
+
+HWY_INLINE V interpolate(const Corners& corners, const CornerValues& values, const Places& places) {
+  const V a = valueAt(corners, values, places.first, 0);
+  const V b = valueAt(corners, values, places.first, 1);
+  const V c = valueAt(corners, values, places.first, 2);
+  return mulAdd(c, places.third, mulAdd(b, places.second, a * places.weight));
+}
+
+HWY_INLINE Float3 interpolate3(const Corners& corners, const CornerValues* values, const Places& places) {
+  return {interpolate(corners, values[0], places), interpolate(corners, values[1], places),
+          interpolate(corners, values[2], places)};
+}
+
+// Fills in one number of each vertex, `values` being those of all vertices, some floats apart.
+HWY_INLINE void fetch(const Corners& corners, const float* values, std::size_t stride, CornerValues& to) {
+  for (std::size_t i = 0; i < corners.count; ++i) to.of[i] = values[corners.vertex[i] * stride];
+}
+
+// Unit vectors from their octahedral projections, each a vector of floats.
+HWY_INLINE Float3 fromOctahedral(V x, V y) {
+  const V z = one() - hn::Abs(x) - hn::Abs(y);
+  const V fold = max(hn::Neg(z), zero());
+  const Float3 v{x - hn::CopySign(fold, x), y - hn::CopySign(fold, y), z};
+  return v * inverseSqrt(dot(v, v));
+}
+
+// Fetches and unpacks what packDirection() has packed.
+HWY_INLINE void fetchDirections(const Corners& corners, const std::uint32_t* packed, CornerValues* to) {
+  const Tag d;
+  alignas(64) std::uint32_t words[kMostCorners];
+  const std::size_t count = paddedCount(corners);
+  for (std::size_t i = 0; i < count; ++i) words[i] = packed[corners.vertex[i]];
+  for (std::size_t i = 0; i < corners.count; i += kLanes) {
+    const VI word = loadInt(reinterpret_cast<const std::int32_t*>(words) + i);
+    const V scale = set(1.0F / 32767.0F);
+    const V x = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(word))) * scale;
+    const V y = hn::ConvertTo(d, hn::ShiftRight<16>(word)) * scale;
+    const Float3 v = fromOctahedral(x, y);
+    hn::Store(v.x, d, to[0].of + i);
+    hn::Store(v.y, d, to[1].of + i);
+    hn::Store(v.z, d, to[2].of + i);
+  }
+}
+
+// The same for packTangent(), with the sign.
+HWY_INLINE void fetchTangents(const Corners& corners, const std::uint32_t* packed, CornerValues* to) {
+  const Tag d;
+  const IntTag di;
+  alignas(64) std::uint32_t words[kMostCorners];
+  const std::size_t count = paddedCount(corners);
+  for (std::size_t i = 0; i < count; ++i) words[i] = packed[corners.vertex[i]];
+  for (std::size_t i = 0; i < corners.count; i += kLanes) {
+    const VI word = loadInt(reinterpret_cast<const std::int32_t*>(words) + i);
+    const V x = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(word))) * set(1.0F / 32767.0F);
+    const V y = hn::ConvertTo(d, hn::ShiftRight<17>(word)) * set(1.0F / 16383.0F);
+    const Float3 v = fromOctahedral(x, y);
+    const auto negative = hn::RebindMask(d, hn::TestBit(word, hn::Set(di, 1 << 16)));
+    hn::Store(v.x, d, to[0].of + i);
+    hn::Store(v.y, d, to[1].of + i);
+    hn::Store(v.z, d, to[2].of + i);
+    hn::Store(select(negative, set(-1.0F), one()), d, to[3].of + i);
+  }
+}
+
+// 16-bit floats in the lower halves of 32-bit numbers, not infinite: a 32-bit float has the same bits 13 places higher,
+// and an exponent that is 112 larger.
+HWY_INLINE V fromHalf(VI half) {
+  const IntTag di;
+  const VI magnitude = hn::ShiftLeft<13>(hn::And(half, setInt(0x7fff)));
+  const VI sign = hn::ShiftLeft<16>(hn::And(half, setInt(0x8000)));
+  const V value = hn::BitCast(Tag(), magnitude) * set(5.192296858534828e33F);
+  return hn::BitCast(Tag(), hn::Or(hn::BitCast(di, value), sign));
+}
+
+// The same for packColor().
+HWY_INLINE void fetchColors(const Corners& corners, const std::uint64_t* packed, CornerValues* to) {
+  const Tag d;
+  alignas(64) std::int32_t words[2][kMostCorners];
+  const std::size_t count = paddedCount(corners);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t color = packed[corners.vertex[i]];
+    words[0][i] = static_cast<std::int32_t>(color & 0xffffffffU);
+    words[1][i] = static_cast<std::int32_t>(color >> 32U);
+  }
+  for (std::size_t i = 0; i < corners.count; i += kLanes) {
+    for (std::size_t half = 0; half < 2; ++half) {
+      const VI word = loadInt(words[half] + i);
+      hn::Store(fromHalf(word), d, to[2 * half].of + i);
+      hn::Store(fromHalf(hn::ShiftRight<16>(word)), d, to[2 * half + 1].of + i);
+    }
+  }
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace vitrail::tool
+HWY_AFTER_NAMESPACE();
+
+#endif

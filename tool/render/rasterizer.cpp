@@ -1,0 +1,70 @@
+#include "rasterizer.h"
+
+#include <fstream>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "../gpu/device.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+std::string processorName() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line) && !line.empty();) { // an empty line ends the first processor's
+    const std::size_t colon = line.find(": ");
+    for (const std::string_view key : {"model name", "Model", "cpu model"}) { // x86, Arm boards, others
+      if (line.starts_with(key) && colon != std::string::npos) return line.substr(colon + 2);
+    }
+  }
+  return "processor";
+}
+
+const char* nameOf(VitrailCpuInstructions instructions) {
+  switch (instructions) {
+    case VITRAIL_CPU_SSE4:
+      return "SSE4";
+    case VITRAIL_CPU_AVX2:
+      return "AVX2";
+    case VITRAIL_CPU_AVX512:
+      return "AVX-512";
+    case VITRAIL_CPU_NEON:
+      return "NEON";
+    default:
+      return "baseline";
+  }
+}
+
+} // namespace
+
+Rasterizer::Rasterizer() {
+  VitrailCpuContextDesc desc{};
+  desc.log = [](VitrailLogSeverity severity, const char* message, void* user) {
+    if (severity == VITRAIL_LOG_ERROR) static_cast<Rasterizer*>(user)->reason_ = message;
+  };
+  desc.logUser = this;
+  check(vitrailCpuCreateContext(&desc, &context_));
+}
+
+Rasterizer::~Rasterizer() { vitrailCpuDestroyContext(context_); }
+
+void Rasterizer::render(const VitrailCpuFrame& frame, std::span<const VitrailCpuDraw> draws, VitrailStats& stats) {
+  check(vitrailCpuRender(context_, &frame, draws.data(), static_cast<std::uint32_t>(draws.size()), &stats));
+}
+
+std::uint32_t Rasterizer::threads() const { return vitrailCpuContextThreads(context_); }
+
+std::string Rasterizer::name() const {
+  return fmt::format("{} ({}, {} {})", processorName(), nameOf(vitrailCpuContextInstructions(context_)), threads(),
+                     threads() == 1 ? "thread" : "threads");
+}
+
+void Rasterizer::check(VitrailResult result) {
+  if (result == VITRAIL_SUCCESS) return;
+  const std::string unknown = result == VITRAIL_ERROR_OUT_OF_MEMORY ? "out of memory" : "no reason was given";
+  throw GpuError("the processor cannot draw this: " + (reason_.empty() ? unknown : reason_));
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,33 @@
+// The library's rasteriser for CPUs, as the tool calls it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <vitrail/cpu.h>
+
+namespace vitrail::tool {
+
+// A context with all its defaults. Its errors become GpuErrors that say the reason.
+class Rasterizer {
+ public:
+  Rasterizer();
+  ~Rasterizer();
+  Rasterizer(const Rasterizer&) = delete;
+  Rasterizer& operator=(const Rasterizer&) = delete;
+
+  void render(const VitrailCpuFrame& frame, std::span<const VitrailCpuDraw> draws, VitrailStats& stats);
+
+  [[nodiscard]] std::uint32_t threads() const;
+  // The processor, as the system names it, its vector instructions and the threads: "AMD EPYC (AVX2, 2 threads)".
+  [[nodiscard]] std::string name() const;
+
+ private:
+  void check(VitrailResult result);
+
+  VitrailCpuContext context_ = nullptr;
+  std::string reason_; // of the last error
+};
+
+} // namespace vitrail::tool
