@@ -131,6 +131,7 @@ void setDefaults(VitrailCpuDraw& draw) {
   if (draw.components == 0) draw.components = 4;
   if (draw.vertexStride == 0) draw.vertexStride = draw.components * static_cast<std::uint32_t>(sizeof(float));
   if (draw.pointSize == 0.0F) draw.pointSize = 1.0F;
+  if (draw.topology != VITRAIL_CPU_TRIANGLES) draw.cull = VITRAIL_CPU_CULL_NONE; // they have no sides
   const auto clamp = [](float v, float most) { return v > 0.0F ? std::min(v, most) : 0.0F; };
   for (std::size_t c = 0; c < 3; ++c) draw.color[c] = clamp(draw.color[c], kBrightest);
   draw.color[3] = clamp(draw.color[3], 1.0F);
