@@ -253,8 +253,8 @@ typedef struct VitrailCpuFrame {
   VitrailCpuProgress progress; /* optional */
   void* progressUser;
   /* Bytes that the fragments of all tiles in work may take, at least 65536: where they need more, a tile is drawn in
-   * parts and layers, for the same picture. Default: 4 MiB a thread. Beside it a frame takes about 20 bytes a vertex
-   * and 5 bytes a triangle. */
+   * parts and layers, for the same picture. Default: 256 MiB, or 4 MiB a thread where that is more; tiles that
+   * need little touch little of it. Beside it a frame takes about 20 bytes a vertex and 5 bytes a triangle. */
   uint64_t memoryBudget;
 } VitrailCpuFrame;
 
@@ -273,6 +273,9 @@ typedef struct VitrailCpuFrame {
  * part of the picture. */
 VITRAIL_API VitrailResult vitrailCpuRender(VitrailCpuContext context, const VitrailCpuFrame* frame,
                                            const VitrailCpuDraw* draws, uint32_t drawCount, VitrailStats* stats);
+
+/* The most bytes that fragments took in the context's last frame, of all threads together. */
+VITRAIL_API uint64_t vitrailCpuFragmentBytes(VitrailCpuContext context);
 
 #ifdef __cplusplus
 }

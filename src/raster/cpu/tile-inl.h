@@ -99,6 +99,7 @@ class TileWorker final : public TileWorkspace {
   }
 
   void draw(const Frame& frame, std::uint32_t tile, TileCounts& counts);
+  std::uint64_t fragmentBytes() const override { return store_.peakBytes(); }
 
  private:
   // Which part of a block's fragments a pass takes: those beyond `after` and before `until`, as keys. Fragments from
