@@ -60,7 +60,7 @@ VitrailResult guarded(const Log& log, const char* doing, Function function) {
     return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory is left for %s", doing);
   } catch (const std::length_error&) {
     return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory is left for %s", doing);
-  } catch (const std::exception& error) { // oneTBB's, where the system refuses a thread
+  } catch (const std::exception& error) { // std::system_error, where the system refuses a thread
     return log.fail(VITRAIL_ERROR_UNSUPPORTED, "a thread could not be started: %s: use fewer threads", error.what());
   }
 }

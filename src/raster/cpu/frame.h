@@ -148,6 +148,7 @@ struct TileBox {
   std::int32_t y = 0;
   std::int32_t lastX = 0; // of its last one, within the tile
   std::int32_t lastY = 0;
+  std::array<std::uint16_t, kBlocks> pixels{}; // of each block: those within the frame, a bit each
 };
 
 // Memory of one thread that works on tiles; kept from tile to tile and from frame to frame.

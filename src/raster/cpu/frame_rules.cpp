@@ -246,6 +246,7 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
   frame.needs.shaded = frame.info.samples > 1 || info.list != nullptr;
   frame.needs.opaque = info.depth != nullptr;
   float brightest = std::max(1.0F, frame.info.brightest);
+  bool isBrightened = false; // filters make light brighter: what is behind too little of it may be seen after all
   std::uint64_t vertices = 0;
   for (std::uint32_t i = 0; i < draws.size(); ++i) {
     DrawInfo made;
@@ -256,6 +257,8 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
     frame.draws.push_back(made);
     if (made.primitives > 0) {
       addNeeds(frame.needs, made.draw);
+      const bool filters = made.draw.surface == VITRAIL_CPU_TRANSPARENT && made.draw.blend == VITRAIL_BLEND_MULTIPLY;
+      isBrightened = isBrightened || (filters && made.draw.brightest > 1.0F);
       brightest = std::max(brightest, made.draw.brightest);
     }
     addFlatPair(frame, made.draw);
@@ -263,7 +266,7 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
   }
   frame.flatPairs.push_back({0.0F, 0.0F, 0.0F, 0.0F});
   frame.flatFilters.push_back({1.0F, 1.0F, 1.0F, 0.0F});
-  frame.leastTransmittance = info.list != nullptr ? 0.0F : kLeastTransmittance / brightest;
+  frame.leastTransmittance = info.list != nullptr || isBrightened ? 0.0F : kLeastTransmittance / brightest;
   frame.corners.resize(vertices);
 }
 

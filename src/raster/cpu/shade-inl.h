@@ -47,7 +47,7 @@ HWY_INLINE Pairs pairsOf(const VitrailCpuDraw& draw, const VitrailCpuFragments& 
       pairs.isNothing = pairs.isNothing & (color == zero);
     } else {
       pairs.color[c] = zero;
-      pairs.filter[c] = fma(alpha, color - one, one);
+      pairs.filter[c] = fma(alpha, min(color, set(draw.brightest)) - one, one);
     }
     if (filters && (draw.shadeFlags & VITRAIL_CPU_SHADE_FILTER) != 0) {
       const F filter = clamped(load(f.filter[c]), kLargestColor);
@@ -109,7 +109,7 @@ HWY_INLINE void shadeAll(const Frame& frame, const ToShade& s, bool derivatives,
     std::uint32_t mask = bitsOf(same) & left;
     if (mask != every) {
       const auto first = static_cast<std::int32_t>(info.firstJob);
-      const auto last = static_cast<std::int32_t>(first + (info.primitives - 1) / kJobTriangles);
+      const auto last = first + static_cast<std::int32_t>((info.primitives - 1) / kJobTriangles);
       same = andNot((set(first) > jobs) | (jobs > set(last)), jobs == jobs);
       triangles = shiftLeft<kJobBits>(jobs - set(first)) + within;
       triangles = select(
