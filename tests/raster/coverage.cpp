@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 
 namespace vitrail::tests::raster {
 
@@ -29,12 +28,13 @@ void shadeNumber(void* /*user*/, VitrailCpuFragments* f) {
 struct Taker {
   Sums* sums;
   std::uint32_t width;
+  std::uint32_t origin;
 };
 
 int takeList(void* user, std::uint32_t x, std::uint32_t y, const VitrailLayer* layers, std::uint32_t count,
              float* /*color*/) {
   const Taker& taker = *static_cast<Taker*>(user);
-  PixelSum& sum = (*taker.sums)[std::size_t{y} * taker.width + x];
+  PixelSum& sum = (*taker.sums)[std::size_t{y - taker.origin} * taker.width + (x - taker.origin)];
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto low = static_cast<std::uint32_t>(layers[i].color[0]);
     const auto high = static_cast<std::uint32_t>(layers[i].color[1]);
@@ -214,7 +214,7 @@ const std::vector<TriangleKind>& triangleKinds() {
 
 Sums coveredBy(Raster& raster, const CoverageFrame& coverage) {
   Sums sums(coverage.pixels());
-  Taker taker{&sums, coverage.width};
+  Taker taker{&sums, coverage.width, coverage.origin};
   Picture picture(coverage.width, coverage.height);
   VitrailCpuFrame frame = picture.frame();
   frame.samples = coverage.samples;
@@ -342,11 +342,6 @@ Distances distancesOf(const CoverageFrame& frame, const std::function<Sums(const
     }
   }
   return distances;
-}
-
-std::uint32_t roundsOfTests() {
-  const char* rounds = std::getenv("VITRAIL_TEST_FRAMES");
-  return rounds == nullptr ? 1 : static_cast<std::uint32_t>(std::max(1, std::atoi(rounds)));
 }
 
 std::size_t differences(const Sums& a, const Sums& b) {

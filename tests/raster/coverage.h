@@ -47,9 +47,6 @@ Sums coveredBy(Raster& raster, const CoverageFrame& frame);
 // What the scalar rules say of corners that scalar code has rounded, pixel by pixel.
 Sums coveredByRules(const CoverageFrame& frame);
 
-// How often random frames are drawn: VITRAIL_TEST_FRAMES, for long runs by hand.
-std::uint32_t roundsOfTests();
-
 // How many pixels differ.
 std::size_t differences(const Sums& a, const Sums& b);
 

@@ -1,5 +1,7 @@
 #include "host.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 namespace vitrail::tests::raster {
@@ -75,6 +77,11 @@ VitrailCpuFrame Picture::frame() {
   frame.height = height;
   frame.color = pixels.data();
   return frame;
+}
+
+std::uint32_t roundsOfTests() {
+  const char* rounds = std::getenv("VITRAIL_TEST_FRAMES");
+  return rounds == nullptr ? 1 : static_cast<std::uint32_t>(std::max(1, std::atoi(rounds)));
 }
 
 VitrailCpuDraw drawOf(const std::vector<Position>& positions) {

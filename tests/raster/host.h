@@ -58,6 +58,9 @@ VitrailCpuDraw drawOf(const std::vector<Position>& positions);
 // Clip space of a place in pixels of a picture, with y down.
 Position inPixels(std::uint32_t width, std::uint32_t height, double x, double y, float depth = 0.5F, float w = 1.0F);
 
+// How often random frames are drawn: VITRAIL_TEST_FRAMES, for long runs by hand.
+std::uint32_t roundsOfTests();
+
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}

@@ -19,6 +19,9 @@ using vitrail::raster::Viewport;
 // Depths that are nearer to each other are in an order that floats decide.
 constexpr double kDepthNoise = 2e-6;
 
+// Pixels that are less certain are not compared.
+constexpr double kMostNoise = 1e-3;
+
 struct Part { // of a primitive
   Piece piece;
   Edges edges;
@@ -45,15 +48,22 @@ ClipVertex vertexOf(const VitrailCpuDraw& draw, std::uint32_t corner) {
   std::array<float, 4> p{0.0F, 0.0F, 0.0F, 1.0F};
   std::memcpy(p.data(), reinterpret_cast<const unsigned char*>(draw.positions) + stride * index,
               components * sizeof(float));
+  // Sums from w to x, in floats: corners have to be the same to the bit.
+  const auto sum = [](const std::array<float, 4>& m, const std::array<float, 4>& v) {
+    return ((m[3] * v[3] + m[2] * v[2]) + m[1] * v[1]) + m[0] * v[0];
+  };
+  if (const float* m = draw.model) {
+    p = {sum({m[0], m[1], m[2], m[3]}, p), sum({m[4], m[5], m[6], m[7]}, p), sum({m[8], m[9], m[10], m[11]}, p), p[3]};
+  }
   ClipVertex vertex;
   vertex.position = p;
   for (std::size_t row = 0; draw.transform != nullptr && row < 4; ++row) {
     const float* m = draw.transform + row;
-    vertex.position[row] = m[0] * p[0] + m[4] * p[1] + m[8] * p[2] + m[12] * p[3];
+    vertex.position[row] = sum({m[0], m[4], m[8], m[12]}, p);
   }
   for (std::size_t i = 0; i < draw.clipPlaneCount; ++i) {
     const float* plane = draw.clipPlanes + 4 * i;
-    vertex.distances[i] = plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] * p[3];
+    vertex.distances[i] = sum({plane[0], plane[1], plane[2], plane[3]}, p);
   }
   return vertex;
 }
@@ -85,7 +95,8 @@ std::vector<Part> partsOf(const Scene& scene, const Viewport& viewport) {
     for (std::uint32_t primitive = 0; primitive < count; ++primitive) {
       for (const Piece& piece : piecesOf(viewport, draw, primitive).all()) {
         Part part{piece, vitrail::raster::edgesOf(piece.corners[0], piece.corners[1], piece.corners[2]), d, primitive};
-        const bool isCulled = draw.cull == (part.edges.front ? VITRAIL_CPU_CULL_FRONT : VITRAIL_CPU_CULL_BACK);
+        const bool isCulled = draw.topology == VITRAIL_CPU_TRIANGLES &&
+                              draw.cull == (part.edges.front ? VITRAIL_CPU_CULL_FRONT : VITRAIL_CPU_CULL_BACK);
         if (part.edges.area > 0 && !isCulled) parts.push_back(part);
       }
     }
@@ -136,11 +147,28 @@ class PixelReference {
   double distanceOf(double depth) const {
     return scene_.frame.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE ? 1.0 - depth : depth;
   }
+  std::array<double, 3> centreShares(const Part& part) const {
+    return sharesAt(part, std::int64_t{x_} * 256 + 128, std::int64_t{y_} * 256 + 128);
+  }
   Surface<double> surfaceOf(const Part& part) const;
   double sampleDistance(const Part& part, std::uint32_t sample) const;
   void readBehind();
   void addOpaque(const Part& part, std::uint32_t covered);
   void addTransparent(const Part& part, std::uint32_t covered);
+  // A centre far out of a sliver, or corners of very different w: what is off by a rounding is off by many times that.
+  void judge(const Part& part, const Surface<double>& s) {
+    const std::array<double, 3> shares = centreShares(part);
+    double share = 1.0;
+    double most = 0.0;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double w = double{part.piece.corners[i].inverseW};
+      share = std::max(share, std::fabs(shares[i]));
+      most = std::max(most, w);
+      sum += shares[i] * w;
+    }
+    noise_ += 0x1.0p-21 * share * most / std::fabs(sum) * std::max({1.0, std::fabs(s.second), std::fabs(s.third)});
+  }
   void compare(double a, double b) { isUndecided_ = isUndecided_ || std::fabs(a - b) < kDepthNoise; }
   Color blend();
 
@@ -152,10 +180,12 @@ class PixelReference {
   std::vector<Nearest> nearest_;
   std::vector<Layer> layers_;
   bool isUndecided_ = false;
+  double noise_ = 0.0;
+  std::pair<std::uint32_t, std::uint32_t> lastOpaque_{~0U, 0}; // draw and primitive
 };
 
 Surface<double> PixelReference::surfaceOf(const Part& part) const {
-  const std::array<double, 3> shares = sharesAt(part, std::int64_t{x_} * 256 + 128, std::int64_t{y_} * 256 + 128);
+  const std::array<double, 3> shares = centreShares(part);
   const Piece& piece = part.piece;
   double sum = 0.0;
   Surface<double> s;
@@ -167,8 +197,8 @@ Surface<double> PixelReference::surfaceOf(const Part& part) const {
   }
   s.second /= sum;
   s.third /= sum;
-  s.x = x_;
-  s.y = y_;
+  s.x = scene_.frame.originX + x_;
+  s.y = scene_.frame.originY + y_;
   s.triangle = part.primitive;
   s.front = part.edges.front;
   s.depth = depthAt(part, shares);
@@ -200,6 +230,10 @@ void PixelReference::readBehind() {
 void PixelReference::addOpaque(const Part& part, std::uint32_t covered) {
   const Surface<double> surface = surfaceOf(part);
   if (surface.discarded) return;
+  judge(part, surface);
+  // Of two parts of a primitive in one pixel either may be shaded for both; their corners are rounded.
+  if (samples_ > 1 && lastOpaque_ == std::pair(part.draw, part.primitive)) noise_ += 2.0 * kMostNoise;
+  lastOpaque_ = {part.draw, part.primitive};
   for (std::uint32_t s = 0; s < samples_; ++s) {
     if ((covered >> s & 1U) == 0) continue;
     const double distance = sampleDistance(part, s);
@@ -214,6 +248,7 @@ void PixelReference::addOpaque(const Part& part, std::uint32_t covered) {
 void PixelReference::addTransparent(const Part& part, std::uint32_t covered) {
   const Surface<double> surface = surfaceOf(part);
   if (surface.discarded) return;
+  judge(part, surface);
   Layer layer;
   layer.depth = distanceOf(surface.depth);
   for (std::uint32_t s = 0; s < samples_; ++s) {
@@ -230,7 +265,9 @@ void PixelReference::addTransparent(const Part& part, std::uint32_t covered) {
 Color PixelReference::blend() {
   std::stable_sort(layers_.begin(), layers_.end(), [](const Layer& a, const Layer& b) { return a.depth < b.depth; });
   for (std::size_t i = 1; i < layers_.size(); ++i) {
-    if ((layers_[i].samples & layers_[i - 1].samples) != 0) compare(layers_[i].depth, layers_[i - 1].depth);
+    for (std::size_t j = i; j-- > 0 && layers_[i].depth - layers_[j].depth < kDepthNoise;) {
+      isUndecided_ = isUndecided_ || (layers_[i].samples & layers_[j].samples) != 0;
+    }
   }
   Color mean{};
   for (std::uint32_t s = 0; s < samples_; ++s) {
@@ -260,7 +297,8 @@ void PixelReference::draw(Expected& expected) {
   }
   expected.pixels.push_back(blend());
   for (const Nearest& nearest : nearest_) expected.depth.push_back(distanceOf(nearest.depth));
-  expected.isUndecided.push_back(isUndecided_);
+  expected.isUndecided.push_back(isUndecided_ || noise_ > kMostNoise);
+  expected.noise.push_back(noise_);
   expected.layers.push_back(static_cast<std::uint32_t>(layers_.size()));
 }
 

@@ -14,6 +14,7 @@ struct Expected {
   std::vector<double> depth; // samples a pixel
   // Pixels in which two depths are so close that rounding decides which is in front.
   std::vector<bool> isUndecided;
+  std::vector<double> noise;         // what roundings of the weights may add up to
   std::vector<std::uint32_t> layers; // transparent fragments in front of opaque surfaces
 };
 

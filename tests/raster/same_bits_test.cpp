@@ -212,6 +212,7 @@ TEST_P(SameBitsTest, ButForRoundingWithOtherInstructions) {
       each->vertices[v + 2] = components == 3 ? depth : depth * each->vertices[v + 3];
     }
     each->desc.transform = nullptr;
+    each->desc.model = nullptr;
   }
   for (float& value : made.depth) value = 0.04F * std::floor(value * 25.0F) + 0.02F;
   Raster best(VITRAIL_CPU_BEST, 1);

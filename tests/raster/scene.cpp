@@ -32,12 +32,13 @@ std::array<float, 4> randomColor(Random& random) {
 
 // A vertex within the view or near it, as a host of that clip space has it, w in the fourth.
 Position randomVertex(Random& random, const SceneOptions& options, const std::array<double, 2>& around) {
+  // With near and far planes at w of 0.1 and 1.8, or anywhere between the planes.
   const double w = options.isClipped ? random.real(-0.3, 2.0) : random.real(0.2, 2.0);
-  const double depth = options.isClipped ? random.real(-0.2, 1.2) : random.real(0.0, 1.0);
-  const double z = options.clipSpace == VITRAIL_CPU_CLIP_OPENGL ? depth * 2.0 - 1.0 : depth;
+  const double z = options.isClipped ? (w - 0.1) * 1.8 / 1.7 : random.real(0.0, 1.0) * w;
   const double x = around[0] + random.real(-0.6, 0.6);
   const double y = around[1] + random.real(-0.6, 0.6);
-  return {static_cast<float>(x * w), static_cast<float>(y * w), static_cast<float>(z * w), static_cast<float>(w)};
+  const double own = options.clipSpace == VITRAIL_CPU_CLIP_OPENGL ? z * 2.0 - w : z;
+  return {static_cast<float>(x * w), static_cast<float>(y * w), static_cast<float>(own), static_cast<float>(w)};
 }
 
 void addVertices(Random& random, const SceneOptions& options, SceneDraw& draw) {
@@ -69,6 +70,10 @@ void addVertices(Random& random, const SceneOptions& options, SceneDraw& draw) {
     draw.transform = {0.8F, 0.3F, 0.0F, 0.0F, -0.3F, 0.9F,  0.0F,  0.0F,
                       0.0F, 0.0F, 0.9F, 0.0F, 0.1F,  -0.1F, 0.05F, 1.0F};
     desc.transform = draw.transform.data();
+  }
+  if (isOdd && random.below(2) == 0) {
+    draw.model = {0.9F, 0.2F, 0.0F, 0.05F, -0.2F, 0.7F, 0.0F, 0.0F, 0.0F, 0.0F, 0.95F, 0.02F};
+    desc.model = draw.model.data();
   }
 }
 

@@ -2,6 +2,7 @@
 // evaluates in floats and the reference in doubles.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -14,7 +15,7 @@ namespace vitrail::tests::raster {
 // Where a fragment is, and what becomes of it.
 template <class Real>
 struct Surface {
-  std::uint32_t x = 0; // pixel of the frame
+  std::uint32_t x = 0; // pixel of the picture
   std::uint32_t y = 0;
   std::uint32_t triangle = 0;
   bool front = false;
@@ -36,10 +37,13 @@ struct Material {
 
   template <class Real>
   void shade(Surface<Real>& s) const {
-    const Real t = (s.second + Real(0.5) * s.third + s.depth) / Real(2.5);
+    // Where a pixel's centre lies outside of the triangle, weights go beyond 0 and 1.
+    const auto within = [](Real v) { return std::clamp(v, Real(0), Real(1)); };
+    const Real third = within(s.third);
+    const Real t = (within(s.second) + Real(0.5) * third + s.depth) / Real(2.5);
     for (std::size_t c = 0; c < 4; ++c) s.color[c] = Real(color[c]) + t * (Real(other[c]) - Real(color[c]));
     if (!s.front) s.color[0] *= Real(0.5);
-    for (std::size_t c = 0; c < 3; ++c) s.filter[c] = Real(filter[c]) * (Real(1) - Real(0.25) * s.third);
+    for (std::size_t c = 0; c < 3; ++c) s.filter[c] = Real(filter[c]) * (Real(1) - Real(0.25) * third);
     s.discarded = discardEvery > 0 && (s.x + 3 * s.y + s.triangle) % discardEvery == 0;
   }
 };
@@ -51,6 +55,7 @@ struct SceneDraw {
   std::vector<float> vertices;
   std::vector<std::uint32_t> indices;
   std::vector<float> planes;
+  std::array<float, 12> model{};
   std::array<float, 16> transform{};
   Material material;
   VitrailCpuDraw desc{}; // points to these
@@ -73,7 +78,7 @@ struct SceneOptions {
   bool hasOtherTopologies = false;
   bool hasPlanes = false;
   bool hasCulling = false;
-  bool hasOddVertices = false; // indices, strides, three components, transforms
+  bool hasOddVertices = false; // indices, strides, three components, matrices
   bool isClipped = false;      // triangles reach through the near and the far plane
   bool hasSampleColors = false;
 };

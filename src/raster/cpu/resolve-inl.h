@@ -81,20 +81,23 @@ HWY_NOINLINE void orderTies(const SortedRows& sorted, bool filters) {
     if (byPair != 0) return byPair < 0;
     return filters && std::memcmp(sorted.filters + at, sorted.filters + bt, 3 * sizeof(float)) < 0;
   };
+  const auto depthOf = [](std::uint64_t key) { return static_cast<std::uint32_t>(key >> 32U); };
   std::vector<std::uint64_t> group;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    std::size_t first = 0;
-    while (first < sorted.rows && sorted.depthKeyOf(first, lane) < static_cast<std::uint32_t>(kFarKey)) {
-      group.clear();
-      const std::uint32_t depth = sorted.depthKeyOf(first, lane);
-      while (first + group.size() < sorted.rows && sorted.depthKeyOf(first + group.size(), lane) == depth) {
-        group.push_back(sorted.keyOf(first + group.size(), lane));
-      }
-      if (group.size() > 1) {
-        std::sort(group.begin(), group.end(), before);
-        for (std::size_t i = 0; i < group.size(); ++i) sorted.setKey(first + i, lane, group[i]);
-      }
-      first += group.size();
+    std::uint64_t last = sorted.keyOf(0, lane);
+    for (std::size_t r = 1; r < sorted.rows; ++r) {
+      const std::uint64_t key = sorted.keyOf(r, lane);
+      const bool isTie = depthOf(key) == depthOf(last);
+      last = key;
+      if (!isTie) continue;
+      if (depthOf(key) >= static_cast<std::uint32_t>(kFarKey)) break;
+      const std::size_t first = r - 1;
+      group.assign(1, sorted.keyOf(first, lane));
+      for (; r < sorted.rows && depthOf(sorted.keyOf(r, lane)) == depthOf(key); ++r)
+        group.push_back(sorted.keyOf(r, lane));
+      std::sort(group.begin(), group.end(), before);
+      for (std::size_t i = 0; i < group.size(); ++i) sorted.setKey(first + i, lane, group[i]);
+      if (r < sorted.rows) last = sorted.keyOf(r, lane);
     }
   }
 }

@@ -112,9 +112,15 @@ class TileWorker final : public TileWorkspace {
 
   struct State { // of a block: what its samples come to
     Blended samples[kMaxSamples];
-    void clear(std::uint32_t count) {
-      for (std::uint32_t s = 0; s < count; ++s) samples[s].clear();
+    bool isUniform = true; // all of them the same: only the first is there
+
+    State() { samples[0].clear(); }
+    void separate(std::uint32_t count) {
+      if (!isUniform) return;
+      for (std::uint32_t s = 1; s < count; ++s) samples[s] = samples[0];
+      isUniform = false;
     }
+    const Blended& of(std::uint32_t sample) const { return samples[isUniform ? 0 : sample]; }
   };
 
   void merge(const Frame& frame, std::uint32_t tile, bool opaque);
@@ -158,9 +164,9 @@ class TileWorker final : public TileWorkspace {
   SortedRows sortBlock(const Frame& frame, std::uint32_t block);
   static void count(const std::int32_t* layers, TileCounts& counts);
   static bool isHidden(const Frame& frame, const State& state);
-  void blendInto(const Frame& frame, const SortedRows& sorted, State& state);
-  void coveragesOf(const Frame& frame, const SortedRows& sorted, std::uint32_t* coverages) const;
-  Row rowOf(const Frame& frame, const SortedRows& sorted, std::size_t r, std::size_t lane) const;
+  void blendInto(const Frame& frame, std::uint32_t block, const SortedRows& sorted, State& state);
+  void coveragesOf(const SortedRows& sorted, std::uint32_t* coverages) const;
+  Row rowOf(const SortedRows& sorted, std::size_t r, std::size_t lane) const;
   void behind(const Frame& frame, std::uint32_t block, std::uint32_t sample, F* color);
   float* pixelsOf(const Frame& frame, std::uint32_t block, std::size_t& stride) const;
   void write(const Frame& frame, std::uint32_t block, const F* color);
@@ -183,6 +189,7 @@ class TileWorker final : public TileWorkspace {
   std::array<std::array<std::uint16_t, kBatch * kBlocks + 64>, kMaxSamples> sampleMasks_{};
   // Blocks in which what is far away is known to be hidden: from which depth on, and how many fragments were left out.
   std::uint64_t saturated_ = 0;
+  std::uint64_t edges_ = 0; // blocks in which a fragment does not cover all samples of its pixel
   alignas(64) std::int32_t until_[kBlocks][kLanes];
   alignas(64) std::int32_t hidden_[kBlocks][kLanes];
   alignas(64) std::int32_t layers_[kLanes]; // fragments of each pixel of the block that was sorted last
@@ -511,9 +518,12 @@ HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, s
   }
   if (kShaded && shape_.coverage != 0) {
     I covered = set(0);
+    std::uint32_t isEdge = 0;
     for (std::uint32_t s = 0; s < frame.info.samples; ++s) {
       covered = covered | keep(maskOf(sampleMasks_[s][item]), set(static_cast<std::int32_t>(1U << s)));
+      isEdge |= mask & ~static_cast<std::uint32_t>(sampleMasks_[s][item]);
     }
+    edges_ |= static_cast<std::uint64_t>(isEdge != 0) << block;
     put(shape_.coverage, covered, set(0));
   }
   return Emitted::IsStored;
@@ -671,6 +681,7 @@ inline void TileWorker::drawOpaque(const Frame& frame, std::uint32_t tile) {
 inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, TileCounts& counts) {
   store_.reset();
   saturated_ = 0;
+  edges_ = 0;
   const bool hasFitted =
       frame.needs.shaded
           ? rasterise(frame, blocks, [&](std::uint32_t i) HWY_ATTR { return emit<true>(frame, i, nullptr); })
@@ -810,7 +821,7 @@ inline I TileWorker::saturationOf(const Frame& frame, const SortedRows& sorted) 
       keys[lane] = static_cast<std::int32_t>(sorted.depthKeyOf(r, lane));
       whole[lane] = keys[lane] < kFarKey ? 1 : 0;
       if (shape_.coverage == 0 || whole[lane] == 0) continue;
-      const std::int32_t covered = rowOf(frame, sorted, r, lane)[kLanes * shape_.coverage + lane];
+      const std::int32_t covered = rowOf(sorted, r, lane)[kLanes * shape_.coverage + lane];
       whole[lane] = static_cast<std::uint32_t>(covered) == everything ? 1 : 0;
     }
     F pair[4];
@@ -864,7 +875,6 @@ inline void TileWorker::thin(const Frame& frame, std::uint32_t block) {
 // A block whose fragments do not fit: the nearest ones are blended, then those behind them, and so on.
 inline void TileWorker::drawInWindows(const Frame& frame, std::uint32_t block, TileCounts& counts) {
   State state;
-  state.clear(frame.info.samples);
   Window window;
   std::fill(std::begin(window.after), std::end(window.after), 0);
   std::array<std::int32_t, kLanes> layers{};
@@ -890,7 +900,7 @@ inline void TileWorker::drawInWindows(const Frame& frame, std::uint32_t block, T
       if (frame.info.list != nullptr) {
         listBlock(frame, block, sorted);
       } else {
-        blendInto(frame, sorted, state);
+        blendInto(frame, block, sorted, state);
         window.isCounted = isHidden(frame, state);
       }
     }
@@ -917,7 +927,7 @@ inline void TileWorker::count(const std::int32_t* layers, TileCounts& counts) {
 // Whether nothing shows behind what was blended of a block.
 inline bool TileWorker::isHidden(const Frame& frame, const State& state) {
   const F least = set(frame.leastTransmittance);
-  for (std::uint32_t s = 0; s < frame.info.samples; ++s) {
+  for (std::uint32_t s = 0; s < (state.isUniform ? 1 : frame.info.samples); ++s) {
     const Blended& b = state.samples[s];
     if (!none(frame.needs.filters ? isAlive<true>(b, least) : isAlive<false>(b, least))) return false;
   }
@@ -977,9 +987,9 @@ inline SortedRows TileWorker::sortBlock(const Frame& frame, std::uint32_t block)
   return sorted;
 }
 
-inline void TileWorker::blendInto(const Frame& frame, const SortedRows& sorted, State& state) {
+inline void TileWorker::blendInto(const Frame& frame, std::uint32_t block, const SortedRows& sorted, State& state) {
   const float least = frame.leastTransmittance;
-  if (frame.info.samples == 1) {
+  if (state.isUniform && (edges_ >> block & 1U) == 0) {
     if (frame.needs.filters) {
       blendRows<true>(sorted, least, state.samples[0]);
     } else {
@@ -987,9 +997,10 @@ inline void TileWorker::blendInto(const Frame& frame, const SortedRows& sorted, 
     }
     return;
   }
+  state.separate(frame.info.samples);
   coverageMemory_.resize((sorted.rows + 1) * kLanes + kLanes);
   auto* coverages = aligned(coverageMemory_.data());
-  coveragesOf(frame, sorted, coverages);
+  coveragesOf(sorted, coverages);
   if (frame.needs.filters) {
     blendSamples<true>(sorted, coverages, least, frame.info.samples, state.samples);
   } else {
@@ -998,26 +1009,21 @@ inline void TileWorker::blendInto(const Frame& frame, const SortedRows& sorted, 
 }
 
 // The coverage of sorted fragments, row by row.
-inline void TileWorker::coveragesOf(const Frame& frame, const SortedRows& sorted, std::uint32_t* coverages) const {
-  const std::uint32_t everything = (1U << frame.info.samples) - 1;
+inline void TileWorker::coveragesOf(const SortedRows& sorted, std::uint32_t* coverages) const {
   for (std::size_t r = 0; r < sorted.rows; ++r) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      std::uint32_t& covered = coverages[r * kLanes + lane];
-      covered = 0;
-      if (sorted.depthKeyOf(r, lane) >= static_cast<std::uint32_t>(kFarKey)) continue;
-      covered = everything;
-      const Row row = rowOf(frame, sorted, r, lane);
-      covered &= static_cast<std::uint32_t>(row[kLanes * shape_.coverage + lane]);
+      const bool isThere = sorted.depthKeyOf(r, lane) < static_cast<std::uint32_t>(kFarKey);
+      const std::int32_t* covered = rowOf(sorted, r, lane) + kLanes * shape_.coverage;
+      coverages[r * kLanes + lane] = isThere ? static_cast<std::uint32_t>(covered[lane]) : 0;
     }
   }
 }
 
-// The row of a sorted fragment. Of flat ones, whose place is that of their draw's pair, several samples ask for more
-// (frameNeeds): they are shaded.
-inline Row TileWorker::rowOf(const Frame& /*frame*/, const SortedRows& sorted, std::size_t r, std::size_t lane) const {
-  const std::size_t vector = std::size_t{4} * sorted.placeOf(r, lane) / kLanes; // of the arena
-  const std::size_t row = vector / shape_.vectors;
-  return store_.arena() + row * shape_.vectors * kLanes;
+// The row of a sorted fragment. Of flat ones, whose place is that of their draw's pair, nobody asks: with several
+// samples or a hook everything is shaded (frame_rules.cpp).
+inline Row TileWorker::rowOf(const SortedRows& sorted, std::size_t r, std::size_t lane) const {
+  const std::size_t first = sorted.placeOf(r, lane) - placeOfFour(lane); // of the row's pairs, in units of four
+  return store_.arena() + first * 4 - kLanes * RowShape::kPairs;
 }
 
 inline void TileWorker::resolveBlock(const Frame& frame, std::uint32_t block, TileCounts& counts) {
@@ -1025,8 +1031,7 @@ inline void TileWorker::resolveBlock(const Frame& frame, std::uint32_t block, Ti
   count(layers_, counts);
   if (frame.info.list != nullptr) return listBlock(frame, block, sorted);
   State state;
-  state.clear(frame.info.samples);
-  blendInto(frame, sorted, state);
+  blendInto(frame, block, sorted, state);
   finishBlock(frame, block, &state);
 }
 
@@ -1084,9 +1089,9 @@ inline void TileWorker::blendedOver(const Frame& frame, std::uint32_t block, con
     behind(frame, block, s, color);
     if (state != nullptr) {
       if (frame.needs.filters) {
-        over<true>(state->samples[s], frame.leastTransmittance, color);
+        over<true>(state->of(s), frame.leastTransmittance, color);
       } else {
-        over<false>(state->samples[s], frame.leastTransmittance, color);
+        over<false>(state->of(s), frame.leastTransmittance, color);
       }
     }
     for (std::size_t c = 0; c < 4; ++c) sum[c] = s == 0 ? color[c] : sum[c] + color[c];
@@ -1105,8 +1110,7 @@ inline void TileWorker::finishBlock(const Frame& frame, std::uint32_t block, con
 inline void TileWorker::listBlock(const Frame& frame, std::uint32_t block, const SortedRows& sorted) {
   const std::uint32_t samples = frame.info.samples;
   State state;
-  state.clear(samples);
-  blendInto(frame, sorted, state);
+  blendInto(frame, block, sorted, state);
   alignas(64) float behindColors[kMaxSamples][4][kLanes];
   alignas(64) float result[4][kLanes];
   for (std::uint32_t s = 0; s < samples; ++s) {
@@ -1148,7 +1152,7 @@ inline void TileWorker::layersOf(const Frame& frame, const SortedRows& sorted, s
   for (std::size_t r = 0; r < sorted.rows; ++r) {
     const std::uint32_t key = sorted.depthKeyOf(r, lane);
     if (key >= static_cast<std::uint32_t>(kFarKey)) break;
-    const Row row = rowOf(frame, sorted, r, lane);
+    const Row row = rowOf(sorted, r, lane);
     const auto number = static_cast<std::uint32_t>(row[kLanes * RowShape::kNumber + lane]) & ~kFrontBit;
     const VitrailCpuDraw& draw = frame.draws[frame.jobs[number >> kJobBits].draw].draw;
     const bool isOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
