@@ -106,7 +106,7 @@ HWY_INLINE M setUpEdges(Batch& batch, std::uint32_t at, const SetUp& s, std::uin
     rejected =
         rejected | (most + (max(s.a[k], zero) + max(s.b[k], zero)) * set(static_cast<std::int32_t>(kTileSide) - 1));
   }
-  return !(zero > rejected);
+  return ~(zero > rejected);
 }
 
 HWY_INLINE void setUpValues(Batch& batch, std::uint32_t at, const F* z, const F* w, const SetUp& s,
@@ -144,7 +144,7 @@ HWY_INLINE void setUpBlocks(Batch& batch, std::uint32_t at, const I* x, const I*
   const I y0 = max(shiftRight<8>(min(y[0], min(y[1], y[2])) + up), zero);
   const I x1 = min(shiftRight<8>(max(x[0], max(x[1], x[2])) + set(reach)), set(tile.lastX));
   const I y1 = min(shiftRight<8>(max(y[0], max(y[1], y[2])) + set(reach)), set(tile.lastY));
-  const M gone = !kept | (x0 > x1) | (y0 > y1);
+  const M gone = ~kept | (x0 > x1) | (y0 > y1);
   store(batch.x0 + at, shiftRight<2>(x0));
   store(batch.y0 + at, shiftRight<2>(y0));
   store(batch.x1 + at, select(gone, set(-1), shiftRight<2>(x1)));

@@ -110,7 +110,7 @@ HWY_INLINE void shadeAll(const Frame& frame, const ToShade& s, bool derivatives,
     if (mask != every) {
       const auto first = static_cast<std::int32_t>(info.firstJob);
       const auto last = static_cast<std::int32_t>(info.firstJob + (info.primitives - 1) / kJobTriangles);
-      same = !((set(first) > jobs) | (jobs > set(last)));
+      same = ~((set(first) > jobs) | (jobs > set(last)));
       triangles = shiftLeft<kJobBits>(jobs - set(first)) + within;
       triangles = select(
           same, triangles,
