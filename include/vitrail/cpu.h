@@ -58,9 +58,10 @@ typedef enum VitrailCpuInstructions {
 typedef struct VitrailCpuContextDesc {
   const void* next; /* null */
   /* How many threads work on a frame, the caller's among them. Default: as many as the process may run on. 1: only the
-   * caller's, and none is ever started. Others are those of oneTBB, which the process shares. */
+   * caller's, and none is ever started. The others are started with the context
+   * and sleep between frames. */
   uint32_t threads;
-  VitrailCpuParallel parallel; /* optional: the host's own threads, in place of oneTBB's; `threads` is how many */
+  VitrailCpuParallel parallel; /* optional: the host's own threads, in place of the context's; `threads` is how many */
   void* parallelUser;
   VitrailCpuInstructions instructions;
   VitrailLog log; /* optional; default: silence; outlives the context */
