@@ -1,38 +1,54 @@
-# Makes the library a package: one library file, the headers, the shaders that hosts include, and what CMake and
-# pkg-config find it by. The installed tree can be moved.
+# Makes the libraries a package: a library file for each component, the headers, the shaders that hosts include, and what
+# CMake and pkg-config find them by. The installed tree can be moved.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-get_target_property(vitrail_type vitrail TYPE)
-# What a program in C links as well where the library is static: the C++ compiler's own libraries.
+# What a program in C links as well where a library is static: the C++ compiler's own libraries.
 set(vitrail_runtime "")
-if(vitrail_type STREQUAL STATIC_LIBRARY)
+if(NOT BUILD_SHARED_LIBS)
   set(vitrail_runtime ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
   list(REMOVE_ITEM vitrail_runtime ${CMAKE_C_IMPLICIT_LINK_LIBRARIES})
   list(REMOVE_DUPLICATES vitrail_runtime)
 endif()
 
-# A host sees one library: the core's objects are part of it.
-target_sources(vitrail PRIVATE $<TARGET_OBJECTS:vitrail_core>)
-add_library(vitrail::vitrail ALIAS vitrail)
-set_target_properties(
-  vitrail
-  PROPERTIES VERSION ${PROJECT_VERSION}
-             SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-             INTERFACE_INCLUDE_DIRECTORIES
-             "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include;${VITRAIL_VULKAN_INCLUDE}>;$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>"
-             INTERFACE_LINK_LIBRARIES
-             "$<INSTALL_INTERFACE:vitrail::vulkan_headers;$<$<LINK_LANGUAGE:C>:${vitrail_runtime}>>")
-if(vitrail_type STREQUAL SHARED_LIBRARY)
-  target_compile_definitions(vitrail PRIVATE VITRAIL_SHARED) # the public functions are exported,
-  target_compile_definitions(vitrail_core PRIVATE VITRAIL_SHARED) # those that need no graphics API too
-endif()
+# vitrail_component(target exported-name): a library that hosts link, as vitrail::<exported-name>. Each has the core's
+# objects in it, so that a host of one of them sees one library. Where both are linked, the first that is asked for
+# vitrailVersion() and the like answers for both.
+function(vitrail_component target name)
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:vitrail_core>)
+  add_library(vitrail::${name} ALIAS ${target})
+  set_target_properties(
+    ${target} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  target_include_directories(${target} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  foreach(library ${vitrail_runtime})
+    target_link_libraries(${target} INTERFACE $<INSTALL_INTERFACE:$<$<LINK_LANGUAGE:C>:${library}>>)
+  endforeach()
+  if(BUILD_SHARED_LIBS)
+    target_compile_definitions(${target} PRIVATE VITRAIL_SHARED) # the public functions are exported,
+    target_compile_definitions(vitrail_core PRIVATE VITRAIL_SHARED) # those that need no graphics API too
+  endif()
+endfunction()
 
-# The folder for glslc -I, by the name that the installed package gives it.
-set(vitrail_SHADER_DIR ${PROJECT_SOURCE_DIR}/shaders CACHE INTERNAL "Where #include \"vitrail/collect.glsl\" is found")
+if(VITRAIL_BUILD_VULKAN)
+  vitrail_component(vitrail vitrail)
+  target_link_libraries(vitrail INTERFACE $<INSTALL_INTERFACE:vitrail::vulkan_headers>)
+  # The folder for glslc -I, by the name that the installed package gives it.
+  set(vitrail_SHADER_DIR ${PROJECT_SOURCE_DIR}/shaders CACHE INTERNAL "Where #include \"vitrail/collect.glsl\" is found")
+endif()
+if(VITRAIL_BUILD_CPU)
+  vitrail_component(vitrail_cpu cpu)
+endif()
 
 if(NOT VITRAIL_INSTALL)
   return()
+endif()
+
+# What programs link beside a static vitrail_cpu, for CMake and for pkg-config.
+set(vitrail_cpu_packages "")
+set(vitrail_cpu_requires "")
+if(NOT BUILD_SHARED_LIBS)
+  set(vitrail_cpu_packages "hwy")
+  set(vitrail_cpu_requires "libhwy")
 endif()
 
 set(vitrail_package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/vitrail)
@@ -49,15 +65,30 @@ file(RELATIVE_PATH vitrail_pc_to_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig $
 string(REGEX REPLACE "/$" "" vitrail_pc_to_prefix ${vitrail_pc_to_prefix})
 list(TRANSFORM vitrail_runtime PREPEND -l OUTPUT_VARIABLE vitrail_pc_private)
 list(JOIN vitrail_pc_private " " vitrail_pc_private)
-configure_file(cmake/vitrail.pc.in ${PROJECT_BINARY_DIR}/package/vitrail.pc @ONLY)
 
-install(TARGETS vitrail EXPORT vitrail COMPONENT development)
-install(EXPORT vitrail FILE vitrailTargets.cmake NAMESPACE vitrail:: DESTINATION ${vitrail_package_folder} COMPONENT development)
-install(DIRECTORY include/vitrail DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
-install(DIRECTORY shaders/vitrail DESTINATION ${vitrail_shader_folder} COMPONENT development)
+# vitrail_install(target component pkg-config-file)
+function(vitrail_install target component pc)
+  configure_file(cmake/${pc}.in ${PROJECT_BINARY_DIR}/package/${pc} @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/package/${pc} DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+  install(TARGETS ${target} EXPORT vitrail_${component} COMPONENT development)
+  install(EXPORT vitrail_${component} FILE vitrail-${component}.cmake NAMESPACE vitrail:: DESTINATION ${vitrail_package_folder}
+          COMPONENT development)
+endfunction()
+set(vitrail_without "") # headers of what is not built
+if(VITRAIL_BUILD_VULKAN)
+  vitrail_install(vitrail vulkan vitrail.pc)
+  install(DIRECTORY shaders/vitrail DESTINATION ${vitrail_shader_folder} COMPONENT development)
+else()
+  list(APPEND vitrail_without PATTERN vulkan.h EXCLUDE)
+endif()
+if(VITRAIL_BUILD_CPU)
+  vitrail_install(vitrail_cpu cpu vitrail-cpu.pc)
+else()
+  list(APPEND vitrail_without PATTERN cpu.h EXCLUDE)
+endif()
+install(DIRECTORY include/vitrail DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development ${vitrail_without})
 install(FILES ${PROJECT_BINARY_DIR}/package/vitrailConfig.cmake ${PROJECT_BINARY_DIR}/package/vitrailConfigVersion.cmake
         DESTINATION ${vitrail_package_folder} COMPONENT development)
-install(FILES ${PROJECT_BINARY_DIR}/package/vitrail.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 # The guides, whose links to each other and to README.md hold there as here.
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
 install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)

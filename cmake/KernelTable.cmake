@@ -69,12 +69,9 @@ function(embed_variant target table row color samples sorting access)
   set(variants "${variants}VITRAIL_VARIANT(${stage}, ${enumerator}, ${axes}, ${symbol})\n" PARENT_SCOPE)
 endfunction()
 
-# embed_kernels(target table): gives the target, of this folder, every kernel, and makes in generated/kernels
-#   names.inc      VITRAIL_KERNEL(stage, Enumerator, "name") a kernel
-#   includes.inc   the headers with the words of all variants
-#   variants.inc   VITRAIL_VARIANT(stage, Enumerator, color, samples, sorting, access, symbol) a variant, each axis a value
-#                  or `any`
-function(embed_kernels target table)
+# list_kernels(table): makes generated/kernels/names.inc, VITRAIL_KERNEL(stage, Enumerator, "name") a kernel, which is what
+# the core knows of them. Nothing is compiled.
+function(list_kernels table)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${table})
   file(STRINGS ${table} rows REGEX "^[^#]")
   set(known)
@@ -89,6 +86,23 @@ function(embed_kernels target table)
       string(REPLACE _ " " words ${name})
       string(APPEND names "VITRAIL_KERNEL(${stage}, ${enumerator}, \"${words}\")\n")
     endif()
+  endforeach()
+  write_kernel_list(names "${names}")
+endfunction()
+
+function(write_kernel_list file content)
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/generated/kernels/${file}.inc @ONLY
+       CONTENT "// Made by cmake/KernelTable.cmake.\n${content}")
+endfunction()
+
+# embed_kernels(target table): gives the target, of this folder, every kernel, and makes in generated/kernels
+#   includes.inc   the headers with the words of all variants
+#   variants.inc   VITRAIL_VARIANT(stage, Enumerator, color, samples, sorting, access, symbol) a variant, each axis a value
+#                  or `any`
+function(embed_kernels target table)
+  file(STRINGS ${table} rows REGEX "^[^#]")
+  foreach(line ${rows})
+    string(REGEX REPLACE "[ \t]+" ";" row "${line}")
     list(GET row 2 color)
     list(GET row 3 samples)
     list(GET row 4 sorting)
@@ -107,8 +121,6 @@ function(embed_kernels target table)
       endforeach()
     endforeach()
   endforeach()
-  foreach(file names includes variants)
-    file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/generated/kernels/${file}.inc @ONLY
-         CONTENT "// Made by cmake/KernelTable.cmake.\n${${file}}")
-  endforeach()
+  write_kernel_list(includes "${includes}")
+  write_kernel_list(variants "${variants}")
 endfunction()

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Compiles the blocks of code in the guides against the installed package:
 
-    check_docs.py --prefix PREFIX --cc CC --cxx CXX FILE.md...
+    check_docs.py --prefix PREFIX --cc CC --cxx CXX [--prelude HEADER] [--pkg-config FOLDER] FILE.md...
 
-```c and ```cpp: the body of a function, after docs/prelude.h. ```glsl: a whole fragment or compute shader, or the body of
+```c and ```cpp: the body of a function, after docs/prelude.h or another header of that folder; or, where there is an
+`int main(`, a program for the rasteriser for CPUs, which pkg-config links and which must end with 0 and print what the
+```text block after it says. ```glsl: a whole fragment or compute shader, or the body of
 a fragment shader's main().
 ```cmake: the end of a CMakeLists.txt with an executable `renderer`. ```sh is not run."""
 import argparse
@@ -50,13 +52,24 @@ def write(folder, name, text):
     return path
 
 
+def build_program(options, folder, line, where, text):
+    environment = dict(os.environ, PKG_CONFIG_PATH=os.path.join(options.prefix, options.pkg_config))
+    found = subprocess.run(["pkg-config", "--static", "--cflags", "--libs", "vitrail-cpu"], env=environment, check=True,
+                           capture_output=True, text=True)
+    source = write(folder, "block.c", f'#line {line} "{where}"\n{text}')
+    return [options.cc, "-std=c11", "-Wall", "-Wextra", "-Werror", source, *found.stdout.split(), "-lm",
+            "-o", os.path.join(folder, "program")]
+
+
 def compile_c(options, folder, line, where, text):
-    source = f'#include "prelude.h"\nvoid guide(void);\nvoid guide(void) {{\n#line {line} "{where}"\n{text}\n}}\n'
+    if "int main(" in text:
+        return build_program(options, folder, line, where, text)
+    source = f'#include "{options.prelude}"\nvoid guide(void);\nvoid guide(void) {{\n#line {line} "{where}"\n{text}\n}}\n'
     return [options.cc, "-std=c11", write(folder, "block.c", source)] + c_flags(options)
 
 
 def compile_cpp(options, folder, line, where, text):
-    source = f'#include "prelude.h"\nvoid guide();\nvoid guide() {{\n#line {line} "{where}"\n{text}\n}}\n'
+    source = f'#include "{options.prelude}"\nvoid guide();\nvoid guide() {{\n#line {line} "{where}"\n{text}\n}}\n'
     return [options.cxx, "-std=c++20", write(folder, "block.cpp", source)] + c_flags(options)
 
 
@@ -86,11 +99,22 @@ def configure_cmake(options, folder, line, where, text):
 COMPILERS = {"c": compile_c, "cpp": compile_cpp, "glsl": compile_glsl, "cmake": configure_cmake}
 
 
-def check(options, path, line, language, text):
+def run(folder, where, said):
+    done = subprocess.run([os.path.join(folder, "program")], capture_output=True, text=True)
+    if done.returncode == 0 and not done.stderr and done.stdout == said:
+        return True
+    print(f"check_docs: the program at {where} ended with {done.returncode} and said\n{done.stdout}{done.stderr}"
+          f"where the guide has\n{said}", file=sys.stderr)
+    return False
+
+
+def check(options, path, line, language, text, said):
     where = f"{os.path.basename(path)}:{line}"
     with tempfile.TemporaryDirectory() as folder:
         command = COMPILERS[language](options, folder, line, os.path.basename(path), text)
         done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode == 0 and "int main(" in text:
+            return run(folder, where, said)
     if done.returncode != 0:
         said = done.stdout + done.stderr
         print(f"check_docs: the {language} block at {where} does not compile:\n{said}", file=sys.stderr)
@@ -102,11 +126,15 @@ def main():
     parser.add_argument("--prefix", required=True)
     parser.add_argument("--cc", default="cc")
     parser.add_argument("--cxx", default="c++")
+    parser.add_argument("--prelude", default="prelude.h")
+    parser.add_argument("--pkg-config", default="lib/pkgconfig")
     parser.add_argument("files", nargs="+")
     options = parser.parse_args()
     good = []
     for path in options.files:
-        blocks = [block for block in blocks_of(path) if block[1] in COMPILERS]
+        found = blocks_of(path)
+        output = [after[2] if after[1] == "text" else "" for after in found[1:]] + [""]
+        blocks = [(*block, said) for block, said in zip(found, output) if block[1] in COMPILERS]
         if not blocks:
             sys.exit(f"check_docs: {path} has no code to check")
         good += [check(options, path, *block) for block in blocks]

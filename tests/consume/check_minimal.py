@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """Runs examples/minimal under the validation layer and checks its picture: check_minimal.py PROGRAM
 
+check_minimal.py PROGRAM --like MINIMAL does the same with examples/cpu, which draws the same scene, and compares its
+picture with that of examples/minimal.
+
 Some pixels are worked out in double precision, from the scene that examples/minimal/shaders describes."""
 import math
 import os
@@ -15,6 +18,7 @@ EYE, LOOK_AT, FOCAL = (2.3, 2.15, 4.3), (0.0, -0.12, 0.0), 2.75
 HORIZON, ZENITH = (0.70, 0.77, 0.84), (0.20, 0.38, 0.75)
 TINTS = ((0.60, 0.90, 0.95), (0.98, 0.86, 0.52), (0.96, 0.64, 0.76))
 TOLERANCE = 4  # of 255: up to nine panes, each rounded to 8 bits
+FAR_APART, MEAN_APART = 0.06, 1.5  # of the values; of 255
 
 
 def fail(message):
@@ -43,6 +47,15 @@ def read_png(path):
         rows.append(row)
         above = row
     return rows
+
+
+def read_ppm(path):
+    """The rows of a picture of three bytes a pixel."""
+    data = open(path, "rb").read()
+    header = b"P6 %d %d 255\n" % (WIDTH, HEIGHT)
+    if not data.startswith(header) or len(data) != len(header) + 3 * WIDTH * HEIGHT:
+        fail(f"{path} is not a PPM of {WIDTH}x{HEIGHT}")
+    return [data[len(header) + 3 * WIDTH * y:][:3 * WIDTH] for y in range(HEIGHT)]
 
 
 def dot(a, b):
@@ -146,15 +159,7 @@ def draw(program, path, *place):
     return [int(line.split()[1]) for line in done.stdout.splitlines()]
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "minimal.png")
-        draw(sys.argv[1], path)
-        rows = read_png(path)
-        for place in ((400, 300), (330, 250), (500, 420), (10, 10)):
-            panes, right = draw(sys.argv[1], path, *place), under(*place)
-            if right is None or panes != right:
-                fail(f"under pixel {place} are panes {right}, and the program lists {panes}")
+def check_closed_forms(rows):
     checked, deepest = 0, 0
     for y in range(20, HEIGHT, 20):
         for x in range(20, WIDTH, 20):
@@ -169,6 +174,39 @@ def main():
     if checked < 500 or deepest < 6:
         fail(f"only {checked} pixels, at most {deepest} panes deep, could be compared")
     print(f"check_minimal: {checked} pixels of up to {deepest} panes are right")
+
+
+def check_lists(program, path):
+    for place in ((400, 300), (330, 250), (500, 420), (10, 10)):
+        panes, right = draw(program, path, *place), under(*place)
+        if right is None or panes != right:
+            fail(f"under pixel {place} are panes {right}, and the program lists {panes}")
+
+
+def check_alike(rows, others):
+    """Two pictures of the scene differ where something ends within a pixel: one shades it four times, one takes four
+    samples and shades it once."""
+    pairs = [(a, b) for row, other in zip(rows, others) for a, b in zip(row, other)]
+    far = sum(abs(a - b) > TOLERANCE for a, b in pairs) / len(pairs)
+    mean = sum(abs(a - b) for a, b in pairs) / len(pairs)
+    if far > FAR_APART or mean > MEAN_APART:
+        fail(f"the pictures differ by {mean:.2f} of 255 in the mean, and in {100 * far:.1f} % of the values by more than "
+             f"{TOLERANCE}")
+    print(f"check_minimal: {100 * (1 - far):.1f} % of the values are those of the other picture")
+
+
+def main():
+    program, *like = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "picture")
+        draw(program, path)
+        rows = read_ppm(path) if like else read_png(path)
+        if like:
+            draw(like[1], path)
+            check_alike(rows, read_png(path))
+        else:
+            check_lists(program, path)
+    check_closed_forms(rows)
 
 
 main()

@@ -37,8 +37,10 @@ def check_content(browser, report):
     groups = {}
     for scene in report["scenes"]:
         groups.setdefault(scene["sweep"] or "scenes", []).append(scene)
-    measures = {"ratio": lambda m: m["cost_ratio"], "memory": lambda m: m["memory_bytes"] / 2**20}
-    if not report["cpu"]:
+    by_processor = report["api"] == "CPU"
+    measures = {} if by_processor else {"ratio": lambda m: m["cost_ratio"]}
+    measures["memory"] = lambda m: m["memory_bytes"] / 2**20
+    if not report["cpu"] or by_processor:
         measures["cost"] = lambda m: m["cost_ms"]["median"]
     colors = {}
     for group, scenes in groups.items():
@@ -106,6 +108,7 @@ def main():
             for name, arguments in {
                 "sweeps": ["--sweep", "layers,triangles,samples", "--count", "1", *two],
                 "scenes": ["--scene", "planes,interlocked", *many],
+                "processor": ["--scene", "planes,interlocked", "--methods", "cpu", *small],
             }.items():
                 page = os.path.join(folder, name)
                 report = make_page([tool, "bench", *arguments], page)

@@ -48,6 +48,22 @@ def check_inexact(browser, page):
     expect(NOT_EXACT in browser.value("document.body.innerText"), "the page does not say that its exact picture is not")
 
 
+def check_processor(browser, tool, page):
+    """Of the processor alone: times in milliseconds, and nothing is said of a baseline."""
+    report = make_page([tool, "compare", *SMALL[:-2], "--methods", "cpu"], page)
+    browser.events.clear()
+    browser.open(os.path.join(page, "index.html"))
+    bars = browser.value("Chart.getChart('cost').data.datasets.map((d) => [d.label, d.data[0]])")
+    passes = report["methods"][0]["passes_ms"]
+    wanted = [[name.replace("_", " "), time["median"]] for name, time in passes.items() if name != "opaque"]
+    expect(sorted(bars) == sorted(wanted), f"the times of the processor are {bars}, not {wanted}")
+    text = browser.value("document.body.innerText")
+    for words in ("times unsorted", "those of unsorted", "GPU time", "null", "undefined", "NaN", "()", " nodes"):
+        expect(words not in text, f"the page of the processor says {words}")
+    for words in ("Time, ms, by pass", "time by the clock"):
+        expect(words in text, f"the page of the processor does not say {words}")
+
+
 def place_of_handle(browser):
     return browser.value("(() => { const slider = document.getElementById('slider').getBoundingClientRect();"
                          "const handle = document.getElementById('handle').getBoundingClientRect();"
@@ -93,6 +109,7 @@ def main():
                 leave_screenshot(browser, picture[0])
             check_slider(browser)
             check_inexact(browser, page)
+            check_processor(browser, tool, os.path.join(folder, "processor"))
         finally:
             browser.close()
     finish(browser)

@@ -2,6 +2,7 @@
 // show nothing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 
@@ -29,12 +30,14 @@ void write(const TemporaryFolder& folder, const std::string& name, const std::st
   std::ofstream(folder.path() / name, std::ios::binary) << text;
 }
 
+// On the processor, unless the words name a Vulkan device's options.
 ReadPng draw(const TemporaryFolder& folder, Words words) {
   std::string command;
   for (const std::string& word : words) command += " " + word;
   SCOPED_TRACE(command);
   words.insert(words.begin(), "render");
-  for (const char* word : {"--size", "64x64", "--validate", "-o", "a.png"}) words.emplace_back(word);
+  if (std::ranges::find(words, "--validate") == words.end()) words.insert(words.end(), {"--device", "cpu"});
+  words.insert(words.end(), {"--size", "64x64", "-o", "a.png"});
   const ProcessResult result = vitrail(folder, words);
   EXPECT_EQ(result.exitCode, 0) << result.error;
   return result.exitCode == 0 ? readPng(folder.file("a.png")) : ReadPng{1, 1, false, {0, 0, 0, 0}};
@@ -109,7 +112,9 @@ TEST(Looking, PlanesCutModelsOpen) {
     words.insert(words.end(), options.begin(), options.end());
     return draw(folder, words);
   };
-  for (const Words& options : {Words{}, Words{"--opacity", "0.9"}}) { // opaque and transparent surfaces
+  // Opaque and transparent surfaces, on the processor and by Vulkan.
+  for (const Words& options :
+       {Words{}, Words{"--opacity", "0.9"}, Words{"--validate"}, Words{"--opacity", "0.9", "--validate"}}) {
     const ReadPng whole = cut({}, options);
     EXPECT_TRUE(isReddish(at(whole, 0.3, 0.3)) && isReddish(at(whole, 0.7, 0.7)));
     const ReadPng right = cut({"1,0,0,10"}, options); // x >= 10

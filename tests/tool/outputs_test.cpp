@@ -15,8 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Words scene(const Words& more) {
-  Words words = {"render", "--scene", "interlocked", "--size", "96x64", "--validate"};
+// On the processor, unless a test asks for Vulkan.
+const Words kOnProcessor = {"--device", "cpu"};
+const Words kByVulkan = {"--validate"};
+
+Words scene(const Words& more, const Words& device = kOnProcessor) {
+  Words words = {"render", "--scene", "interlocked", "--size", "96x64"};
+  words.insert(words.end(), device.begin(), device.end());
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -25,10 +30,15 @@ int bitsOf(const std::string& png) { return png.size() > 24 ? png[24] : 0; }
 
 bool isExr(const std::string& bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
 
-TEST(Outputs, SixteenBits) {
+class OutputsOf : public ::testing::TestWithParam<Words> {};
+
+INSTANTIATE_TEST_SUITE_P(Devices, OutputsOf, ::testing::Values(kOnProcessor, kByVulkan),
+                         [](const auto& device) { return device.param == kByVulkan ? "Vulkan" : "Processor"; });
+
+TEST_P(OutputsOf, SixteenBits) {
   const TemporaryFolder folder;
-  ASSERT_EQ(vitrail(folder, scene({"-o", "a.png"})).exitCode, 0);
-  const ProcessResult result = vitrail(folder, scene({"-o", "b.png", "--bits", "16"}));
+  ASSERT_EQ(vitrail(folder, scene({"-o", "a.png"}, GetParam())).exitCode, 0);
+  const ProcessResult result = vitrail(folder, scene({"-o", "b.png", "--bits", "16"}, GetParam()));
   ASSERT_EQ(result.exitCode, 0) << result.error;
   EXPECT_EQ(bitsOf(readText(folder.path() / "a.png")), 8);
   EXPECT_EQ(bitsOf(readText(folder.path() / "b.png")), 16);
@@ -40,11 +50,12 @@ TEST(Outputs, SixteenBits) {
   EXPECT_LE(largest, 1);
 }
 
-TEST(Outputs, OpenExr) {
+TEST_P(OutputsOf, OpenExr) {
   const TemporaryFolder folder;
   for (const char* background : {"#ffffff", "transparent"}) {
     for (const char* bits : {"16", "32"}) {
-      const ProcessResult result = vitrail(folder, scene({"-o", "a.exr", "--bits", bits, "--background", background}));
+      const ProcessResult result =
+          vitrail(folder, scene({"-o", "a.exr", "--bits", bits, "--background", background}, GetParam()));
       ASSERT_EQ(result.exitCode, 0) << result.error;
       const std::string bytes = readText(folder.path() / "a.exr");
       EXPECT_TRUE(isExr(bytes));
@@ -77,10 +88,10 @@ TEST(Outputs, ATerminalTakesNoPicture) {
   EXPECT_NE(shown.find("standard output is a terminal"), std::string::npos) << shown;
 }
 
-TEST(Outputs, ATurnIsOnePictureAStep) {
+TEST_P(OutputsOf, ATurnIsOnePictureAStep) {
   const TemporaryFolder folder;
-  const ProcessResult result =
-      vitrail(folder, scene({"-o", "turn_%03d.png", "--turntable", "4", "--orbit", "10,20", "--json", "turn.json"}));
+  const Words turn = {"-o", "turn_%03d.png", "--turntable", "4", "--orbit", "10,20", "--json", "turn.json"};
+  const ProcessResult result = vitrail(folder, scene(turn, GetParam()));
   ASSERT_EQ(result.exitCode, 0) << result.error;
   EXPECT_EQ(folder.names(), (Words{"turn.json", "turn_000.png", "turn_001.png", "turn_002.png", "turn_003.png"}));
   EXPECT_TRUE(result.out.starts_with("turn_000.png to turn_003.png: 4 pictures of 96x64, ")) << result.out;

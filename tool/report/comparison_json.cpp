@@ -42,7 +42,7 @@ std::string toJson(const Comparison& comparison) {
   json[names::kSamples] = comparison.samples;
   addRounds(json, comparison.repeats, comparison.warmups);
   json["exact_picture"] = {{names::kMethod, exact.method},
-                           {names::kNodes, exact.nodes},
+                           {names::kNodes, orNull(exact.nodes)},
                            {names::kExact, isExact(exact)},
                            {names::kErrorBound, errorBoundOf(exact)},
                            {names::kFragments, exact.fragmentsRequested},

@@ -106,7 +106,7 @@ HWY_INLINE M setUpEdges(Batch& batch, std::uint32_t at, const SetUp& s, std::uin
     rejected =
         rejected | (most + (max(s.a[k], zero) + max(s.b[k], zero)) * set(static_cast<std::int32_t>(kTileSide) - 1));
   }
-  return andNot(zero > rejected, zero == zero);
+  return ~(zero > rejected);
 }
 
 HWY_INLINE void setUpValues(Batch& batch, std::uint32_t at, const F* z, const F* w, const SetUp& s,
@@ -122,8 +122,10 @@ HWY_INLINE void setUpValues(Batch& batch, std::uint32_t at, const F* z, const F*
   if (samples == 1) return;
   for (std::uint32_t sample = 0; sample < samples; ++sample) {
     const SamplePlace place = samplePlaces(samples)[sample];
-    const D x = setDouble(place.x * (kSubpixels / 16) - kSubpixels / 2);
-    const D y = setDouble(place.y * (kSubpixels / 16) - kSubpixels / 2);
+    const std::int32_t fromMiddleX = place.x * (kSubpixels / 16) - kSubpixels / 2;
+    const std::int32_t fromMiddleY = place.y * (kSubpixels / 16) - kSubpixels / 2;
+    const D x = setDouble(fromMiddleX);
+    const D y = setDouble(fromMiddleY);
     F sum = set(0.0F);
     for (std::size_t k = 1; k < 3; ++k) {
       const F weight = toFloat((exactly(s.a[k]) * x + exactly(s.b[k]) * y) * s.inverseArea);
@@ -142,7 +144,7 @@ HWY_INLINE void setUpBlocks(Batch& batch, std::uint32_t at, const I* x, const I*
   const I y0 = max(shiftRight<8>(min(y[0], min(y[1], y[2])) + up), zero);
   const I x1 = min(shiftRight<8>(max(x[0], max(x[1], x[2])) + set(reach)), set(tile.lastX));
   const I y1 = min(shiftRight<8>(max(y[0], max(y[1], y[2])) + set(reach)), set(tile.lastY));
-  const M gone = andNot(kept, zero == zero) | (x0 > x1) | (y0 > y1);
+  const M gone = ~kept | (x0 > x1) | (y0 > y1);
   store(batch.x0 + at, shiftRight<2>(x0));
   store(batch.y0 + at, shiftRight<2>(y0));
   store(batch.x1 + at, select(gone, set(-1), shiftRight<2>(x1)));
@@ -177,7 +179,7 @@ HWY_INLINE void setUpSixteen(Batch& batch, std::uint32_t at, const TileBox& tile
   const M isFront = set(0.0F) > rounded;
   const M isEmpty = rounded == set(0.0F);
   const D signs = exactly(select(isFront, set(-1), set(1)));
-  M isBig = zero > zero;
+  M isBig = maskOf(0);
   for (std::size_t k = 0; k < 3; ++k) {
     s.a[k] = select(isFront, zero - s.a[k], s.a[k]);
     s.b[k] = select(isFront, zero - s.b[k], s.b[k]);

@@ -158,6 +158,9 @@ class TileWorkspace {
   virtual ~TileWorkspace() = default;
   TileWorkspace(const TileWorkspace&) = delete;
   TileWorkspace& operator=(const TileWorkspace&) = delete;
+
+  // The most that fragments have taken.
+  virtual std::uint64_t fragmentBytes() const = 0;
 };
 
 // The stages, compiled for one set of instructions.

@@ -9,6 +9,7 @@ namespace {
 
 constexpr float kBrightest = 65504.0F;
 constexpr std::uint64_t kLeastBudget = 65536;
+constexpr std::uint64_t kBudget = std::uint64_t{256} << 20U; // only what deep tiles need of it is ever touched
 constexpr std::uint64_t kBudgetOfThread = std::uint64_t{4} << 20U;
 // What is behind less light than this, for colours up to 1, changes the sRGB picture by at most 1/20 of 1/255: the
 // curve rises by at most 12.92.
@@ -232,7 +233,9 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
                     info.clipSpace == VITRAIL_CPU_CLIP_OPENGL};
   frame.tilesX = (info.width + kTileSide - 1) / kTileSide;
   frame.tilesY = (info.height + kTileSide - 1) / kTileSide;
-  frame.budget = info.memoryBudget == 0 ? kBudgetOfThread : info.memoryBudget / threads;
+  const std::uint64_t budget =
+      info.memoryBudget == 0 ? std::max(kBudget, kBudgetOfThread * threads) : info.memoryBudget;
+  frame.budget = budget / threads;
 
   frame.draws.clear();
   frame.jobs.clear();

@@ -43,7 +43,7 @@ HWY_INLINE M isOutside(const Viewport& viewport, const F& x, const F& y, const F
   const F near = viewport.depthFromMinusW ? w + z : z;
   const M inside = (w >= set(kLeastW)) & (near >= zero) & (w - z >= zero) & (bandX >= x) & (bandX + x >= zero) &
                    (bandY >= y) & (bandY + y >= zero);
-  return andNot(inside, zero == zero);
+  return ~inside;
 }
 
 // Corners of sixteen vertices. `cut` bits: those that need clipping whatever their place.

@@ -118,6 +118,7 @@ VITRAIL_BINARY(I, M, I, keep, hn::IfThenElseZero(hn::RebindMask(kI, a.v[i]), b.v
 VITRAIL_BINARY(M, M, M, operator&, hn::And(a.v[i], b.v[i]))
 VITRAIL_BINARY(M, M, M, operator|, hn::Or(a.v[i], b.v[i]))
 VITRAIL_BINARY(M, M, M, andNot, hn::AndNot(a.v[i], b.v[i])) // not a, and b
+VITRAIL_UNARY(M, M, operator~, hn::Not(a.v[i]))
 
 VITRAIL_UNARY(I, F, bitsOf, hn::BitCast(kI, a.v[i]))
 VITRAIL_UNARY(F, I, floatOf, hn::BitCast(kF, a.v[i]))

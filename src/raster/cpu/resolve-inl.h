@@ -71,15 +71,18 @@ HWY_INLINE bool hasTies(const double* keys, std::size_t rows) {
 }
 
 // Fragments of one depth in a pixel are ordered by what they do, never by when they came.
-HWY_NOINLINE void orderTies(const SortedRows& sorted, bool filters) {
+HWY_NOINLINE inline void orderTies(const SortedRows& sorted, bool filters) {
+  const auto compareBits = [](const void* a, const void* b, std::size_t floats) {
+    return std::memcmp(a, b, floats * sizeof(float));
+  };
   const auto before = [&](std::uint64_t a, std::uint64_t b) {
     const std::size_t at = std::size_t{4} * static_cast<std::uint32_t>(a);
     const std::size_t bt = std::size_t{4} * static_cast<std::uint32_t>(b);
     // What hides light is in front of what adds to it or filters it, as in the lists of GPUs; then by the bits.
-    const int byPair = std::memcmp(sorted.pairs + at, sorted.pairs + bt, 4 * sizeof(float));
+    const int byPair = compareBits(sorted.pairs + at, sorted.pairs + bt, 4);
     if (sorted.pairs[at + 3] != sorted.pairs[bt + 3]) return sorted.pairs[at + 3] > sorted.pairs[bt + 3];
     if (byPair != 0) return byPair < 0;
-    return filters && std::memcmp(sorted.filters + at, sorted.filters + bt, 3 * sizeof(float)) < 0;
+    return filters && compareBits(sorted.filters + at, sorted.filters + bt, 3) < 0;
   };
   const auto depthOf = [](std::uint64_t key) { return static_cast<std::uint32_t>(key >> 32U); };
   std::vector<std::uint64_t> group;

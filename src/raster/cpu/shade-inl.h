@@ -109,8 +109,8 @@ HWY_INLINE void shadeAll(const Frame& frame, const ToShade& s, bool derivatives,
     std::uint32_t mask = bitsOf(same) & left;
     if (mask != every) {
       const auto first = static_cast<std::int32_t>(info.firstJob);
-      const auto last = first + static_cast<std::int32_t>((info.primitives - 1) / kJobTriangles);
-      same = andNot((set(first) > jobs) | (jobs > set(last)), jobs == jobs);
+      const auto last = static_cast<std::int32_t>(info.firstJob + (info.primitives - 1) / kJobTriangles);
+      same = ~((set(first) > jobs) | (jobs > set(last)));
       triangles = shiftLeft<kJobBits>(jobs - set(first)) + within;
       triangles = select(
           same, triangles,

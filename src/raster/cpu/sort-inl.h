@@ -113,7 +113,7 @@ HWY_INLINE void clean(double* column, std::size_t rows, std::size_t width) {
   for (std::size_t r = 0; r < rows; r += kRun) cleanRun(column + r * kLanes, rows - r < kRun ? rows - r : kRun);
 }
 
-HWY_NOINLINE void mergeRuns(double* keys, std::size_t rows) {
+HWY_NOINLINE inline void mergeRuns(double* keys, std::size_t rows) {
   for (std::size_t v = 0; v < kKeyVectors; ++v) {
     double* const column = keys + v * kKeyLanes;
     for (std::size_t width = kRun; width < rows; width *= 2) {

@@ -99,6 +99,7 @@ class TileWorker final : public TileWorkspace {
   }
 
   void draw(const Frame& frame, std::uint32_t tile, TileCounts& counts);
+  std::uint64_t fragmentBytes() const override { return store_.peakBytes(); }
 
  private:
   // Which part of a block's fragments a pass takes: those beyond `after` and before `until`, as keys. Fragments from
@@ -225,7 +226,8 @@ inline void TileWorker::merge(const Frame& frame, std::uint32_t tile, bool opaqu
 // Memory that is aligned as vectors are, of one that has 64 bytes to spare.
 template <class T>
 T* aligned(T* p) {
-  return reinterpret_cast<T*>((reinterpret_cast<std::uintptr_t>(p) + 63) & ~std::uintptr_t{63});
+  const std::uintptr_t past = reinterpret_cast<std::uintptr_t>(p) % 64;
+  return reinterpret_cast<T*>(reinterpret_cast<char*>(p) + (past == 0 ? 0 : 64 - past));
 }
 
 // Finds the corners of up to kBatch triangles, so that they are in cache when they are staged.

@@ -1,7 +1,10 @@
 #include "raster/cpu/workers.h"
 
-#include <oneapi/tbb/info.h>
+#ifdef __linux__
+#include <sched.h>
+#endif
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
@@ -101,8 +104,12 @@ void Workers::run(const std::function<void(std::uint32_t)>& work) {
 }
 
 std::uint32_t processorCount() {
-  const int count = tbb::info::default_concurrency(); // knows which processors the process may run on
-  return count > 0 ? static_cast<std::uint32_t>(count) : 1;
+#ifdef __linux__
+  // Of those that there are, this process may be kept to some.
+  cpu_set_t allowed;
+  if (::sched_getaffinity(0, sizeof(allowed), &allowed) == 0) return static_cast<std::uint32_t>(CPU_COUNT(&allowed));
+#endif
+  return std::max(std::thread::hardware_concurrency(), 1U);
 }
 
 } // namespace vitrail::raster

@@ -34,9 +34,11 @@
     drawn: report.scenes.filter((scene) => scene.sweep === sweep && scene.measurements.length > 0),
   })).filter((group) => group.drawn.length > 0);
 
+  // Of the processor alone, times are by the clock and there is no baseline.
+  const onProcessor = report.api === "CPU";
   const MEASURES = [
-    { id: "ratio", title: "Cost, times unsorted", of: (m) => m.cost_ratio, text: ratio },
-    ...(report.cpu && report.api !== "CPU" ? [] : [{ id: "cost", title: "Cost, ms", of: (m) => m.cost_ms.median, text: (v) => v.toFixed(3) }]),
+    ...(onProcessor ? [] : [{ id: "ratio", title: "Cost, times unsorted", of: (m) => m.cost_ratio, text: ratio }]),
+    ...(report.cpu && !onProcessor ? [] : [{ id: "cost", title: "Cost, ms", of: (m) => m.cost_ms.median, text: (v) => v.toFixed(3) }]),
     { id: "memory", title: "Memory, MiB", of: (m) => m.memory_bytes / MIB, text: (v) => v.toFixed(1) },
   ];
 
@@ -48,6 +50,7 @@
       ? `Sweeps over ${groups.map((group) => group.id).join(", ")}: ${settings.length} settings at ${steps} steps.`
       : `${settings.length} settings in ${steps} ${steps === 1 ? "picture" : "pictures"}.`;
     byId("machine").textContent = machineText(report);
+    if (onProcessor) byId("cost-note").textContent = "Cost is the time by the clock for the whole picture.";
   }
 
   function fillAdvice() {

@@ -8,6 +8,9 @@
   const flip = (value) => (value > 0 && value < 0.00005 ? "<0.0001" : value.toFixed(4));
   const ssim = (value) => (value < 1 - 1e-12 && value >= 0.99995 ? ">0.9999" : value.toFixed(4));
   const share = (value) => (value === 0 ? "0" : value < 0.0005 ? "<0.1 %" : (100 * value).toFixed(1) + " %");
+  // Of the processor alone, times are by the clock and there is no baseline.
+  const onProcessor = report.api === "CPU";
+  const hasTimes = !report.cpu || onProcessor;
   const worst = (w) => (w.difference === 0 ? "0" : `${w.difference} at ${w.x},${w.y}`);
 
   // What --layers and --passes said of the methods that have them.
@@ -29,11 +32,12 @@
       `${whole(report.exact_picture.fragments)} transparent fragments, up to ${report.layers_max} in one pixel.` +
       limitsText() + (report.exact_picture.exact ? "" : " The picture that all are compared with is itself not exact.");
     byId("machine").textContent = machineText(report);
+    if (onProcessor) byId("cost-note").textContent = "Cost and frame are the time by the clock for the whole picture.";
   }
 
   function fillTable() {
     const columns = ["method", "PSNR", "SSIM", "FLIP", "worst", "off", "cost", "frame"];
-    if (!report.cpu || report.api === "CPU") columns.push("cost, ms", "frame, ms");
+    if (hasTimes) columns.push("cost, ms", "frame, ms");
     columns.push("memory, MiB");
     const table = byId("table");
     const head = add(add(table, "thead"), "tr");
@@ -46,7 +50,7 @@
       add(row, "td", psnr(m.psnr_db), m.psnr_db === null ? { class: "equal" } : {});
       const texts = [ssim(m.ssim), flip(m.flip), worst(m.worst), share(m.off_share), ratio(method.cost_ratio),
         ratio(method.frame_ratio)];
-      if (!report.cpu || report.api === "CPU") texts.push(method.cost_ms.median.toFixed(3), method.frame_ms.median.toFixed(3));
+      if (hasTimes) texts.push(method.cost_ms.median.toFixed(3), method.frame_ms.median.toFixed(3));
       texts.push((method.memory_bytes / MIB).toFixed(1));
       for (const text of texts) add(row, "td", text);
     }
@@ -125,8 +129,9 @@
   function fillLegends() {
     byId("error-legend").style.background = gradient(comparison.error_colors);
     byId("exact").src = comparison.exact;
+    const nodes = report.exact_picture.nodes;
     byId("exact-note").textContent =
-      `By ${report.exact_picture.method} with ${report.exact_picture.nodes} nodes; all pictures are compared with it`;
+      `By ${report.exact_picture.method}${nodes ? ` with ${nodes} nodes` : ""}; all pictures are compared with it`;
     byId("layers").src = comparison.layers;
     const legend = byId("layers-legend");
     add(legend, "i").style.background = gradient(comparison.layers_colors);
@@ -162,13 +167,14 @@
 
   function drawCharts() {
     const methods = report.methods;
-    const unit = methods[0].cost_ms.median; // the baseline stands first
+    const unit = onProcessor ? 1 : methods[0].cost_ms.median; // the baseline stands first
+    byId("cost-title").textContent = onProcessor ? "Time, ms, by pass" : "Cost, times unsorted, by pass";
     const passes = [...new Set(methods.flatMap((method) => Object.keys(method.passes_ms)))].filter((p) => p !== "opaque");
     const ofPass = (method, pass) => (pass in method.passes_ms && unit > 0 ? method.passes_ms[pass].median / unit : 0);
     drawChart("cost", passes.map((pass, i) => ({
       label: pass.replaceAll("_", " "), data: methods.map((method) => ofPass(method, pass)),
       backgroundColor: colorAt(i),
-    })), true, "×");
+    })), true, onProcessor ? " ms" : "×");
     const plain = (label, data, color) => [{ label, data, backgroundColor: color }];
     drawChart("error", plain("FLIP", methods.map((method) => method.metrics.flip), PALETTE[5]), false, "");
     drawChart("memory", plain("memory", methods.map((method) => method.memory_bytes / MIB), PALETTE[0]), false, " MiB");

@@ -1,0 +1,20 @@
+/* A host that links both libraries. */
+#include <stdio.h>
+
+#include <vitrail/cpu.h>
+#ifdef WITH_VULKAN
+#include <vitrail/vulkan.h>
+#endif
+
+int main(void) {
+  VitrailCpuContext context = NULL;
+  if (vitrailVersion() != VITRAIL_VERSION) return 1;
+  if (vitrailCpuCreateContext(NULL, &context) != VITRAIL_SUCCESS) return 1;
+  vitrailCpuDestroyContext(context);
+#ifdef WITH_VULKAN
+  vitrailVkDestroyContext(VK_NULL_HANDLE);
+  vitrailVkDestroyTarget(VK_NULL_HANDLE);
+#endif
+  printf("components: linked\n");
+  return 0;
+}
