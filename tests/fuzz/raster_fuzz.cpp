@@ -247,6 +247,11 @@ struct Contexts {
       if (vitrailCpuCreateContext(&desc, &context) == VITRAIL_SUCCESS) all.push_back(context);
     }
   }
+  Contexts(const Contexts&) = delete;
+  Contexts& operator=(const Contexts&) = delete;
+  ~Contexts() {
+    for (const VitrailCpuContext context : all) vitrailCpuDestroyContext(context);
+  }
 };
 
 void drawFrame(Bytes& bytes, Contexts& contexts) {

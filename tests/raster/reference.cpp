@@ -93,7 +93,8 @@ std::vector<Part> partsOf(const Scene& scene, const Viewport& viewport) {
     const std::uint32_t corners = draw.topology == VITRAIL_CPU_POINTS ? 1 : draw.topology == VITRAIL_CPU_LINES ? 2 : 3;
     const std::uint32_t count = (draw.indices != nullptr ? draw.indexCount : draw.vertexCount) / corners;
     for (std::uint32_t primitive = 0; primitive < count; ++primitive) {
-      for (const Piece& piece : piecesOf(viewport, draw, primitive).all()) {
+      const Pieces pieces = piecesOf(viewport, draw, primitive);
+      for (const Piece& piece : pieces.all()) {
         Part part{piece, vitrail::raster::edgesOf(piece.corners[0], piece.corners[1], piece.corners[2]), d, primitive};
         const bool isCulled = draw.topology == VITRAIL_CPU_TRIANGLES &&
                               draw.cull == (part.edges.front ? VITRAIL_CPU_CULL_FRONT : VITRAIL_CPU_CULL_BACK);
