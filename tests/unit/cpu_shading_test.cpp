@@ -485,7 +485,7 @@ Image randomImage(Random& random, bool translucent) {
 glm::dvec4 texelAt(const CpuTexture& texture, std::size_t level, std::int64_t x, std::int64_t y) {
   const auto i = static_cast<std::size_t>(texture.offset.at(level) + y * texture.width.at(level) + x);
   if (texture.kind == Texels::Premultiplied) {
-    return {glm::unpackHalf2x16(texture.texels[i]), glm::unpackHalf2x16(texture.blueAlpha[i])};
+    return {glm::unpackHalf2x16(texture.texels[2 * i]), glm::unpackHalf2x16(texture.texels[2 * i + 1])};
   }
   glm::dvec4 value;
   for (int k = 0; k < 4; ++k) {
