@@ -58,9 +58,10 @@ typedef enum VitrailCpuInstructions {
 typedef struct VitrailCpuContextDesc {
   const void* next; /* null */
   /* How many threads work on a frame, the caller's among them. Default: as many as the process may run on. 1: only the
-   * caller's, and none is ever started. Others are those of oneTBB, which the process shares. */
+   * caller's, and none is ever started. The others are started with the context
+   * and sleep between frames. */
   uint32_t threads;
-  VitrailCpuParallel parallel; /* optional: the host's own threads, in place of oneTBB's; `threads` is how many */
+  VitrailCpuParallel parallel; /* optional: the host's own threads, in place of the context's; `threads` is how many */
   void* parallelUser;
   VitrailCpuInstructions instructions;
   VitrailLog log; /* optional; default: silence; outlives the context */
@@ -253,8 +254,8 @@ typedef struct VitrailCpuFrame {
   VitrailCpuProgress progress; /* optional */
   void* progressUser;
   /* Bytes that the fragments of all tiles in work may take, at least 65536: where they need more, a tile is drawn in
-   * parts and layers, for the same picture. Default: 4 MiB a thread. Beside it a frame takes about 20 bytes a vertex
-   * and 5 bytes a triangle. */
+   * parts and layers, for the same picture. Default: 256 MiB, or 4 MiB a thread where that is more; tiles that
+   * need little touch little of it. Beside it a frame takes about 20 bytes a vertex and 5 bytes a triangle. */
   uint64_t memoryBudget;
 } VitrailCpuFrame;
 
@@ -273,6 +274,9 @@ typedef struct VitrailCpuFrame {
  * part of the picture. */
 VITRAIL_API VitrailResult vitrailCpuRender(VitrailCpuContext context, const VitrailCpuFrame* frame,
                                            const VitrailCpuDraw* draws, uint32_t drawCount, VitrailStats* stats);
+
+/* The most bytes that fragments took in the context's last frame, of all threads together. */
+VITRAIL_API uint64_t vitrailCpuFragmentBytes(VitrailCpuContext context);
 
 #ifdef __cplusplus
 }

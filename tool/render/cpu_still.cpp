@@ -26,7 +26,6 @@ namespace {
 
 constexpr std::uint64_t kBandPixels = std::uint64_t{16} << 20U;  // drawn at once: 16 bytes each
 constexpr std::size_t kRowsOfAThread = 32;                       // fewer are not worth one
-constexpr std::uint64_t kThreadBudget = std::uint64_t{4} << 20U; // VitrailCpuFrame's default
 
 // The most that the process has held at once.
 std::uint64_t peakMemory() {
@@ -285,7 +284,7 @@ void CpuStillRenderer::Impl::drawBands(const RenderOptions& picture, VitrailCpuF
 }
 
 void CpuStillRenderer::Impl::finish(FrameReport& report, const RenderOptions& picture, const PassTimes& passes) const {
-  report.nodesBytes = picture.memoryBudget.value_or(kThreadBudget * rasterizer.threads());
+  report.nodesBytes = rasterizer.fragmentBytes();
   report.totalBytes = report.nodesBytes;
   report.device = device;
   report.api = "CPU";

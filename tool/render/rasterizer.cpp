@@ -1,5 +1,6 @@
 #include "rasterizer.h"
 
+#include <algorithm>
 #include <fstream>
 #include <string_view>
 
@@ -53,6 +54,7 @@ Rasterizer::~Rasterizer() { vitrailCpuDestroyContext(context_); }
 
 void Rasterizer::render(const VitrailCpuFrame& frame, std::span<const VitrailCpuDraw> draws, VitrailStats& stats) {
   check(vitrailCpuRender(context_, &frame, draws.data(), static_cast<std::uint32_t>(draws.size()), &stats));
+  fragmentBytes_ = std::max(fragmentBytes_, vitrailCpuFragmentBytes(context_));
 }
 
 std::uint32_t Rasterizer::threads() const { return vitrailCpuContextThreads(context_); }

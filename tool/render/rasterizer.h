@@ -20,6 +20,8 @@ class Rasterizer {
   void render(const VitrailCpuFrame& frame, std::span<const VitrailCpuDraw> draws, VitrailStats& stats);
 
   [[nodiscard]] std::uint32_t threads() const;
+  // The most that the fragments of a frame have taken so far.
+  [[nodiscard]] std::uint64_t fragmentBytes() const { return fragmentBytes_; }
   // The processor, as the system names it, its vector instructions and the threads: "AMD EPYC (AVX2, 2 threads)".
   [[nodiscard]] std::string name() const;
 
@@ -28,6 +30,7 @@ class Rasterizer {
 
   VitrailCpuContext context_ = nullptr;
   std::string reason_; // of the last error
+  std::uint64_t fragmentBytes_ = 0;
 };
 
 } // namespace vitrail::tool

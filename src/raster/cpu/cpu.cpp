@@ -21,7 +21,8 @@ struct VitrailCpuContext_T {
   Log log;
   const raster::Stages* stages = nullptr;
   std::unique_ptr<raster::Workers> workers;
-  raster::Frame frame; // its memory is kept from frame to frame
+  raster::Frame frame;             // its memory is kept from frame to frame
+  std::uint64_t fragmentBytes = 0; // of the last one
 };
 
 namespace {
@@ -59,7 +60,7 @@ VitrailResult guarded(const Log& log, const char* doing, Function function) {
     return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory is left for %s", doing);
   } catch (const std::length_error&) {
     return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory is left for %s", doing);
-  } catch (const std::exception& error) { // oneTBB's, where the system refuses a thread
+  } catch (const std::exception& error) { // std::system_error, where the system refuses a thread
     return log.fail(VITRAIL_ERROR_UNSUPPORTED, "a thread could not be started: %s: use fewer threads", error.what());
   }
 }
@@ -152,6 +153,8 @@ VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
     stages.drawTile(frame, static_cast<std::uint32_t>(i), *workspaces[worker], counts[worker]);
     progress.tileDone();
   });
+  context.fragmentBytes = 0;
+  for (const auto& workspace : workspaces) context.fragmentBytes += workspace ? workspace->fragmentBytes() : 0;
   if (progress.isGivenUp()) return VITRAIL_INCOMPLETE;
   raster::TileCounts all;
   for (const raster::TileCounts& each : counts) all.add(each);
@@ -222,3 +225,5 @@ VitrailResult vitrailCpuRender(VitrailCpuContext context, const VitrailCpuFrame*
     return drawFrame(*context, stats);
   });
 }
+
+uint64_t vitrailCpuFragmentBytes(VitrailCpuContext context) { return context == nullptr ? 0 : context->fragmentBytes; }

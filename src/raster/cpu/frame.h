@@ -148,6 +148,7 @@ struct TileBox {
   std::int32_t y = 0;
   std::int32_t lastX = 0; // of its last one, within the tile
   std::int32_t lastY = 0;
+  std::array<std::uint16_t, kBlocks> pixels{}; // of each block: those within the frame, a bit each
 };
 
 // Memory of one thread that works on tiles; kept from tile to tile and from frame to frame.
@@ -157,6 +158,9 @@ class TileWorkspace {
   virtual ~TileWorkspace() = default;
   TileWorkspace(const TileWorkspace&) = delete;
   TileWorkspace& operator=(const TileWorkspace&) = delete;
+
+  // The most that fragments have taken.
+  virtual std::uint64_t fragmentBytes() const = 0;
 };
 
 // The stages, compiled for one set of instructions.

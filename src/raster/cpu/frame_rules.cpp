@@ -9,6 +9,7 @@ namespace {
 
 constexpr float kBrightest = 65504.0F;
 constexpr std::uint64_t kLeastBudget = 65536;
+constexpr std::uint64_t kBudget = std::uint64_t{256} << 20U; // only what deep tiles need of it is ever touched
 constexpr std::uint64_t kBudgetOfThread = std::uint64_t{4} << 20U;
 // What is behind less light than this, for colours up to 1, changes the sRGB picture by at most 1/20 of 1/255: the
 // curve rises by at most 12.92.
@@ -232,7 +233,9 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
                     info.clipSpace == VITRAIL_CPU_CLIP_OPENGL};
   frame.tilesX = (info.width + kTileSide - 1) / kTileSide;
   frame.tilesY = (info.height + kTileSide - 1) / kTileSide;
-  frame.budget = info.memoryBudget == 0 ? kBudgetOfThread : info.memoryBudget / threads;
+  const std::uint64_t budget =
+      info.memoryBudget == 0 ? std::max(kBudget, kBudgetOfThread * threads) : info.memoryBudget;
+  frame.budget = budget / threads;
 
   frame.draws.clear();
   frame.jobs.clear();
@@ -243,6 +246,7 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
   frame.needs.shaded = frame.info.samples > 1 || info.list != nullptr;
   frame.needs.opaque = info.depth != nullptr;
   float brightest = std::max(1.0F, frame.info.brightest);
+  bool isBrightened = false; // filters make light brighter: what is behind too little of it may be seen after all
   std::uint64_t vertices = 0;
   for (std::uint32_t i = 0; i < draws.size(); ++i) {
     DrawInfo made;
@@ -253,6 +257,8 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
     frame.draws.push_back(made);
     if (made.primitives > 0) {
       addNeeds(frame.needs, made.draw);
+      const bool filters = made.draw.surface == VITRAIL_CPU_TRANSPARENT && made.draw.blend == VITRAIL_BLEND_MULTIPLY;
+      isBrightened = isBrightened || (filters && made.draw.brightest > 1.0F);
       brightest = std::max(brightest, made.draw.brightest);
     }
     addFlatPair(frame, made.draw);
@@ -260,7 +266,7 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
   }
   frame.flatPairs.push_back({0.0F, 0.0F, 0.0F, 0.0F});
   frame.flatFilters.push_back({1.0F, 1.0F, 1.0F, 0.0F});
-  frame.leastTransmittance = info.list != nullptr ? 0.0F : kLeastTransmittance / brightest;
+  frame.leastTransmittance = info.list != nullptr || isBrightened ? 0.0F : kLeastTransmittance / brightest;
   frame.corners.resize(vertices);
 }
 

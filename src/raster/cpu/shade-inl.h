@@ -47,7 +47,7 @@ HWY_INLINE Pairs pairsOf(const VitrailCpuDraw& draw, const VitrailCpuFragments& 
       pairs.isNothing = pairs.isNothing & (color == zero);
     } else {
       pairs.color[c] = zero;
-      pairs.filter[c] = fma(alpha, color - one, one);
+      pairs.filter[c] = fma(alpha, min(color, set(draw.brightest)) - one, one);
     }
     if (filters && (draw.shadeFlags & VITRAIL_CPU_SHADE_FILTER) != 0) {
       const F filter = clamped(load(f.filter[c]), kLargestColor);

@@ -170,6 +170,7 @@ class Store {
     for (std::uint32_t i = 0; i < rows; ++i) static_cast<void>(rowFor(block, 0xffffU, isFresh));
   }
 
+  std::uint64_t peakBytes() const { return peak_ * chunkBytes_; }
   std::int32_t* arena() const { return arena_.get(); }
 
  private:
@@ -198,6 +199,7 @@ class Store {
     if (head.rows >= head.limit) return false;
     if (free_ == kNone && used_ == chunks_) return false;
     const std::uint32_t chunk = free_ != kNone ? free_ : used_++;
+    peak_ = std::max(peak_, used_);
     if (chunk == free_) free_ = previous_[chunk];
     previous_[chunk] = head.chunk;
     head.chunk = chunk;
@@ -210,6 +212,7 @@ class Store {
   std::size_t chunkBytes_ = 0;
   std::uint32_t chunks_ = 0;
   std::uint32_t used_ = 0;
+  std::uint32_t peak_ = 0;     // the most that were used
   std::uint32_t free_ = kNone; // chunks that were given back, a list
   std::unique_ptr<std::int32_t, Free> arena_;
   std::vector<std::uint32_t> previous_; // of a chunk: the one before it

@@ -99,6 +99,7 @@ class TileWorker final : public TileWorkspace {
   }
 
   void draw(const Frame& frame, std::uint32_t tile, TileCounts& counts);
+  std::uint64_t fragmentBytes() const override { return store_.peakBytes(); }
 
  private:
   // Which part of a block's fragments a pass takes: those beyond `after` and before `until`, as keys. Fragments from
@@ -343,7 +344,7 @@ HWY_INLINE std::uint32_t TileWorker::cover(std::uint64_t blocks, std::uint32_t i
         outside = outside | (set(batch_.c[0][k][t]) + set(batch_.a[k][t]) * x + set(batch_.b[k][t]) * y);
       }
     }
-    const std::uint32_t mask = ~signsOf(outside) & 0xffffU;
+    const std::uint32_t mask = ~signsOf(outside) & tile_.pixels[block];
     work_[count] = {static_cast<std::uint8_t>(t), static_cast<std::uint8_t>(block), static_cast<std::uint16_t>(mask)};
     count += static_cast<std::uint32_t>(mask != 0) & static_cast<std::uint32_t>(blocks >> block & 1U);
   }
@@ -367,7 +368,7 @@ HWY_INLINE std::uint32_t TileWorker::coverSamples(std::uint64_t blocks, std::uin
     for (std::uint32_t s = 0; s < samples; ++s) {
       I outside = set(0);
       for (std::size_t k = 0; k < 3; ++k) outside = outside | (slope[k] + set(batch_.c[s][k][t]));
-      const std::uint32_t mask = ~signsOf(outside) & 0xffffU;
+      const std::uint32_t mask = ~signsOf(outside) & tile_.pixels[block];
       sampleMasks_[s][count] = static_cast<std::uint16_t>(mask);
       any |= mask;
     }
@@ -1173,14 +1174,18 @@ inline void TileWorker::draw(const Frame& frame, std::uint32_t tile, TileCounts&
   tile_.y = static_cast<std::int32_t>(tile / frame.tilesX * kTileSide);
   tile_.lastX = std::min<std::int32_t>(kTileSide, static_cast<std::int32_t>(frame.info.width) - tile_.x) - 1;
   tile_.lastY = std::min<std::int32_t>(kTileSide, static_cast<std::int32_t>(frame.info.height) - tile_.y) - 1;
-  drawOpaque(frame, tile);
-  merge(frame, tile, false);
   std::uint64_t blocks = 0;
   for (std::uint32_t b = 0; b < kBlocks; ++b) {
-    const auto x = static_cast<std::int32_t>(b % kBlocksAcross * kBlockSide);
-    const auto y = static_cast<std::int32_t>(b / kBlocksAcross * kBlockSide);
-    if (x <= tile_.lastX && y <= tile_.lastY) blocks |= std::uint64_t{1} << b;
+    // Columns and rows of the block that lie within the frame.
+    const std::int32_t columns = tile_.lastX + 1 - static_cast<std::int32_t>(b % kBlocksAcross * kBlockSide);
+    const std::int32_t rows = tile_.lastY + 1 - static_cast<std::int32_t>(b / kBlocksAcross * kBlockSide);
+    const std::uint32_t row = columns <= 0 ? 0 : 0xfU >> std::max(4 - columns, 0);
+    const std::uint32_t all = rows <= 0 ? 0 : 0xffffU >> 4 * std::max(4 - rows, 0);
+    tile_.pixels[b] = static_cast<std::uint16_t>(row * 0x1111U & all);
+    if (tile_.pixels[b] != 0) blocks |= std::uint64_t{1} << b;
   }
+  drawOpaque(frame, tile);
+  merge(frame, tile, false);
   if (!numbers_.empty() || (opaque_ != nullptr && opaque_->drawn != 0) || frame.info.sampleColors != nullptr) {
     drawParts(frame, blocks, counts);
   }

@@ -1,4 +1,4 @@
-// The threads that work on a frame: oneTBB's, or the host's.
+// The threads that work on a frame: the context's, or the host's.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +24,11 @@ class Workers {
   void run(const std::function<void(std::uint32_t worker)>& work);
 
  private:
-  struct Arena;
+  class Threads;
   std::uint32_t count_;
   VitrailCpuParallel parallel_;
   void* user_;
-  std::unique_ptr<Arena> arena_;
+  std::unique_ptr<Threads> threads_;
 };
 
 // How many processors this process may run on.

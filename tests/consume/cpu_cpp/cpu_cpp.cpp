@@ -1,5 +1,5 @@
 // A host in C++17 of the rasteriser for CPUs: panes of glass that cut through each other, drawn by one thread, by
-// oneTBB's threads, by threads of the host's own, and in four parts. Every picture must have the same bits.
+// threads of the context's own, by threads of the host's own, and in four parts. Every picture must have the same bits.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>

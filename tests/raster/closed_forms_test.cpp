@@ -1,0 +1,286 @@
+// Frames whose pixels are known beforehand: long lists, equal depths, what light does not come through, shapes.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "scene.h"
+
+namespace vitrail::tests::raster {
+namespace {
+
+constexpr std::array<float, 4> kBehind{0.2F, 0.5F, 0.7F, 1.0F};
+
+// A triangle over the whole picture, at a depth.
+void addFull(std::vector<Position>& positions, float depth) {
+  positions.insert(positions.end(),
+                   {{-1.0F, -1.0F, depth, 1.0F}, {3.0F, -1.0F, depth, 1.0F}, {-1.0F, 3.0F, depth, 1.0F}});
+}
+
+// Layers in a random order. Layer i, the i-th from the viewer, is as bright as the shade function makes it.
+struct Layers {
+  std::vector<Position> positions;
+  std::vector<std::uint32_t> places; // of each triangle: which layer it is
+  float alpha = 0.0F;
+  std::uint32_t count = 0;
+
+  Layers(std::uint32_t layers, Random& random)
+      : places(layers), alpha(std::min(0.5F, 4.0F / static_cast<float>(layers))), count(layers) {
+    std::iota(places.begin(), places.end(), 0U);
+    std::shuffle(places.begin(), places.end(), random.engine());
+    for (const std::uint32_t place : places) {
+      addFull(positions, static_cast<float>(place + 1) / static_cast<float>(layers + 2));
+    }
+  }
+  float brightness(std::uint32_t place) const { return 0.1F + 0.8F * static_cast<float>(place % 17) / 16.0F; }
+  double expected(std::uint32_t channel) const {
+    double color = 0.0;
+    double through = 1.0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      color += through * double{alpha} * (channel == 0 ? double{brightness(i)} : 0.25);
+      through *= 1.0 - double{alpha};
+    }
+    return color + through * double{kBehind.at(channel)};
+  }
+};
+
+void shadeLayers(void* user, VitrailCpuFragments* f) {
+  const Layers& layers = *static_cast<Layers*>(user);
+  for (std::size_t i = 0; i < VITRAIL_CPU_LANES; ++i) {
+    f->color[0][i] = layers.brightness(layers.places[f->triangle[i]]);
+    f->color[1][i] = 0.25F;
+    f->color[2][i] = 0.25F;
+    f->color[3][i] = layers.alpha;
+  }
+}
+
+TEST(LongListsTest, AreBlendedInOrder) {
+  Random random(40);
+  for (const VitrailCpuInstructions instructions : instructionsHere()) {
+    Raster raster(instructions);
+    std::vector<std::uint32_t> lengths(70);
+    std::iota(lengths.begin(), lengths.end(), 1U);
+    lengths.insert(lengths.end(), {95, 96, 97, 127, 128, 129, 500, 1000, 1025, 20000, 100000});
+    for (const std::uint32_t length : lengths) {
+      Layers layers(length, random);
+      Picture picture(3, 2, kBehind);
+      VitrailCpuFrame frame = picture.frame();
+      VitrailCpuDraw draw = drawOf(layers.positions);
+      draw.shade = shadeLayers;
+      draw.shadeUser = &layers;
+      draw.brightest = 1.0F;
+      VitrailStats stats{};
+      ASSERT_EQ(raster.render(frame, {&draw, 1}, &stats), VITRAIL_SUCCESS);
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        for (std::uint32_t pixel = 0; pixel < 6; ++pixel) {
+          ASSERT_NEAR(picture.pixels[4 * pixel + c], layers.expected(c), 2e-5)
+              << length << " layers, " << nameOf(instructions);
+        }
+      }
+      EXPECT_EQ(stats.layersMax, length);
+      EXPECT_EQ(stats.fragmentsRequested, 6U * length);
+      EXPECT_EQ(stats.coveredPixels, 6U);
+    }
+  }
+}
+
+// Flat draws, as many layers each as there are; at one depth or at many.
+TEST(LongListsTest, OfFlatDrawsAddUp) {
+  for (const VitrailCpuInstructions instructions : instructionsHere()) {
+    Raster raster(instructions);
+    for (const std::uint32_t samples : {1U, 4U}) {
+      for (const std::uint32_t length : {1U, 2U, 33U, 1000U, 100000U}) {
+        for (const bool isEqual : {true, false}) {
+          if (samples > 1 && length > 1000) continue;
+          std::vector<Position> positions;
+          for (std::uint32_t i = 0; i < length; ++i) {
+            addFull(positions, isEqual ? 0.5F : static_cast<float>(i) / static_cast<float>(length));
+          }
+          Picture picture(2, 2, kBehind);
+          VitrailCpuFrame frame = picture.frame();
+          frame.samples = samples;
+          VitrailCpuDraw added = drawOf(positions);
+          added.blend = VITRAIL_BLEND_ADDITIVE;
+          added.color[0] = 0x1.0p-10F;
+          added.color[3] = 0x1.0p-10F;
+          VitrailCpuDraw over = drawOf(positions);
+          const float alpha = std::min(0.5F, 3.0F / static_cast<float>(length));
+          over.color[1] = 0.75F;
+          over.color[3] = alpha;
+          ASSERT_EQ(raster.render(frame, {&added, 1}), VITRAIL_SUCCESS);
+          EXPECT_NEAR(picture.pixels[0], kBehind[0] + 0x1.0p-20 * length, 1e-5) << length << " layers";
+          ASSERT_EQ(raster.render(frame, {&over, 1}), VITRAIL_SUCCESS);
+          const double through = std::pow(1.0 - double{alpha}, length);
+          EXPECT_NEAR(picture.pixels[1], 0.75 * (1.0 - through) + through * double{kBehind[1]}, 2e-5)
+              << length << " layers, " << samples << " samples";
+          EXPECT_NEAR(picture.pixels[3], 1.0F, 2e-5);
+        }
+      }
+    }
+  }
+}
+
+// Two layers at one depth: in one of the two orders, the same whichever comes first.
+TEST(EqualDepthsTest, HaveAnOrderOfTheirOwn) {
+  std::vector<Position> positions;
+  addFull(positions, 0.25F);
+  std::vector<VitrailCpuDraw> draws(2, drawOf(positions));
+  const std::array<std::array<float, 4>, 2> colors{{{1.0F, 0.0F, 0.25F, 0.5F}, {0.0F, 1.0F, 0.5F, 0.25F}}};
+  for (std::size_t i = 0; i < 2; ++i) std::copy(colors[i].begin(), colors[i].end(), draws[i].color);
+  Raster raster(VITRAIL_CPU_BEST);
+  const auto drawn = [&] {
+    Picture picture(1, 1, kBehind);
+    EXPECT_EQ(raster.render(picture.frame(), draws), VITRAIL_SUCCESS);
+    return picture.pixels;
+  };
+  const std::vector<float> forward = drawn();
+  std::swap(draws[0], draws[1]);
+  EXPECT_EQ(drawn(), forward);
+  const auto blended = [](const std::array<float, 4>& front, const std::array<float, 4>& back, std::size_t c) {
+    const float behind = back[3] * back.at(c) + (1.0F - back[3]) * kBehind.at(c);
+    return front[3] * front.at(c) + (1.0F - front[3]) * behind;
+  };
+  const bool isFirst = std::fabs(forward[0] - blended(colors[0], colors[1], 0)) < 1e-6F;
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(forward[c], isFirst ? blended(colors[0], colors[1], c) : blended(colors[1], colors[0], c), 1e-6);
+  }
+}
+
+// ---- What is behind too little light
+
+double srgbOf(double v) {
+  const double clamped = std::clamp(v, 0.0, 1.0);
+  return clamped <= 0.0031308 ? 12.92 * clamped : 1.055 * std::pow(clamped, 1.0 / 2.4) - 0.055;
+}
+
+// Nothing is left out of a frame with a list hook.
+int blendAll(void* /*user*/, std::uint32_t /*x*/, std::uint32_t /*y*/, const VitrailLayer* /*layers*/,
+             std::uint32_t /*count*/, float* /*color*/) {
+  return 0;
+}
+
+void expectLittleLeftOut(const Scene& scene, const std::string& what) {
+  for (const VitrailCpuInstructions instructions : instructionsHere()) {
+    Raster raster(instructions);
+    const Drawn drawn = draw(raster, scene);
+    Scene whole;
+    whole.frame = scene.frame;
+    whole.frame.list = blendAll;
+    whole.background = scene.background;
+    whole.depth = scene.depth;
+    const Drawn full = draw(raster, whole, scene.descs());
+    double most = 0.0;
+    for (std::size_t i = 0; i < drawn.pixels.size(); ++i) {
+      most = std::max(most, std::fabs(srgbOf(drawn.pixels[i]) - srgbOf(full.pixels[i])));
+    }
+    EXPECT_LE(most, 1.0 / 20.0 / 255.0 + 1e-5) << what << ", " << nameOf(instructions);
+  }
+}
+
+Scene nearlyOpaque(Random& random, float brightest, bool hasFilters, std::uint32_t samples) {
+  SceneOptions options;
+  options.width = 64;
+  options.height = 40;
+  options.samples = samples;
+  options.draws = 30;
+  options.primitives = 20;
+  options.hasFilters = hasFilters;
+  Scene scene = randomScene(random, options);
+  for (const auto& each : scene.draws) {
+    const float scale = random.below(4) == 0 ? brightest : 1.0F;
+    each->desc.brightest = 2.0F * brightest;
+    for (std::size_t c = 0; c < 4; ++c) {
+      float& flat = each->desc.color[c];
+      float& color = each->material.color.at(c);
+      float& other = each->material.other.at(c);
+      for (float* value : {&flat, &color, &other}) *value = c == 3 ? 1.0F - random.single(0.0, 0.2) : *value * scale;
+    }
+    if (each->desc.blend != VITRAIL_BLEND_MULTIPLY) continue;
+    each->desc.brightest = 1.0F;
+    for (std::size_t c = 0; c < 3; ++c) { // dark, and never brighter than what it filters
+      each->desc.color[c] = std::min(each->desc.color[c], 0.3F);
+      each->material.color.at(c) = std::min(each->material.color.at(c), 0.3F);
+      each->material.other.at(c) = std::min(each->material.other.at(c), 0.3F);
+    }
+  }
+  return scene;
+}
+
+TEST(LittleLightTest, IsLeftOutWithinTheBound) {
+  Random random(41);
+  for (const std::uint32_t samples : {1U, 4U}) {
+    for (const bool hasFilters : {false, true}) {
+      for (const float brightest : {1.0F, 30.0F, 30000.0F}) {
+        for (int i = 0; i < 3; ++i) {
+          expectLittleLeftOut(nearlyOpaque(random, brightest, hasFilters, samples),
+                              "colours up to " + std::to_string(brightest));
+        }
+      }
+    }
+  }
+}
+
+// Filters that make light brighter, behind a surface that lets next to none through.
+TEST(LittleLightTest, IsNotMadeBrightAgainUnseen) {
+  std::vector<Position> front;
+  std::vector<Position> middle;
+  std::vector<Position> back;
+  addFull(front, 0.1F);
+  addFull(back, 0.9F);
+  for (int i = 0; i < 3; ++i) addFull(middle, 0.2F + 0.1F * static_cast<float>(i));
+  std::vector<VitrailCpuDraw> draws{drawOf(front), drawOf(middle), drawOf(back)};
+  draws[0].color[3] = 1.0F - 0x1.0p-22F;
+  draws[1].blend = VITRAIL_BLEND_MULTIPLY;
+  std::fill_n(draws[1].color, 3, 30.0F);
+  draws[1].color[3] = 1.0F;
+  std::fill_n(draws[2].color, 4, 1.0F);
+  Raster raster(VITRAIL_CPU_BEST);
+  Picture picture(2, 2);
+  ASSERT_EQ(raster.render(picture.frame(), draws), VITRAIL_SUCCESS);
+  EXPECT_NEAR(srgbOf(picture.pixels[0]), srgbOf(27000.0 * 0x1.0p-22), 1.0 / 20.0 / 255.0);
+}
+
+// ---- Shapes
+
+std::uint32_t coveredPixels(VitrailCpuDraw draw, std::uint32_t side) {
+  Raster raster(VITRAIL_CPU_BEST);
+  Picture picture(side, side);
+  VitrailStats stats{};
+  std::fill_n(draw.color, 4, 0.5F);
+  EXPECT_EQ(raster.render(picture.frame(), {&draw, 1}, &stats), VITRAIL_SUCCESS);
+  EXPECT_EQ(stats.layersMax, stats.coveredPixels > 0 ? 1U : 0U);
+  return stats.coveredPixels;
+}
+
+TEST(PointsTest, AreSquares) {
+  for (const float size : {1.0F, 2.0F, 3.0F, 8.0F, 17.0F}) {
+    const auto whole = static_cast<std::uint32_t>(size);
+    const std::vector<Position> corner{inPixels(64, 64, 32.0, 32.0)};
+    VitrailCpuDraw draw = drawOf(corner);
+    draw.topology = VITRAIL_CPU_POINTS;
+    draw.pointSize = size;
+    EXPECT_EQ(coveredPixels(draw, 64), whole * whole) << size;
+    const std::vector<Position> outside{inPixels(64, 64, 0.0, 0.0)}; // a quarter of it is within the picture
+    draw.positions = outside[0].data();
+    if (whole % 2 == 0) {
+      EXPECT_EQ(coveredPixels(draw, 64), whole * whole / 4) << size;
+    }
+    const std::vector<Position> behind{{0.0F, 0.0F, -0.5F, 1.0F}};
+    draw.positions = behind[0].data();
+    EXPECT_EQ(coveredPixels(draw, 64), 0U) << size;
+  }
+}
+
+TEST(LinesTest, CoverAPixelAStep) {
+  for (const auto& [x, y] :
+       {std::pair{40.0, 7.0}, {-20.0, 3.0}, {5.0, 30.0}, {-1.0, -19.0}, {25.0, 0.0}, {0.0, 11.0}}) {
+    const std::vector<Position> ends{inPixels(128, 128, 64.25, 64.25), inPixels(128, 128, 64.25 + x, 64.25 + y)};
+    VitrailCpuDraw draw = drawOf(ends);
+    draw.topology = VITRAIL_CPU_LINES;
+    EXPECT_EQ(coveredPixels(draw, 128), static_cast<std::uint32_t>(std::max(std::fabs(x), std::fabs(y))))
+        << x << ", " << y;
+  }
+}
+
+} // namespace
+} // namespace vitrail::tests::raster
