@@ -9,7 +9,8 @@
 
 namespace vitrail::tool {
 
-// A context with its defaults, but for the number of threads where one is given. Its errors become GpuErrors that say the reason.
+// A context with its defaults, but for the number of threads where one is given. Its errors become GpuErrors that say
+// the reason.
 class Rasterizer {
  public:
   explicit Rasterizer(std::uint32_t threads = 0);
