@@ -82,7 +82,11 @@ void clipAll(const Viewport& viewport, Polygon& polygon, std::uint32_t planes) {
 }
 
 // Whether a corner can be divided by its w: one at w = 0 is left over where all of a triangle lies in the eye's plane.
-bool hasPlace(const ClipVertex& v) { return v.position[3] >= kLeastW; }
+// Nor one with coordinates that are not finite.
+bool hasPlace(const ClipVertex& v) {
+  const auto& p = v.position;
+  return p[3] >= kLeastW && p[3] <= kMostW && std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
 
 Pieces fanOf(const Viewport& viewport, const Polygon& polygon) {
   Pieces made;
@@ -149,8 +153,9 @@ Corner placed(const Viewport& viewport, const std::array<float, 4>& position) {
 bool needsClipping(const Viewport& viewport, const std::array<float, 4>& position) {
   const Band band = bandOf(viewport);
   const float w = position[3];
-  const bool inside = w >= kLeastW && nearDistance(viewport, position) >= 0.0F && farDistance(position) >= 0.0F &&
-                      std::fabs(position[0]) <= band.x * w && std::fabs(position[1]) <= band.y * w;
+  const bool inside = w >= kLeastW && w <= kMostW && nearDistance(viewport, position) >= 0.0F &&
+                      farDistance(position) >= 0.0F && std::fabs(position[0]) <= band.x * w &&
+                      std::fabs(position[1]) <= band.y * w;
   return !inside;
 }
 

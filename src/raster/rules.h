@@ -26,6 +26,9 @@ constexpr std::int32_t kGuardBand = 32767;
 // The least w of clip space that a corner may have: one over it is still finite.
 constexpr float kLeastW = 1.1754944e-38F;
 
+// The largest: guard bands times it are still finite. What is cut off at one that is larger is not drawn.
+constexpr float kMostW = 1.2676506e30F; // 2^100
+
 // A corner's place in the picture in subpixels, y down, and what is interpolated without perspective: depth, and one
 // over the w of clip space.
 struct Corner {
@@ -38,9 +41,12 @@ struct Corner {
 // The x of a corner that has to be clipped first; the rest of it is of no meaning.
 constexpr std::int32_t kNeedsClipping = INT32_MIN;
 
-// Pixels to subpixels, in the processor's rounding mode: to the nearest, ties to even.
+// Pixels to subpixels, in the processor's rounding mode: to the nearest, ties to even. Where clipping has left nothing
+// but noise, a place twice as far as any that can be rasterised.
 inline std::int32_t snap(float pixels) {
-  return static_cast<std::int32_t>(std::nearbyintf(pixels * static_cast<float>(kSubpixels)));
+  constexpr auto kMost = static_cast<float>(2 * kGuardBand);
+  const float within = pixels > -kMost ? (pixels < kMost ? pixels : kMost) : -kMost; // a NaN, too
+  return static_cast<std::int32_t>(std::nearbyintf(within * static_cast<float>(kSubpixels)));
 }
 
 // Where a sample lies in its pixel, in sixteenths from the upper left corner.

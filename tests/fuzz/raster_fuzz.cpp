@@ -225,7 +225,7 @@ void makeFrame(Bytes& bytes, Frame& frame) {
     desc.list = list;
     desc.listUser = &desc;
   }
-  desc.memoryBudget = bytes.oneIn(2) ? 65536 : bytes.oneIn(16) ? bytes.word() : 0;
+  desc.memoryBudget = bytes.oneIn(2) ? 65536 : bytes.oneIn(16) ? bytes.word() % (1U << 24U) : 0;
 }
 
 // Contexts are kept, as hosts keep them: one for each set of instructions that there is.

@@ -41,8 +41,8 @@ HWY_INLINE M isOutside(const Viewport& viewport, const F& x, const F& y, const F
   const F bandY = set(2.0F * pixels / static_cast<float>(viewport.height)) * w;
   const F zero = set(0.0F);
   const F near = viewport.depthFromMinusW ? w + z : z;
-  const M inside = (w >= set(kLeastW)) & (near >= zero) & (w - z >= zero) & (bandX >= x) & (bandX + x >= zero) &
-                   (bandY >= y) & (bandY + y >= zero);
+  const M inside = (w >= set(kLeastW)) & (set(kMostW) >= w) & (near >= zero) & (w - z >= zero) & (bandX >= x) &
+                   (bandX + x >= zero) & (bandY >= y) & (bandY + y >= zero);
   return ~inside;
 }
 
