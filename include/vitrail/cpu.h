@@ -21,8 +21,9 @@
  * triangle's shape.
  *
  * The same frame gives the same bits for any number of threads and any order of transparent draws, as far as what is
- * shaded is the same; of opaque surfaces at one depth the one that is drawn last shows. Between instruction sets pictures differ by at most 1/255: some fuse a multiplication and an addition, which
- * rounds once, others round twice. Coverage never differs.
+ * shaded is the same; of opaque surfaces at one depth the one that is drawn last shows. Between instruction sets
+ * pictures differ by at most 1/255: some fuse a multiplication and an addition, which rounds once, others round twice.
+ * Coverage never differs.
  *
  * Threads: a context is used from one thread at a time; different contexts may be used at once. Nothing global is kept.
  * A call returns when the frame is done; shade functions and hooks run on the context's threads, several at once. */
