@@ -20,9 +20,10 @@
  * at most 2^-22 of the largest depth of the triangle's corners, barycentric coordinates by at most 2^-20, whatever the
  * triangle's shape.
  *
- * The same frame gives the same bits for any number of threads and any order of draws, as far as what is shaded is the
- * same. Between instruction sets pictures differ by at most 1/255: some fuse a multiplication and an addition, which
- * rounds once, others round twice. Coverage never differs.
+ * The same frame gives the same bits for any number of threads and any order of transparent draws, as far as what is
+ * shaded is the same; of opaque surfaces at one depth the one that is drawn last shows. Between instruction sets
+ * pictures differ by at most 1/255: some fuse a multiplication and an addition, which rounds once, others round twice.
+ * Coverage never differs.
  *
  * Threads: a context is used from one thread at a time; different contexts may be used at once. Nothing global is kept.
  * A call returns when the frame is done; shade functions and hooks run on the context's threads, several at once. */

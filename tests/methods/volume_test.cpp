@@ -102,38 +102,22 @@ class VolumeTest : public GpuTest {
 
   // In the middle, `share` of the light behind passes.
   void expectPasses(const Make& make, const View& view, const glm::dvec3& share) {
-    expectPasses(make, view, share, ways());
-  }
-
-  void expectPasses(const Make& make, const View& view, const glm::dvec3& share,
-                    std::span<const MethodOptions> methods) {
-    for (const MethodOptions& method : methods) {
+    for (const MethodOptions& method : ways()) {
       SCOPED_TRACE(describe(method));
-      const glm::vec3 black(0.0F);
-      const glm::vec3 white(1.0F);
-      const std::array<int, 3> dark =
-          middle(renderOnce(gpu(), make(black), pictureOf(view, black), {}, DrawOrder::Forward, method).picture);
-      const bool usual = method.samples == 1 && method.nodes == MethodOptions().nodes;
-      for (const DrawOrder order : usual ? std::span(kOrders) : std::span(kOrders).first(1)) {
-        const RenderResult result = renderOnce(gpu(), make(white), pictureOf(view, white), {}, order, method);
-        EXPECT_TRUE(result.report.complete);
-        const std::array<int, 3> light = middle(result.picture);
-        for (std::size_t c = 0; c < 3; ++c) {
-          const double expected = decodeSrgb(dark[c] / 255.0) + share[static_cast<int>(c)];
-          EXPECT_NEAR(light[c], quantize8(encodeSrgb(std::min(expected, 1.0))), 1) << "channel " << c;
-        }
+      const std::array<int, 3> dark = middleOf(make(kBlack), view, kBlack, DrawOrder::Forward, method);
+      for (const DrawOrder order : ordersOf(method)) {
+        expectBrighter(dark, middleOf(make(kWhite), view, kWhite, order, method), share);
       }
     }
   }
 
   void expectPasses(const Scene& scene, const View& view, const glm::dvec3& share) {
-    expectPasses([&](const glm::vec3&) { return scene; }, view, share);
+    for (const MethodOptions& method : ways()) expectPasses(scene, view, share, method);
   }
 
   // The same by the default options alone.
   void expectPassesUsually(const Scene& scene, const View& view, const glm::dvec3& share) {
-    const MethodOptions usual;
-    expectPasses([&](const glm::vec3&) { return scene; }, view, share, {&usual, 1});
+    expectPasses(scene, view, share, MethodOptions());
   }
 
   void expectLikeReference(const Scene& scene, const RenderOptions& options, const MethodOptions& method,
@@ -157,6 +141,42 @@ class VolumeTest : public GpuTest {
       EXPECT_LE(comparison.edgeOver, 0.1 * edgeShare) << comparison;
     }
     EXPECT_TRUE(result.report.complete);
+  }
+
+ private:
+  static constexpr glm::vec3 kBlack{0.0F};
+  static constexpr glm::vec3 kWhite{1.0F};
+
+  // All orders by the default options, else one.
+  static std::span<const DrawOrder> ordersOf(const MethodOptions& method) {
+    const bool usual = method.samples == 1 && method.nodes == MethodOptions().nodes;
+    return usual ? std::span(kOrders) : std::span(kOrders).first(1);
+  }
+
+  std::array<int, 3> middleOf(const RenderResult& result) const {
+    EXPECT_TRUE(result.report.complete);
+    return middle(result.picture);
+  }
+  std::array<int, 3> middleOf(const Scene& scene, const View& view, const glm::vec3& background, DrawOrder order,
+                              const MethodOptions& method) const {
+    return middleOf(renderOnce(gpu(), scene, pictureOf(view, background), {}, order, method));
+  }
+
+  // One renderer for both backgrounds.
+  void expectPasses(const Scene& scene, const View& view, const glm::dvec3& share, const MethodOptions& method) {
+    SCOPED_TRACE(describe(method));
+    for (const DrawOrder order : ordersOf(method)) {
+      StillRenderer renderer(gpu(), scene, {}, order, method);
+      const std::array<int, 3> dark = middleOf(renderer.render(pictureOf(view, kBlack)));
+      expectBrighter(dark, middleOf(renderer.render(pictureOf(view, kWhite))), share);
+    }
+  }
+
+  static void expectBrighter(const std::array<int, 3>& dark, const std::array<int, 3>& light, const glm::dvec3& share) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double expected = decodeSrgb(dark[c] / 255.0) + share[static_cast<int>(c)];
+      EXPECT_NEAR(light[c], quantize8(encodeSrgb(std::min(expected, 1.0))), 1) << "channel " << c;
+    }
   }
 };
 
@@ -436,14 +456,15 @@ TEST_F(VolumeTest, OrdersAndTilesAndResolvesMakeNoDifference) {
   RenderOptions options = usualOptions(scene, 240, 135);
   for (MethodOptions method : ways()) {
     SCOPED_TRACE(describe(method));
-    const RenderResult whole = renderOnce(gpu(), scene, options, {}, DrawOrder::Forward, method);
+    StillRenderer renderer(gpu(), scene, {}, DrawOrder::Forward, method);
+    const RenderResult whole = renderer.render(options);
     EXPECT_EQ(whole.report.tiles, 1U);
     for (const DrawOrder order : {DrawOrder::Reversed, DrawOrder::Shuffled}) {
       EXPECT_TRUE(renderOnce(gpu(), scene, options, {}, order, method).picture.rgba == whole.picture.rgba);
     }
     RenderOptions bounded = options;
     bounded.memoryBudget = 1 << 18;
-    const RenderResult tiled = renderOnce(gpu(), scene, bounded, {}, DrawOrder::Forward, method);
+    const RenderResult tiled = renderer.render(bounded);
     EXPECT_GT(tiled.report.tiles, 1U);
     EXPECT_TRUE(tiled.picture.rgba == whole.picture.rgba);
     EXPECT_LE(tiled.report.totalBytes, *bounded.memoryBudget + 4096);

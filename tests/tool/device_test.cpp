@@ -266,6 +266,41 @@ TEST(Device, MemoryThatIsNotThereIsOneLine) {
   EXPECT_EQ(folder.names(), Words{});
 }
 
+// Fragments are not kept for the whole picture: 10^8 of them, whether they hide each other or not. For 10^10 see
+// docs/testing.md.
+TEST(Device, DeepPicturesNeedLittleMemory) {
+  const TemporaryFolder folder;
+  for (const char* alpha : {"0.0002", "0.5"}) {
+    SCOPED_TRACE(alpha);
+    const ProcessResult made = run({"/usr/bin/env", "python3", VITRAIL_TEST_CORPUS "/../tool/make_large.py", "panes",
+                                    "1000", alpha, folder.file("panes.gltf")},
+                                   {.folder = folder.path(), .environment = {}, .running = {}});
+    ASSERT_EQ(made.exitCode, 0) << made.error;
+    const ProcessResult result = vitrail(folder, {"render", "panes.gltf", "--eye", "0,0,1", "--fov", "50", "--size",
+                                                  "320x320", "--device", "cpu", "-o", "a.png", "--json", "a.json"});
+    ASSERT_EQ(result.exitCode, 0) << result.error;
+    const Json report = readJson(folder.file("a.json"));
+    EXPECT_EQ(report.at("fragments").at("requested"), 1000 * 320 * 320);
+    EXPECT_EQ(report.at("fragments").at("missing"), 0);
+    EXPECT_EQ(report.at("layers").at("max"), 1000);
+    EXPECT_EQ(report.at("exact"), true);
+    EXPECT_LT(report.at("memory").at("peak_bytes"), std::uint64_t{256} << 20U); // 12 bytes a fragment were 1.2 GB
+  }
+}
+
+// Many triangles of less than a pixel. For 2 * 10^7 see docs/testing.md.
+TEST(Device, ManyTrianglesAreDrawn) {
+  const TemporaryFolder folder;
+  const ProcessResult made = run({"/usr/bin/env", "python3", VITRAIL_TEST_CORPUS "/../tool/make_large.py", "triangles",
+                                  "200000", folder.file("a.stl")},
+                                 {.folder = folder.path(), .environment = {}, .running = {}});
+  ASSERT_EQ(made.exitCode, 0) << made.error;
+  const ProcessResult result = vitrail(folder, {"render", "a.stl", "--opacity", "0.5", "--size", "64x64", "--device",
+                                                "cpu", "-o", "a.png", "--json", "a.json"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_EQ(readJson(folder.file("a.json")).at("exact"), true);
+}
+
 // From the call to the file; the machine may be busy, so the best of several counts.
 TEST(Device, ASmallPictureIsThereAtOnce) {
   const TemporaryFolder folder;

@@ -485,7 +485,7 @@ Image randomImage(Random& random, bool translucent) {
 glm::dvec4 texelAt(const CpuTexture& texture, std::size_t level, std::int64_t x, std::int64_t y) {
   const auto i = static_cast<std::size_t>(texture.offset.at(level) + y * texture.width.at(level) + x);
   if (texture.kind == Texels::Premultiplied) {
-    return {glm::unpackHalf2x16(texture.texels[i]), glm::unpackHalf2x16(texture.blueAlpha[i])};
+    return {glm::unpackHalf2x16(texture.texels[2 * i]), glm::unpackHalf2x16(texture.texels[2 * i + 1])};
   }
   glm::dvec4 value;
   for (int k = 0; k < 4; ++k) {
@@ -776,7 +776,7 @@ TEST(CpuScene, DrawsTransparentTrianglesInTheOrderThatIsAskedFor) {
   EXPECT_EQ(std::vector<std::uint32_t>(draw.indices, draw.indices + 6), (std::vector<std::uint32_t>{2, 1, 0, 0, 1, 2}));
 }
 
-TEST(CpuScene, MovesClipPlanesIntoTheMeshesSpace) {
+TEST(CpuScene, CutsByPlanesInTheWorld) {
   glm::mat4 transform = glm::rotate(glm::mat4(1.0F), 0.7F, glm::normalize(glm::vec3(1.0F, 2.0F, 3.0F)));
   transform[3] = glm::vec4(1.0F, 2.0F, 3.0F, 1.0F);
   Scene scene = triangleScene(Material{}, transform);
@@ -785,10 +785,16 @@ TEST(CpuScene, MovesClipPlanesIntoTheMeshesSpace) {
   const VitrailCpuDraw& draw = cpu.draws(View{}, 8, 8)[0];
   ASSERT_EQ(draw.clipPlaneCount, 1U);
   const glm::vec4 local(0.3F, -0.2F, 0.9F, 1.0F);
+  // Planes are for what the draw's model matrix makes of its positions.
+  glm::vec4 placed(0.0F, 0.0F, 0.0F, 1.0F);
+  for (int row = 0; row < 3; ++row) {
+    const float* m = draw.model + std::ptrdiff_t{4} * row;
+    placed[row] = m[0] * local.x + m[1] * local.y + m[2] * local.z + m[3];
+  }
   const glm::dvec3 world(transform * local);
   const float* p = draw.clipPlanes;
-  EXPECT_NEAR(p[0] * local.x + p[1] * local.y + p[2] * local.z + p[3], glm::dot(world, glm::dvec3(0.6, 0.8, 0.0)) - 1.5,
-              1e-6);
+  EXPECT_NEAR(p[0] * placed.x + p[1] * placed.y + p[2] * placed.z + p[3],
+              glm::dot(world, glm::dvec3(0.6, 0.8, 0.0)) - 1.5, 1e-6);
 }
 
 TEST(CpuScene, MovesLinesByHalfASubpixel) {

@@ -304,7 +304,9 @@ void drawBackground(const Background& background, const View& view, std::uint32_
   }
   const bool isColor = background.kind == Background::Kind::Color;
   const glm::vec4 color = isColor ? glm::vec4(linearFromSrgb(background.srgb), 1.0F) : glm::vec4(0.0F);
-  for (std::size_t i = 0; i < rows * floats; ++i) rgba[i] = color[static_cast<int>(i % 4)];
+  if (rows == 0) return;
+  for (std::size_t i = 0; i < floats; ++i) rgba[i] = color[static_cast<int>(i % 4)];
+  for (std::uint32_t row = 1; row < rows; ++row) std::copy_n(rgba, floats, rgba + row * floats);
 }
 
 } // namespace vitrail::tool

@@ -58,7 +58,7 @@ const SrgbCodes& srgbCodes() {
 
 glm::vec4 unpack(const CpuTexture& texture, std::size_t i) {
   if (texture.kind == Texels::Premultiplied) {
-    return {glm::unpackHalf2x16(texture.texels[i]), glm::unpackHalf2x16(texture.blueAlpha[i])};
+    return {glm::unpackHalf2x16(texture.texels[2 * i]), glm::unpackHalf2x16(texture.texels[2 * i + 1])};
   }
   const std::uint32_t texel = texture.texels[i];
   const glm::uvec4 codes(texel & 255U, texel >> 8U & 255U, texel >> 16U & 255U, texel >> 24U);
@@ -71,8 +71,8 @@ std::uint32_t step8(float value) { return static_cast<std::uint32_t>(value * 255
 
 void pack(CpuTexture& texture, std::size_t i, const glm::vec4& value) {
   if (texture.kind == Texels::Premultiplied) {
-    texture.texels[i] = glm::packHalf2x16(glm::vec2(value));
-    texture.blueAlpha[i] = glm::packHalf2x16(glm::vec2(value.b, value.a));
+    texture.texels[2 * i] = glm::packHalf2x16(glm::vec2(value));
+    texture.texels[2 * i + 1] = glm::packHalf2x16(glm::vec2(value.b, value.a));
     return;
   }
   glm::uvec4 codes(step8(value.r), step8(value.g), step8(value.b), step8(value.a));
@@ -128,9 +128,8 @@ void copyBase(CpuTexture& texture, const Image& image) {
   const std::size_t count = std::size_t{image.width} * image.height;
   if (texture.kind == Texels::Premultiplied) {
     const std::vector<std::uint16_t> halves = premultiply(image);
-    for (std::size_t i = 0; i < count; ++i) {
-      texture.texels[i] = halves[4 * i] | static_cast<std::uint32_t>(halves[4 * i + 1]) << 16U;
-      texture.blueAlpha[i] = halves[4 * i + 2] | static_cast<std::uint32_t>(halves[4 * i + 3]) << 16U;
+    for (std::size_t i = 0; i < 2 * count; ++i) {
+      texture.texels[i] = halves[2 * i] | static_cast<std::uint32_t>(halves[2 * i + 1]) << 16U;
     }
     return;
   }
@@ -160,8 +159,7 @@ CpuTexture makeCpuTexture(const Image& image, Texels kind) {
       throw std::length_error("a texture has more than 2^31 texels");
     }
   }
-  texture.texels.resize(count);
-  if (kind == Texels::Premultiplied) texture.blueAlpha.resize(count);
+  texture.texels.resize(kind == Texels::Premultiplied ? 2 * count : count);
   copyBase(texture, image);
   for (std::size_t i = 1; i < static_cast<std::size_t>(texture.levels); ++i) shrink(texture, i);
   return texture;

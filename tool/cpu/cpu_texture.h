@@ -24,10 +24,9 @@ struct CpuTexture {
   alignas(64) std::array<std::int32_t, kMostLevels> width{};
   alignas(64) std::array<std::int32_t, kMostLevels> height{};
   alignas(64) std::array<std::int32_t, kMostLevels> offset{};
-  // Texels of all levels: red in the lowest of four bytes; of premultiplied ones red and green as 16-bit floats, and in
-  // the second array blue and alpha.
+  // Texels of all levels: red in the lowest of four bytes; premultiplied ones take two words each, of 16-bit floats:
+  // red and green, blue and alpha.
   std::vector<std::uint32_t> texels;
-  std::vector<std::uint32_t> blueAlpha;
 };
 
 // Throws std::length_error for an image that is too large.

@@ -55,15 +55,13 @@ void skyRow(const shaders::FrameData& frame, std::uint32_t row, float* rgba, std
     const Float3 along = mulAdd(set3(axes[0]), hn::MulSub(column, set(ray.x), set(ray.z)), toRow);
     const V y = along.y * inverseSqrt(dot(along, along));
     const Float3 color = mix(horizon, select(y >= zero(), zenith, ground), hn::Sqrt(hn::Abs(y)));
-    alignas(64) float channels[3][kLanes];
-    hn::Store(color.x, d, channels[0]);
-    hn::Store(color.y, d, channels[1]);
-    hn::Store(color.z, d, channels[2]);
-    for (std::size_t i = 0; i < kLanes && x + i < width; ++i) {
-      float* pixel = rgba + 4 * (x + i);
-      for (int c = 0; c < 3; ++c) pixel[c] = channels[c][i];
-      pixel[3] = 1.0F;
+    if (x + kLanes <= width) {
+      hn::StoreInterleaved4(color.x, color.y, color.z, one(), d, rgba + 4 * x);
+      continue;
     }
+    alignas(64) float last[4 * kLanes];
+    hn::StoreInterleaved4(color.x, color.y, color.z, one(), d, last);
+    std::copy_n(last, 4 * (width - x), rgba + 4 * x);
   }
 }
 
@@ -99,8 +97,10 @@ std::int64_t targetsOf(VitrailCpuInstructions instructions) {
 }
 
 std::size_t dispatchIndex(VitrailCpuInstructions instructions) {
+  // Asked once: in a virtual machine every question to the processor takes microseconds.
+  static const std::int64_t supported = hwy::SupportedTargets();
   hwy::ChosenTarget target;
-  target.Update(hwy::SupportedTargets() & targetsOf(instructions));
+  target.Update(supported & targetsOf(instructions));
   return target.GetIndex();
 }
 

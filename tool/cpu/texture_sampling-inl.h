@@ -6,6 +6,10 @@
 #define VITRAIL_TOOL_CPU_TEXTURE_SAMPLING_INL_H
 #endif
 
+#include <algorithm>
+#include <cstring>
+
+#include <hwy/cache_control.h>
 #include <hwy/contrib/math/math-inl.h>
 
 #include "corners-inl.h"
@@ -66,32 +70,49 @@ HWY_INLINE V fromSrgbCode(VI code) {
   return select(x > set(10.5F / 255.0F), curve, x * set(1.0F / 12.92F));
 }
 
-// Red, green, blue and alpha of some texels.
-HWY_INLINE Float4 texelsAt(const CpuTexture& texture, VI index) {
-  const Tag d;
-  const IntTag di;
-  const VI word = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(texture.texels.data()), index);
-  if (texture.kind == Texels::Premultiplied) {
-    const VI other = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(texture.blueAlpha.data()), index);
-    return {fromHalf(word), fromHalf(hn::ShiftRight<16>(word)), fromHalf(other), fromHalf(hn::ShiftRight<16>(other))};
-  }
-  const VI byte = setInt(255);
-  const VI r = hn::And(word, byte);
-  const VI g = hn::And(hn::ShiftRight<8>(word), byte);
-  const VI b = hn::And(hn::ShiftRight<16>(word), byte);
-  const V scale = set(1.0F / 255.0F);
-  const V alpha = hn::ConvertTo(d, hn::And(hn::ShiftRight<24>(word), byte)) * scale;
-  if (texture.kind == Texels::Srgb) {
-    return {fromSrgbCode(r), fromSrgbCode(g), fromSrgbCode(b), alpha};
-  }
-  return {hn::ConvertTo(d, r) * scale, hn::ConvertTo(d, g) * scale, hn::ConvertTo(d, b) * scale, alpha};
-}
+// The four texels between which fragments read, bit for bit: of 8-bit ones a word, of premultiplied ones two. By lane:
+// upper left, upper right, lower left, lower right.
+struct FetchedTexels {
+  alignas(64) std::uint32_t upper[kLanes][4]; // of 8-bit ones all four, of premultiplied ones two
+  alignas(64) std::uint32_t lower[kLanes][4]; // premultiplied ones
+};
 
 HWY_INLINE Float4 mix4(const Float4& a, const Float4& b, V share) {
   return {mix(a.x, b.x, share), mix(a.y, b.y, share), mix(a.z, b.z, share), mix(a.w, b.w, share)};
 }
 
-HWY_NOINLINE Float4 sampleLevel(const CpuSlot& slot, VI level, V u, V v, M linear) {
+HWY_INLINE Float4 bilinear(const Float4* texels, V x, V y) {
+  return mix4(mix4(texels[0], texels[1], x), mix4(texels[2], texels[3], x), y);
+}
+
+// Red, green, blue and alpha of texels of eight bits a channel.
+HWY_INLINE Float4 unpackBytes(VI word, bool srgb) {
+  const VI byte = setInt(255);
+  const VI r = hn::And(word, byte);
+  const VI g = hn::And(hn::ShiftRight<8>(word), byte);
+  const VI b = hn::And(hn::ShiftRight<16>(word), byte);
+  const V scale = set(1.0F / 255.0F);
+  const V alpha = hn::ConvertTo(Tag(), hn::And(hn::ShiftRight<24>(word), byte)) * scale;
+  if (srgb) return {fromSrgbCode(r), fromSrgbCode(g), fromSrgbCode(b), alpha};
+  return {hn::ConvertTo(Tag(), r) * scale, hn::ConvertTo(Tag(), g) * scale, hn::ConvertTo(Tag(), b) * scale, alpha};
+}
+
+// The two 16-bit floats in a word, which are not negative: as in fromHalf().
+constexpr float kHalfScale = 5.192296858534828e33F; // 2^112
+HWY_INLINE V lowerHalf(VI word) {
+  return hn::BitCast(Tag(), hn::ShiftLeft<13>(hn::And(word, setInt(0x7fff)))) * set(kHalfScale);
+}
+HWY_INLINE V upperHalf(VI word) {
+  return hn::BitCast(Tag(), hn::And(hn::ShiftRight<3>(word), setInt(0x0fffe000))) * set(kHalfScale);
+}
+
+// Which texels of a level fragments read, and how much of each.
+struct LevelPlaces {
+  alignas(64) std::int32_t index[4][kLanes]; // by texel as in FetchedTexels
+  V right, down;
+};
+
+HWY_INLINE void placeInLevel(const CpuSlot& slot, VI level, V u, V v, M linear, LevelPlaces& places) {
   const CpuTexture& texture = *slot.texture;
   const IntTag di;
   const auto first = static_cast<std::size_t>(hn::GetLane(level));
@@ -106,11 +127,85 @@ HWY_NOINLINE Float4 sampleLevel(const CpuSlot& slot, VI level, V u, V v, M linea
   const Neighbours x = neighboursOf(u, width, linear, slot.sampler.wrapU);
   const Neighbours y = neighboursOf(v, height, linear, slot.sampler.wrapV);
   const VI upper = offset + y.first * width;
-  if (hn::AllFalse(Tag(), linear)) return texelsAt(texture, upper + x.first);
   const VI lower = offset + y.second * width;
-  const Float4 above = mix4(texelsAt(texture, upper + x.first), texelsAt(texture, upper + x.second), x.weight);
-  const Float4 below = mix4(texelsAt(texture, lower + x.first), texelsAt(texture, lower + x.second), x.weight);
-  return mix4(above, below, y.weight);
+  hn::Store(upper + x.first, di, places.index[0]);
+  hn::Store(upper + x.second, di, places.index[1]);
+  hn::Store(lower + x.first, di, places.index[2]);
+  hn::Store(lower + x.second, di, places.index[3]);
+  places.right = x.weight;
+  places.down = y.weight;
+}
+
+// Asks for most of what fetchTexels() is to read: the first and the last of each four pixels, which are neighbours. The
+// rasteriser shades a block's layers one after the other, each of which shows another place of its texture: that is in
+// no near cache, and waiting for it line by line would be what sampling costs.
+HWY_INLINE void prefetchTexels(const CpuTexture& texture, const LevelPlaces& places) {
+  const std::size_t words = texture.kind == Texels::Premultiplied ? 2 : 1;
+  const auto ask = [&](std::size_t lane) HWY_ATTR {
+    hwy::Prefetch(texture.texels.data() + words * static_cast<std::size_t>(places.index[0][lane]));
+  };
+  for (std::size_t i = 0; i < kLanes; i += 4) {
+    ask(i);
+    ask(std::min(i + 3, kLanes - 1));
+  }
+}
+
+// Loads of one texel after the other: they are faster than gathers, of which processors make more steps than that.
+HWY_INLINE void fetchTexels(const CpuTexture& texture, const LevelPlaces& places, FetchedTexels& to) {
+  const std::uint32_t* texels = texture.texels.data();
+  const auto copy = [&](std::size_t k, std::size_t i, std::uint32_t* word)
+                        HWY_ATTR { std::memcpy(word, texels + 2 * static_cast<std::size_t>(places.index[k][i]), 8); };
+  if (texture.kind == Texels::Premultiplied) {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      copy(0, i, to.upper[i]);
+      copy(1, i, to.upper[i] + 2);
+      copy(2, i, to.lower[i]);
+      copy(3, i, to.lower[i] + 2);
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) to.upper[i][k] = texels[places.index[k][i]];
+  }
+}
+
+HWY_INLINE void loadWords(const std::uint32_t (*words)[4], VI* to) {
+  hn::LoadInterleaved4(IntTag(), reinterpret_cast<const std::int32_t*>(words), to[0], to[1], to[2], to[3]);
+}
+
+// What is between the texels.
+HWY_INLINE Float4 filterTexels(const CpuTexture& texture, const LevelPlaces& places, const FetchedTexels& fetched) {
+  Float4 texels[4];
+  VI words[4];
+  loadWords(fetched.upper, words);
+  if (texture.kind != Texels::Premultiplied) {
+    for (std::size_t i = 0; i < 4; ++i) texels[i] = unpackBytes(words[i], texture.kind == Texels::Srgb);
+    return bilinear(texels, places.right, places.down);
+  }
+  for (std::size_t i = 0; i < 4; i += 2) {
+    if (i != 0) loadWords(fetched.lower, words);
+    texels[i] = {lowerHalf(words[0]), upperHalf(words[0]), lowerHalf(words[1]), upperHalf(words[1])};
+    texels[i + 1] = {lowerHalf(words[2]), upperHalf(words[2]), lowerHalf(words[3]), upperHalf(words[3])};
+  }
+  return bilinear(texels, places.right, places.down);
+}
+
+HWY_INLINE Float4 readLevel(const CpuTexture& texture, const LevelPlaces& places) {
+  FetchedTexels fetched;
+  fetchTexels(texture, places, fetched);
+  return filterTexels(texture, places, fetched);
+}
+
+// A share of the way from the texels of one level to those of the next.
+HWY_NOINLINE Float4 readLevels(const CpuTexture& texture, const LevelPlaces* places, V share) {
+  prefetchTexels(texture, places[0]);
+  prefetchTexels(texture, places[1]);
+  // All are fetched before any is looked at: what was stored in small parts takes a while to be loaded as a whole.
+  FetchedTexels fetched[2];
+  fetchTexels(texture, places[0], fetched[0]);
+  fetchTexels(texture, places[1], fetched[1]);
+  const Float4 finer = filterTexels(texture, places[0], fetched[0]);
+  return mix4(finer, filterTexels(texture, places[1], fetched[1]), share);
 }
 
 // The level of detail before it is clamped: log2 of how many texels of the base level a pixel spans.
@@ -130,24 +225,27 @@ HWY_NOINLINE Float4 sample(const CpuSlot& slot, const Coordinates& at) {
   const Tag d;
   const IntTag di;
   const Sampler& sampler = slot.sampler;
-  const V detail = levelOfDetail(*slot.texture, at);
+  const CpuTexture& texture = *slot.texture;
+  const V detail = levelOfDetail(texture, at);
   const M minified = detail > zero();
   const M linear = hn::Or(hn::And(minified, maskOf(sampler.minLinear ? 0xffffU : 0U, 0)),
                           hn::AndNot(minified, maskOf(sampler.magLinear ? 0xffffU : 0U, 0)));
-  const std::int32_t last = sampler.mipmaps ? slot.texture->levels - 1 : 0;
+  const std::int32_t last = sampler.mipmaps ? texture.levels - 1 : 0;
   const V level = clamp(detail, 0.0F, static_cast<float>(last));
+  LevelPlaces places[2];
   if (!sampler.mipLinear || last == 0) {
     // Nearest level: ceil(level + 0.5) - 1.
     const VI nearest = hn::ConvertTo(di, hn::Ceil(level - set(0.5F)));
-    return sampleLevel(slot, hn::Max(nearest, hn::Zero(di)), at.u, at.v, linear);
+    placeInLevel(slot, hn::Max(nearest, hn::Zero(di)), at.u, at.v, linear, places[0]);
+    return readLevel(texture, places[0]);
   }
   const V floored = hn::Floor(level);
   const V share = level - floored;
   const VI fine = hn::ConvertTo(di, floored);
-  const Float4 finer = sampleLevel(slot, fine, at.u, at.v, linear);
-  if (hn::AllFalse(d, share > zero())) return finer;
-  const VI coarse = hn::Min(fine + setInt(1), setInt(last));
-  return mix4(finer, sampleLevel(slot, coarse, at.u, at.v, linear), share);
+  placeInLevel(slot, fine, at.u, at.v, linear, places[0]);
+  if (hn::AllFalse(d, share > zero())) return readLevel(texture, places[0]);
+  placeInLevel(slot, hn::Min(fine + setInt(1), setInt(last)), at.u, at.v, linear, places[1]);
+  return readLevels(texture, places, share);
 }
 
 } // namespace HWY_NAMESPACE

@@ -24,8 +24,8 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr std::uint64_t kBandPixels = std::uint64_t{16} << 20U;  // drawn at once: 16 bytes each
-constexpr std::size_t kRowsOfAThread = 32;                       // fewer are not worth one
+constexpr std::uint64_t kBandPixels = std::uint64_t{16} << 20U; // drawn at once: 16 bytes each
+constexpr std::size_t kRowsOfAThread = 32;                      // fewer are not worth one
 
 // The most that the process has held at once.
 std::uint64_t peakMemory() {

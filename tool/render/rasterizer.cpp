@@ -40,8 +40,9 @@ const char* nameOf(VitrailCpuInstructions instructions) {
 
 } // namespace
 
-Rasterizer::Rasterizer() {
+Rasterizer::Rasterizer(std::uint32_t threads) {
   VitrailCpuContextDesc desc{};
+  desc.threads = threads;
   desc.log = [](VitrailLogSeverity severity, const char* message, void* user) {
     if (severity == VITRAIL_LOG_ERROR) static_cast<Rasterizer*>(user)->reason_ = message;
   };

@@ -9,10 +9,11 @@
 
 namespace vitrail::tool {
 
-// A context with all its defaults. Its errors become GpuErrors that say the reason.
+// A context with its defaults, but for the number of threads where one is given. Its errors become GpuErrors that say
+// the reason.
 class Rasterizer {
  public:
-  Rasterizer();
+  explicit Rasterizer(std::uint32_t threads = 0);
   ~Rasterizer();
   Rasterizer(const Rasterizer&) = delete;
   Rasterizer& operator=(const Rasterizer&) = delete;
