@@ -1,6 +1,7 @@
 // Frames whose pixels are known beforehand: long lists, equal depths, what light does not come through, shapes.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -280,6 +281,54 @@ TEST(LinesTest, CoverAPixelAStep) {
     EXPECT_EQ(coveredPixels(draw, 128), static_cast<std::uint32_t>(std::max(std::fabs(x), std::fabs(y))))
         << x << ", " << y;
   }
+}
+
+// ---- Vertices that are nowhere
+
+// Clip space that is not finite: such triangles are not drawn. Which places became integers on the way there is for the
+// undefined-behaviour sanitizer to tell.
+TEST(NowhereTest, IsNotDrawn) {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  const Position hard[] = {
+      {NAN, 0.0F, 0.5F, 1.0F},
+      {0.0F, NAN, 0.5F, 1.0F},
+      {0.0F, 0.0F, NAN, 1.0F},
+      {0.0F, 0.0F, 0.5F, NAN},
+      {kInfinite, 0.0F, 0.5F, 1.0F},
+      {0.0F, -kInfinite, 0.5F, 1.0F},
+      {0.0F, 0.0F, 0.5F, kInfinite},
+      {kInfinite, 0.0F, 0.5F, kInfinite},
+      {kInfinite, kInfinite, 1e37F, 1e38F},
+      {0.0F, 0.0F, 0.0F, 0.0F},
+  };
+  for (const VitrailCpuInstructions instructions : instructionsHere()) {
+    Raster raster(instructions);
+    for (const Position& corner : hard) {
+      const bool isNan = std::isnan(corner[0] + corner[1] + corner[2] + corner[3]);
+      for (const VitrailCpuTopology topology : {VITRAIL_CPU_TRIANGLES, VITRAIL_CPU_LINES, VITRAIL_CPU_POINTS}) {
+        std::vector<Position> positions(6, corner);
+        positions[1] = {1.0F, -1.0F, 0.5F, 1.0F};
+        positions[2] = {-1.0F, 1.0F, 0.5F, 1.0F};
+        if (topology == VITRAIL_CPU_POINTS) positions.resize(1);
+        VitrailCpuDraw nowhere = drawOf(positions);
+        nowhere.topology = topology;
+        std::fill_n(nowhere.color, 4, 0.5F);
+        Picture picture(40, 40);
+        VitrailStats stats{};
+        ASSERT_EQ(raster.render(picture.frame(), {&nowhere, 1}, &stats), VITRAIL_SUCCESS);
+        for (const float value : picture.pixels) ASSERT_TRUE(std::isfinite(value));
+        // Of what only has an infinite coordinate, clipping may leave something.
+        EXPECT_TRUE(!isNan || topology == VITRAIL_CPU_LINES || stats.coveredPixels == 0)
+            << corner[0] << " " << corner[3];
+      }
+    }
+  }
+}
+
+// Corners far beyond the guard band: the half of the picture on whose side they are.
+TEST(FarAwayTest, CoversHalfOfThePicture) {
+  const std::vector<Position> far{{1e6F, 0.0F, 0.5F, 1.0F}, {0.0F, -1e6F, 0.5F, 1.0F}, {0.0F, 1e6F, 0.5F, 1.0F}};
+  EXPECT_EQ(coveredPixels(drawOf(far), 40), 800U);
 }
 
 } // namespace
