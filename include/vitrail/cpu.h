@@ -52,15 +52,15 @@ typedef enum VitrailCpuInstructions {
   VITRAIL_CPU_AVX2 = 2,     /* 8 lanes, x86, with fused multiply-add */
   VITRAIL_CPU_AVX512 = 3,   /* 16 lanes, x86 */
   VITRAIL_CPU_NEON = 4,     /* 4 lanes, 64-bit Arm */
-  VITRAIL_CPU_BASELINE = 5, /* 4 lanes: what every processor of the kind has (x86: SSE2) */
+  VITRAIL_CPU_BASELINE = 5, /* processors of other kinds, with what all of the kind have */
   VITRAIL_CPU_INSTRUCTIONS_MAX_ENUM = 0x7fffffff
 } VitrailCpuInstructions;
 
 typedef struct VitrailCpuContextDesc {
   const void* next; /* null */
   /* How many threads work on a frame, the caller's among them. Default: as many as the process may run on. 1: only the
-   * caller's, and none is ever started. The others are started with the context
-   * and sleep between frames. */
+   * caller's, and none is ever started. The others are started with the context and sleep between
+   * frames. */
   uint32_t threads;
   VitrailCpuParallel parallel; /* optional: the host's own threads, in place of the context's; `threads` is how many */
   void* parallelUser;
@@ -80,6 +80,9 @@ VITRAIL_API void vitrailCpuDestroyContext(VitrailCpuContext context);
 /* The instructions that a context uses, never VITRAIL_CPU_BEST, and how many threads. */
 VITRAIL_API VitrailCpuInstructions vitrailCpuContextInstructions(VitrailCpuContext context);
 VITRAIL_API uint32_t vitrailCpuContextThreads(VitrailCpuContext context);
+
+/* Their name: "AVX-512". "best" for VITRAIL_CPU_BEST, "unknown" for what is none of them. */
+VITRAIL_API const char* vitrailCpuInstructionsName(VitrailCpuInstructions instructions);
 
 /* ---- Shading ---------------------------------------------------------------------------------------------------- */
 
@@ -211,10 +214,10 @@ typedef enum VitrailCpuColorFormat {
 /* Takes the sorted fragments of a pixel, nearest first, those behind opaque surfaces left out. Those of
  * VITRAIL_BLEND_ADDITIVE and _MULTIPLY come with what they amount to at an alpha of 1. A fragment with a filter
  * (VITRAIL_CPU_SHADE_FILTER) is two layers at one depth, the first VITRAIL_BLEND_PREMULTIPLIED, the second
- * VITRAIL_BLEND_MULTIPLY. Called on several threads at once, for each pixel that has layers.
- * x and y are in the picture. Return 0 for the pixel to be blended as ever, or 1 to have blended it: `color` holds the
- * opaque colour of each sample, 4 floats (linear, premultiplied) times `samples`, and takes what becomes of them. No
- * fragment is left out for what is in front of it. */
+ * VITRAIL_BLEND_MULTIPLY. Called on several threads at once, for each pixel that has layers. x and y are in the
+ * picture, also where the frame is a part of it. Return 0 for the pixel to be blended as ever, or 1 to have blended it:
+ * `color` holds the opaque colour of each sample, 4 floats (linear, premultiplied) times `samples`, and takes what
+ * becomes of them. No fragment is left out for what is in front of it. */
 typedef int (*VitrailCpuList)(void* user, uint32_t x, uint32_t y, const VitrailLayer* layers, uint32_t count,
                               float* color);
 

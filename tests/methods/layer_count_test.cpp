@@ -1,5 +1,6 @@
 // The fragments of each pixel that the method layer-count finds, against the reference's and against what fragment
 // lists store.
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 
@@ -105,6 +106,25 @@ TEST_F(LayerCountTest, PanesByHand) {
     ASSERT_EQ(sized.pixelLayers.size(), std::size_t{side} * side);
     EXPECT_EQ(sized.fragmentsRequested, std::uint64_t{side} * side);
   }
+}
+
+// The processor draws large pictures in bands: what is counted belongs to the picture, not to the band.
+TEST(LayerCountOnProcessor, CountsInEveryBand) {
+  Scene scene;
+  addRectangle(scene, {{-200.0F, -2.0F}, {200.0F, 0.0F}, 0.0F}, unlitMaterial({1.0F, 0.0F, 0.0F, 0.5F}));
+  RenderOptions options;
+  options.width = 32768;
+  options.height = 520; // 512 rows fit in a band
+  options.view = straightView();
+  MethodOptions method;
+  method.name = kLayerCount;
+  const FrameReport report = CpuStillRenderer(scene, {}, DrawOrder::Forward, method).measure(options);
+  EXPECT_EQ(report.tiles, 2U);
+  ASSERT_EQ(report.pixelLayers.size(), std::size_t{options.width} * options.height);
+  const std::size_t covered = report.pixelLayers.size() / 2; // the lower half
+  EXPECT_EQ(std::count(report.pixelLayers.begin(), report.pixelLayers.end() - static_cast<std::ptrdiff_t>(covered), 0U),
+            static_cast<std::ptrdiff_t>(covered));
+  EXPECT_EQ(std::count(report.pixelLayers.begin(), report.pixelLayers.end(), 1U), static_cast<std::ptrdiff_t>(covered));
 }
 
 // No user chooses layer-count, which is not listed.

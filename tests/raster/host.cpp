@@ -20,23 +20,6 @@ std::vector<VitrailCpuInstructions> instructionsHere() {
   return here;
 }
 
-const char* nameOf(VitrailCpuInstructions instructions) {
-  switch (instructions) {
-    case VITRAIL_CPU_SSE4:
-      return "SSE4";
-    case VITRAIL_CPU_AVX2:
-      return "AVX2";
-    case VITRAIL_CPU_AVX512:
-      return "AVX512";
-    case VITRAIL_CPU_NEON:
-      return "NEON";
-    case VITRAIL_CPU_BASELINE:
-      return "Baseline";
-    default:
-      return "Best";
-  }
-}
-
 Raster::Raster(VitrailCpuContextDesc desc) {
   desc.log = [](VitrailLogSeverity, const char* text, void* user) {
     static_cast<Raster*>(user)->lines_.emplace_back(text);

@@ -18,7 +18,7 @@ using Position = std::array<float, 4>; // clip space
 
 // The sets of instructions that this processor has.
 std::vector<VitrailCpuInstructions> instructionsHere();
-const char* nameOf(VitrailCpuInstructions instructions);
+inline const char* nameOf(VitrailCpuInstructions instructions) { return vitrailCpuInstructionsName(instructions); }
 
 // A context. What it logs is a failed test unless the test takes it.
 class Raster {

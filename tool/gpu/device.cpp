@@ -298,7 +298,7 @@ DeviceSummary choose(const std::vector<DeviceSummary>& devices, const GpuOptions
   }
   if (best == nullptr) {
     throw GpuError(wanted.empty() ? fmt::format("no device can render; devices: {}", fmt::join(known, "; "))
-                                  : fmt::format("no device '{}'; devices: {}", wanted, fmt::join(known, "; ")));
+                                  : fmt::format("no device '{}'; devices: cpu; {}", wanted, fmt::join(known, "; ")));
   }
   if (!best->missing.empty()) throw GpuError(fmt::format("{} cannot render: it lacks {}", best->name, best->missing));
   return *best;

@@ -135,17 +135,17 @@ bool hasCodes(const RenderOptions& picture) {
   return glm::all(glm::lessThan(glm::abs(codes - glm::round(codes)), glm::vec3(1.0e-3F)));
 }
 
-// Where the fragments of each pixel of a band are counted.
+// Where the fragments of each pixel are counted.
 struct LayerCounts {
-  std::uint32_t* firstRow;
+  std::uint32_t* first;
   std::size_t width;
 };
 
 int countLayers(void* user, std::uint32_t x, std::uint32_t y, const VitrailLayer* /*layers*/, std::uint32_t count,
                 float* /*color*/) {
   const LayerCounts& counts = *static_cast<const LayerCounts*>(user);
-  counts.firstRow[y * counts.width + x] = count;
-  return 1; // nobody looks at the picture
+  counts.first[y * counts.width + x] = count; // x and y are those of the picture, in every band
+  return 1;                                   // nobody looks at the picture
 }
 
 int tellTiles(void* user, std::uint32_t tilesDone, std::uint32_t /*tiles*/) {
@@ -265,6 +265,7 @@ void CpuStillRenderer::Impl::drawBands(const RenderOptions& picture, VitrailCpuF
   LayerCounts counts{nullptr, picture.width};
   if (method.name == kLayerCount) {
     layers.resize(std::size_t{picture.width} * picture.height);
+    counts.first = layers.data();
     frame.list = countLayers;
     frame.listUser = &counts;
   }
@@ -272,7 +273,6 @@ void CpuStillRenderer::Impl::drawBands(const RenderOptions& picture, VitrailCpuF
     frame.height = std::min(rows, picture.height - frame.originY);
     fillBackground(picture, frame.originY, frame.height, pixels);
     totals.clock.end("background");
-    counts.firstRow = layers.data() + frame.originY * counts.width;
     VitrailStats stats{};
     rasterizer.render(frame, draws, stats);
     totals.add(stats);

@@ -23,21 +23,6 @@ std::string processorName() {
   return "processor";
 }
 
-const char* nameOf(VitrailCpuInstructions instructions) {
-  switch (instructions) {
-    case VITRAIL_CPU_SSE4:
-      return "SSE4";
-    case VITRAIL_CPU_AVX2:
-      return "AVX2";
-    case VITRAIL_CPU_AVX512:
-      return "AVX-512";
-    case VITRAIL_CPU_NEON:
-      return "NEON";
-    default:
-      return "baseline";
-  }
-}
-
 } // namespace
 
 Rasterizer::Rasterizer(std::uint32_t threads) {
@@ -60,7 +45,8 @@ void Rasterizer::render(const VitrailCpuFrame& frame, std::span<const VitrailCpu
 std::uint32_t Rasterizer::threads() const { return vitrailCpuContextThreads(context_); }
 
 std::string Rasterizer::name() const {
-  return fmt::format("{} ({}, {} {})", processorName(), nameOf(vitrailCpuContextInstructions(context_)), threads(),
+  return fmt::format("{} ({}, {} {})", processorName(),
+                     vitrailCpuInstructionsName(vitrailCpuContextInstructions(context_)), threads(),
                      threads() == 1 ? "thread" : "threads");
 }
 

@@ -29,21 +29,6 @@ namespace {
 
 constexpr std::uint32_t kMaxThreads = 1024;
 
-const char* nameOf(VitrailCpuInstructions instructions) {
-  switch (instructions) {
-    case VITRAIL_CPU_SSE4:
-      return "SSE4";
-    case VITRAIL_CPU_AVX2:
-      return "AVX2";
-    case VITRAIL_CPU_AVX512:
-      return "AVX-512";
-    case VITRAIL_CPU_NEON:
-      return "NEON";
-    default:
-      return "baseline";
-  }
-}
-
 const raster::Stages* stagesOf(VitrailCpuInstructions instructions) {
   for (const raster::Stages* stages : raster::stagesHere()) {
     if (instructions == VITRAIL_CPU_BEST || stages->instructions == instructions) return stages;
@@ -60,8 +45,10 @@ VitrailResult guarded(const Log& log, const char* doing, Function function) {
     return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory is left for %s", doing);
   } catch (const std::length_error&) {
     return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory is left for %s", doing);
-  } catch (const std::exception& error) { // std::system_error, where the system refuses a thread
+  } catch (const std::system_error& error) {
     return log.fail(VITRAIL_ERROR_UNSUPPORTED, "a thread could not be started: %s: use fewer threads", error.what());
+  } catch (const std::exception& error) {
+    return log.fail(VITRAIL_ERROR_UNSUPPORTED, "%s failed: %s", doing, error.what());
   }
 }
 
@@ -114,7 +101,7 @@ void forAll(raster::Workers& workers, std::uint64_t count, Work work) {
   });
 }
 
-void setStats(const raster::Frame& frame, const raster::TileCounts& counts, VitrailStats& stats) {
+void setStats(const raster::TileCounts& counts, VitrailStats& stats) {
   void* const next = stats.next;
   stats = {};
   stats.next = next;
@@ -126,7 +113,6 @@ void setStats(const raster::Frame& frame, const raster::TileCounts& counts, Vitr
   stats.fragmentsStored = counts.fragments;
   stats.layersMax = counts.layersMax;
   stats.coveredPixels = static_cast<std::uint32_t>(counts.pixels);
-  static_cast<void>(frame);
 }
 
 VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
@@ -158,7 +144,7 @@ VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
   if (progress.isGivenUp()) return VITRAIL_INCOMPLETE;
   raster::TileCounts all;
   for (const raster::TileCounts& each : counts) all.add(each);
-  if (stats != nullptr) setStats(frame, all, *stats);
+  if (stats != nullptr) setStats(all, *stats);
   return VITRAIL_SUCCESS;
 }
 
@@ -174,9 +160,13 @@ VitrailResult checkContext(const Log& log, const VitrailCpuContextDesc& desc) {
     return log.fail(VITRAIL_ERROR_INVALID, "instructions is none of VitrailCpuInstructions");
   }
   if (stagesOf(desc.instructions) != nullptr) return VITRAIL_SUCCESS;
+  if (desc.instructions == VITRAIL_CPU_BEST) {
+    return log.fail(VITRAIL_ERROR_UNSUPPORTED,
+                    "this processor lacks what the library needs: on x86 SSE4.2, AES and PCLMULQDQ (since 2010)");
+  }
   return log.fail(VITRAIL_ERROR_UNSUPPORTED,
                   "this processor, or this build, does not have the %s instructions: use VITRAIL_CPU_BEST",
-                  desc.instructions == VITRAIL_CPU_BEST ? "least" : nameOf(desc.instructions));
+                  vitrailCpuInstructionsName(desc.instructions));
 }
 
 } // namespace
@@ -206,6 +196,25 @@ VitrailCpuInstructions vitrailCpuContextInstructions(VitrailCpuContext context) 
 
 uint32_t vitrailCpuContextThreads(VitrailCpuContext context) {
   return context == nullptr ? 0 : context->workers->count();
+}
+
+const char* vitrailCpuInstructionsName(VitrailCpuInstructions instructions) {
+  switch (instructions) {
+    case VITRAIL_CPU_BEST:
+      return "best";
+    case VITRAIL_CPU_SSE4:
+      return "SSE4";
+    case VITRAIL_CPU_AVX2:
+      return "AVX2";
+    case VITRAIL_CPU_AVX512:
+      return "AVX-512";
+    case VITRAIL_CPU_NEON:
+      return "NEON";
+    case VITRAIL_CPU_BASELINE:
+      return "baseline";
+    default:
+      return "unknown";
+  }
 }
 
 VitrailResult vitrailCpuRender(VitrailCpuContext context, const VitrailCpuFrame* frame, const VitrailCpuDraw* draws,

@@ -23,7 +23,7 @@ constexpr std::uint32_t kBlockPixels = kBlockSide * kBlockSide;
 // Triangles are numbered through the frame: the number of their job, and within it. The last bit is free.
 constexpr std::uint32_t kJobBits = 12;
 constexpr std::uint32_t kJobTriangles = 1U << kJobBits;
-constexpr std::uint32_t kMaxJobs = 1U << (31U - kJobBits);
+constexpr std::uint32_t kMaxJobs = (1U << (31U - kJobBits)) - 1;
 constexpr std::uint32_t kVertexChunk = 4096;
 
 // A draw, with its defaults filled in.
@@ -65,8 +65,6 @@ class Bins {
   // Writes the numbers of a tile one after the other.
   void copy(std::size_t tile, std::uint32_t* to) const;
 
-  std::size_t bytes() const { return bins_.capacity() * sizeof(Bin) + slabs_.size() * sizeof(Slab); }
-
  private:
   struct Bin {
     std::uint32_t first = kNone;
@@ -105,7 +103,7 @@ struct VertexChunk {
 
 // What a frame has of each fragment: decides how much of it is kept.
 struct FrameNeeds {
-  bool shaded = false;      // some transparent draw has a shade function
+  bool shaded = false;      // some transparent draw has a shade function, or more is kept than its pair
   bool derivatives = false; // one of them reads derivatives
   bool filters = false;     // something passes light through coloured: BLEND_MULTIPLY, or a filter
   bool opaque = false;      // there are opaque draws, or a depth of the host's
@@ -151,7 +149,7 @@ struct TileBox {
   std::array<std::uint16_t, kBlocks> pixels{}; // of each block: those within the frame, a bit each
 };
 
-// Memory of one thread that works on tiles; kept from tile to tile and from frame to frame.
+// Memory of one thread that works on tiles; kept from tile to tile of a frame.
 class TileWorkspace {
  public:
   TileWorkspace() = default;

@@ -24,7 +24,6 @@ class SortedRows {
   double* keys = nullptr; // 16 a row
   const float* pairs = nullptr;
   const float* filters = nullptr;
-  std::uint32_t coverage = 0; // floats from a row's first pair to its coverage; 0: none
 
   HWY_INLINE std::uint64_t keyOf(std::size_t row, std::size_t lane) const {
     std::uint64_t key = 0;
@@ -140,6 +139,17 @@ HWY_INLINE void put(Blended& b, const M& alive, const F* color, const F& alpha, 
   }
 }
 
+// What the fragments of a sorted row do.
+template <bool kFilters>
+HWY_INLINE void loadRow(const SortedRows& sorted, std::size_t r, F* color, F& alpha, F* filter) {
+  loadFours([&](std::size_t lane) HWY_ATTR { return sorted.pairOf(r, lane); }, color[0], color[1], color[2], alpha);
+  if constexpr (kFilters) {
+    F unused;
+    loadFours([&](std::size_t lane) HWY_ATTR { return sorted.filterOf(r, lane); }, filter[0], filter[1], filter[2],
+              unused);
+  }
+}
+
 template <bool kFilters>
 HWY_INLINE void blendRows(const SortedRows& sorted, float leastTransmittance, Blended& blended) {
   const F least = set(leastTransmittance);
@@ -149,12 +159,7 @@ HWY_INLINE void blendRows(const SortedRows& sorted, float leastTransmittance, Bl
     F color[3];
     F alpha;
     F filter[3];
-    loadFours([&](std::size_t lane) HWY_ATTR { return sorted.pairOf(r, lane); }, color[0], color[1], color[2], alpha);
-    if constexpr (kFilters) {
-      F unused;
-      loadFours([&](std::size_t lane) HWY_ATTR { return sorted.filterOf(r, lane); }, filter[0], filter[1], filter[2],
-                unused);
-    }
+    loadRow<kFilters>(sorted, r, color, alpha, filter);
     put<kFilters>(blended, alive, color, alpha, filter);
   }
 }
@@ -172,12 +177,7 @@ HWY_INLINE void blendSamples(const SortedRows& sorted, const std::uint32_t* cove
     F color[3];
     F alpha;
     F filter[3];
-    loadFours([&](std::size_t lane) HWY_ATTR { return sorted.pairOf(r, lane); }, color[0], color[1], color[2], alpha);
-    if constexpr (kFilters) {
-      F unused;
-      loadFours([&](std::size_t lane) HWY_ATTR { return sorted.filterOf(r, lane); }, filter[0], filter[1], filter[2],
-                unused);
-    }
+    loadRow<kFilters>(sorted, r, color, alpha, filter);
     const I covered = load(reinterpret_cast<const std::int32_t*>(coverages) + r * kLanes);
     for (std::uint32_t s = 0; s < samples; ++s) {
       const I bit = set(static_cast<std::int32_t>(1U << s));

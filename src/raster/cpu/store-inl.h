@@ -44,7 +44,7 @@ HWY_INLINE F depthOf(const I& key, bool nearestIsOne) {
 struct RowShape {
   static constexpr std::uint32_t kKey = 0;
   static constexpr std::uint32_t kNumber = 1; // shaded: the triangle's number; else: the draw's place in flatPairs
-  static constexpr std::uint32_t kPairs = 2; // shaded, four vectors: r, g, b, transmittance of each pixel, side by side
+  static constexpr std::uint32_t kPairs = 2;  // shaded, four vectors: r, g, b, alpha of each pixel, side by side
   static constexpr std::uint32_t kSecond = 2; // weights and derivatives, until they are shaded
   static constexpr std::uint32_t kThird = 3;
   static constexpr std::uint32_t kDerivatives = 4;
@@ -72,9 +72,13 @@ class Store {
   static constexpr std::uint32_t kFirstLimit = 64;
   static constexpr std::uint32_t kNoLimit = ~0U;
 
+  // Where pairs are is told in 32 bits, in units of 16 bytes.
+  static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 36U;
+
   Store(const RowShape& shape, std::uint64_t budget) : shape_(shape) {
     chunkBytes_ = shape.bytes() * kChunkRows;
-    chunks_ = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(budget / chunkBytes_, 4, 1U << 24U));
+    chunks_ =
+        static_cast<std::uint32_t>(std::clamp<std::uint64_t>(std::min(budget, kMostBytes) / chunkBytes_, 4, 1U << 24U));
     arena_.reset(allocate(chunks_));
     previous_.resize(chunks_);
   }
@@ -151,6 +155,7 @@ class Store {
 
   // Twice as much room, for what has to be held at once. Rows move.
   void grow() {
+    if (2 * chunks_ * chunkBytes_ > kMostBytes) throw std::bad_alloc();
     std::unique_ptr<std::int32_t, Free> larger(allocate(chunks_ * 2));
     std::memcpy(larger.get(), arena_.get(), chunks_ * chunkBytes_);
     for (Head& head : heads_) {

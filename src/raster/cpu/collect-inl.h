@@ -1,0 +1,219 @@
+// Transparent fragments of a tile: stored block by block, and where they do not fit, in parts and in windows of depth.
+#if defined(VITRAIL_COLLECT_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRAIL_COLLECT_INL_H
+#undef VITRAIL_COLLECT_INL_H
+#else
+#define VITRAIL_COLLECT_INL_H
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "raster/cpu/hidden-inl.h"
+#include "raster/cpu/rasterise-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrail::raster::HWY_NAMESPACE {
+
+// Stores the fragments of a triangle in a block.
+template <bool kShaded>
+HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, std::uint32_t item, Window* window) {
+  const Met met = meet(item);
+  const Work work = met.work;
+  const std::uint32_t t = work.triangle;
+  const std::uint32_t block = work.block;
+  std::uint32_t mask = work.pixels;
+  I keys[kMaxSamples];
+  if (hasDepth_) mask = testDepth(frame, work, item, met.depth, keys);
+  const I key = keyOf(met.depth, frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE);
+  if (window != nullptr) {
+    const std::uint32_t later = mask & ~bitsOf(load(window->until) > key);
+    window->isCut = window->isCut || later != 0;
+    mask &= ~later & bitsOf(key > load(window->after));
+    if (window->isCounted) {
+      store(layers_, load(layers_) + keep(maskOf(mask), set(1)));
+      return Emitted::IsStored;
+    }
+  }
+  if (HWY_UNLIKELY((saturated_ >> block & 1U) != 0)) {
+    const M hidden = andNot(load(until_[block]) > key, maskOf(mask));
+    store(hidden_[block], load(hidden_[block]) + keep(hidden, set(1)));
+    mask &= ~bitsOf(hidden);
+  }
+  if (mask == 0) return Emitted::IsStored;
+  std::uint32_t isFresh = 0;
+  const Row row = store_.rowFor(block, mask, isFresh);
+  if (HWY_UNLIKELY(row == nullptr)) {
+    return store_.isCrowded(block) ? Emitted::IsCrowded : Emitted::IsFull;
+  }
+  const M here = maskOf(mask);
+  const M fresh = maskOf(0U - isFresh); // without a branch: nobody could tell which it takes
+  const auto put = [&](std::uint32_t vector, const I& value, const I& elsewhere) HWY_ATTR {
+    std::int32_t* to = row + kLanes * vector;
+    store(to, select(here, value, select(fresh, elsewhere, load(to))));
+  };
+  put(RowShape::kKey, key, set(kFarKey));
+  if constexpr (!kShaded) {
+    const std::uint32_t number = static_cast<std::uint32_t>(batch_.number[t]) & ~kFrontBit;
+    put(RowShape::kNumber, set(static_cast<std::int32_t>(frame.jobs[number >> kJobBits].draw)), set(shape_.nothing));
+  } else {
+    F weights[6];
+    perspective(t, met.second, met.third, frame.needs.derivatives, weights);
+    const I number = set(batch_.number[t]);
+    put(RowShape::kNumber, number, number); // where nothing is, there is still the number of one that exists
+    const std::uint32_t count = frame.needs.derivatives ? 6 : 2;
+    for (std::uint32_t i = 0; i < count; ++i) put(RowShape::kSecond + i, bitsOf(weights[i]), bitsOf(weights[i]));
+  }
+  if (kShaded && shape_.coverage != 0) {
+    I covered = set(0);
+    std::uint32_t isEdge = 0;
+    for (std::uint32_t s = 0; s < frame.info.samples; ++s) {
+      covered = covered | keep(maskOf(sampleMasks_[s][item]), set(static_cast<std::int32_t>(1U << s)));
+      isEdge |= mask & ~static_cast<std::uint32_t>(sampleMasks_[s][item]);
+    }
+    edges_ |= static_cast<std::uint64_t>(isEdge != 0) << block;
+    put(shape_.coverage, covered, set(0));
+  }
+  return Emitted::IsStored;
+}
+
+// The same, and makes room where hidden fragments take it. False: the store is full.
+template <bool kShaded>
+HWY_INLINE bool TileWorker::emit(const Frame& frame, std::uint32_t item, Window* window) {
+  Emitted emitted = emitTransparent<kShaded>(frame, item, window);
+  if (HWY_UNLIKELY(emitted == Emitted::IsCrowded)) {
+    thin(frame, work_[item].block);
+    emitted = emitTransparent<kShaded>(frame, item, window);
+  }
+  return emitted == Emitted::IsStored;
+}
+
+inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, TileCounts& counts) {
+  store_.reset();
+  saturated_ = 0;
+  edges_ = 0;
+  const bool hasFitted =
+      frame.needs.shaded
+          ? rasterise(frame, blocks, [&](std::uint32_t i) HWY_ATTR { return emit<true>(frame, i, nullptr); })
+          : rasterise(frame, blocks, [&](std::uint32_t i) HWY_ATTR { return emit<false>(frame, i, nullptr); });
+  if (hasFitted) {
+    for (std::uint64_t left = blocks; left != 0; left &= left - 1) {
+      const auto block = static_cast<std::uint32_t>(__builtin_ctzll(left));
+      if (store_.rows(block) == 0) {
+        const bool isDrawn = opaque_ != nullptr && (opaque_->drawn >> block & 1U) != 0;
+        if (isDrawn || frame.info.sampleColors != nullptr) finishBlock(frame, block, nullptr);
+        continue;
+      }
+      resolveBlock(frame, block, counts);
+    }
+    return;
+  }
+  if ((blocks & (blocks - 1)) == 0)
+    return drawInWindows(frame, static_cast<std::uint32_t>(__builtin_ctzll(blocks)), counts);
+  // In two halves of as many blocks.
+  std::uint64_t half = 0;
+  std::uint64_t left = blocks;
+  for (int i = __builtin_popcountll(blocks) / 2; i > 0; --i) {
+    half |= left & (~left + 1);
+    left &= left - 1;
+  }
+  drawParts(frame, half, counts);
+  drawParts(frame, left, counts);
+}
+
+// Makes room: keeps about the nearer half of each pixel's fragments, and leaves the others to a later pass. Fragments
+// of one depth stay together, so that no order among them is needed here.
+inline void TileWorker::shrink(Window& window, std::uint32_t block) {
+  using Entry = std::pair<std::int32_t, std::uint32_t>; // depth, row
+  store_.collect(block, rows_);
+  const std::size_t kept = rows_.size() / 2;
+  std::array<std::vector<Entry>, kLanes> lists;
+  std::size_t most = 0;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    std::vector<Entry>& list = lists[lane];
+    for (std::uint32_t r = 0; r < rows_.size(); ++r) {
+      if (rows_[r][lane] < kFarKey) list.emplace_back(rows_[r][lane], r);
+    }
+    std::sort(list.begin(), list.end());
+    if (list.size() > kept) {
+      const auto cutAt = [&](std::int32_t depth) {
+        return std::lower_bound(list.begin(), list.end(), Entry(depth, 0));
+      };
+      auto end = cutAt(list[kept].first);
+      if (end == list.begin()) end = cutAt(list[0].first + 1);
+      if (end != list.end()) {
+        window.until[lane] = end->first;
+        window.isCut = true;
+        list.erase(end, list.end());
+      }
+    }
+    most = std::max(most, list.size());
+  }
+  if (most == rows_.size()) return store_.grow(); // at one depth are more than fit: they are held at once
+
+  const std::size_t stride = shape_.vectors * kLanes;
+  std::vector<std::int32_t> copy(most * stride);
+  for (std::size_t r = 0; r < most; ++r) { // what is not filled in below is not there, but names what exists
+    std::memcpy(copy.data() + r * stride, rows_[r], shape_.bytes());
+    std::fill_n(copy.data() + r * stride, kLanes, kFarKey);
+    if (shape_.isFlat) std::fill_n(copy.data() + r * stride + kLanes * RowShape::kNumber, kLanes, shape_.nothing);
+  }
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t r = 0; r < lists[lane].size(); ++r) {
+      const Row from = rows_[lists[lane][r].second];
+      for (std::size_t v = 0; v < shape_.vectors; ++v) copy[r * stride + v * kLanes + lane] = from[v * kLanes + lane];
+    }
+  }
+  store_.restart(block, static_cast<std::uint32_t>(most));
+  store_.collect(block, rows_);
+  for (std::size_t r = 0; r < most; ++r) std::memcpy(rows_[r], copy.data() + r * stride, shape_.bytes());
+}
+
+// A block whose fragments do not fit: the nearest ones are blended, then those behind them, and so on.
+inline void TileWorker::drawInWindows(const Frame& frame, std::uint32_t block, TileCounts& counts) {
+  State state;
+  Window window;
+  std::fill(std::begin(window.after), std::end(window.after), 0);
+  std::array<std::int32_t, kLanes> layers{};
+  do {
+    window.isCut = false;
+    std::fill(std::begin(window.until), std::end(window.until), kFarKey);
+    store_.reset();
+    store_.setLimit(block, Store::kNoLimit);
+    saturated_ = 0;
+    store(layers_, set(0));
+    rasterise(frame, std::uint64_t{1} << block, [&](std::uint32_t item) HWY_ATTR {
+      while (!(frame.needs.shaded ? emit<true>(frame, item, &window) : emit<false>(frame, item, &window))) {
+        if (frame.info.list != nullptr) {
+          store_.grow(); // the hook takes whole lists
+        } else {
+          shrink(window, block);
+        }
+      }
+      return true;
+    });
+    if (store_.rows(block) > 0) {
+      const SortedRows sorted = sortBlock(frame, block);
+      if (frame.info.list != nullptr) {
+        listBlock(frame, block, sorted);
+      } else {
+        blendInto(frame, block, sorted, state);
+        window.isCounted = isHidden(frame, state);
+      }
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      layers[lane] += layers_[lane];
+      window.after[lane] = window.until[lane] - 1;
+    }
+  } while (window.isCut);
+  count(layers.data(), counts);
+  if (frame.info.list == nullptr) finishBlock(frame, block, &state);
+}
+
+} // namespace vitrail::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,270 @@
+// A block's rows to pixels: shaded, sorted, blended over what is behind them, and written; or handed to the host.
+#if defined(VITRAIL_FINISH_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRAIL_FINISH_INL_H
+#undef VITRAIL_FINISH_INL_H
+#else
+#define VITRAIL_FINISH_INL_H
+#endif
+
+#include <algorithm>
+#include <cstring>
+
+#include "raster/cpu/worker-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrail::raster::HWY_NAMESPACE {
+
+inline void TileWorker::count(const std::int32_t* layers, TileCounts& counts) {
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const auto here = static_cast<std::uint32_t>(layers[lane]);
+    counts.fragments += here;
+    counts.pixels += static_cast<std::uint64_t>(here > 0);
+    counts.layersMax = std::max(counts.layersMax, here);
+  }
+}
+
+// Whether nothing shows behind what was blended of a block.
+inline bool TileWorker::isHidden(const Frame& frame, const State& state) {
+  const F least = set(frame.leastTransmittance);
+  for (std::uint32_t s = 0; s < (state.isUniform ? 1 : frame.info.samples); ++s) {
+    const Blended& b = state.samples[s];
+    if (!none(frame.needs.filters ? isAlive<true>(b, least) : isAlive<false>(b, least))) return false;
+  }
+  return true;
+}
+
+// Collects a block's rows, and shades those that are not.
+inline void TileWorker::shadeBlock(const Frame& frame, std::uint32_t block) {
+  store_.collect(block, rows_);
+  if (!frame.needs.shaded) return;
+  const std::uint32_t x = frame.info.originX + blockX(block);
+  const std::uint32_t y = frame.info.originY + blockY(block);
+  for (std::size_t r = store_.shadedRows(block); r < rows_.size(); ++r) shadeRow(frame, rows_[r], x, y, fragments_);
+  store_.setShaded(block);
+}
+
+inline SortedRows TileWorker::sortBlock(const Frame& frame, std::uint32_t block) {
+  shadeBlock(frame, block);
+  SortedRows sorted;
+  sorted.rows = sortedRows(rows_.size());
+  if (keyMemory_.size() < sorted.rows * kLanes + kLanes) keyMemory_.resize(2 * sorted.rows * kLanes + kLanes);
+  sorted.keys = aligned(keyMemory_.data());
+  const I places = load(kPairPlaces.place);
+  I layers = (saturated_ >> block & 1U) != 0 ? load(hidden_[block]) : set(0);
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const Row row = rows_[r];
+    I place;
+    if (frame.needs.shaded) {
+      const std::ptrdiff_t first = reinterpret_cast<const float*>(row + kLanes * RowShape::kPairs) - store_.base();
+      place = places + set(static_cast<std::int32_t>(first / 4));
+    } else {
+      place = load(row + kLanes * RowShape::kNumber);
+    }
+    const I depths = load(row);
+    layers = layers + keep(set(kFarKey) > depths, set(1));
+    Key keys[kKeyVectors];
+    keysOf(depths, place, keys);
+    for (std::size_t v = 0; v < kKeyVectors; ++v) hn::Store(keys[v], kD, sorted.keys + r * kLanes + v * kKeyLanes);
+  }
+  store(layers_, layers);
+  // What fills the list up is farther than what is not there: it comes last, and nothing looks at it.
+  for (std::size_t r = rows_.size(); r < sorted.rows; ++r) {
+    Key keys[kKeyVectors];
+    keysOf(set(kFarKey + 1), set(0), keys);
+    for (std::size_t v = 0; v < kKeyVectors; ++v) hn::Store(keys[v], kD, sorted.keys + r * kLanes + v * kKeyLanes);
+  }
+  if (frame.needs.shaded) {
+    sorted.pairs = store_.base();
+    sorted.filters = store_.base() + kLanes * (RowShape::kFilters - RowShape::kPairs);
+  } else {
+    sorted.pairs = frame.flatPairs.front().data();
+    sorted.filters = frame.needs.filters ? frame.flatFilters.front().data() : nullptr;
+  }
+  sortKeys(sorted.keys, sorted.rows);
+  sorted.rows = rows_.size(); // those that were added are last
+  if (HWY_UNLIKELY(hasTies(sorted.keys, sorted.rows))) orderTies(sorted, frame.needs.filters);
+  return sorted;
+}
+
+inline void TileWorker::blendInto(const Frame& frame, std::uint32_t block, const SortedRows& sorted, State& state) {
+  const float least = frame.leastTransmittance;
+  if (state.isUniform && (edges_ >> block & 1U) == 0) {
+    if (frame.needs.filters) {
+      blendRows<true>(sorted, least, state.samples[0]);
+    } else {
+      blendRows<false>(sorted, least, state.samples[0]);
+    }
+    return;
+  }
+  state.separate(frame.info.samples);
+  coverageMemory_.resize((sorted.rows + 1) * kLanes + kLanes);
+  auto* coverages = aligned(coverageMemory_.data());
+  coveragesOf(sorted, coverages);
+  if (frame.needs.filters) {
+    blendSamples<true>(sorted, coverages, least, frame.info.samples, state.samples);
+  } else {
+    blendSamples<false>(sorted, coverages, least, frame.info.samples, state.samples);
+  }
+}
+
+// The coverage of sorted fragments, row by row.
+inline void TileWorker::coveragesOf(const SortedRows& sorted, std::uint32_t* coverages) const {
+  for (std::size_t r = 0; r < sorted.rows; ++r) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const bool isThere = sorted.depthKeyOf(r, lane) < static_cast<std::uint32_t>(kFarKey);
+      const std::int32_t* covered = rowOf(sorted, r, lane) + kLanes * shape_.coverage;
+      coverages[r * kLanes + lane] = isThere ? static_cast<std::uint32_t>(covered[lane]) : 0;
+    }
+  }
+}
+
+// The row of a sorted fragment. Of flat ones, whose place is that of their draw's pair, nobody asks: with several
+// samples or a hook everything is shaded (frame_rules.cpp).
+inline Row TileWorker::rowOf(const SortedRows& sorted, std::size_t r, std::size_t lane) const {
+  const std::size_t first = sorted.placeOf(r, lane) - placeOfFour(lane); // of the row's pairs, in units of four
+  return store_.arena() + first * 4 - kLanes * RowShape::kPairs;
+}
+
+inline void TileWorker::resolveBlock(const Frame& frame, std::uint32_t block, TileCounts& counts) {
+  const SortedRows sorted = sortBlock(frame, block);
+  count(layers_, counts);
+  if (frame.info.list != nullptr) return listBlock(frame, block, sorted);
+  State state;
+  blendInto(frame, block, sorted, state);
+  finishBlock(frame, block, &state);
+}
+
+// Pixels of a block that lies within a picture of floats: the address of each one's four.
+HWY_INLINE float* TileWorker::pixelsOf(const Frame& frame, std::uint32_t block, std::size_t& stride) const {
+  const std::uint32_t x = block % kBlocksAcross * kBlockSide;
+  const std::uint32_t y = block / kBlocksAcross * kBlockSide;
+  const bool isWithin = static_cast<std::int32_t>(x + kBlockSide) <= tile_.lastX + 1 &&
+                        static_cast<std::int32_t>(y + kBlockSide) <= tile_.lastY + 1;
+  if (!isWithin || frame.info.colorFormat != VITRAIL_CPU_RGBA32F || frame.info.sampleColors != nullptr) return nullptr;
+  stride = frame.info.colorStride / sizeof(float);
+  return static_cast<float*>(frame.info.color) + (static_cast<std::uint32_t>(tile_.y) + y) * stride +
+         (static_cast<std::uint32_t>(tile_.x) + x) * std::size_t{4};
+}
+
+// What is behind the transparent fragments of a block, in each sample.
+inline void TileWorker::behind(const Frame& frame, std::uint32_t block, std::uint32_t sample, F* color) {
+  if (opaque_ != nullptr && (opaque_->drawn >> block & 1U) != 0) {
+    for (std::size_t c = 0; c < 4; ++c) color[c] = load(opaque_->color[sample].value[c][block]);
+    return;
+  }
+  std::size_t stride = 0;
+  if (const float* first = pixelsOf(frame, block, stride)) {
+    loadFours([&](std::size_t lane) HWY_ATTR { return first + lane / kBlockSide * stride + lane % kBlockSide * 4; },
+              color[0], color[1], color[2], color[3]);
+    return;
+  }
+  if (sample == 0 || frame.info.sampleColors != nullptr) readPixels(frame, tile_, block, sample, behind_);
+  for (std::size_t c = 0; c < 4; ++c) color[c] = load(behind_.color[c]);
+}
+
+// Writes the picture's pixels: r, g, b, alpha.
+inline void TileWorker::write(const Frame& frame, std::uint32_t block, const F* color) {
+  std::size_t stride = 0;
+  float* const first = pixelsOf(frame, block, stride);
+  if (first == nullptr) {
+    for (std::size_t c = 0; c < 4; ++c) store(pixels_.color[c], color[c]);
+    writePixels(frame, tile_, block, pixels_);
+    return;
+  }
+  alignas(64) float fours[4 * kLanes];
+  storeFours(fours, color[0], color[1], color[2], color[3]);
+  const hn::FixedTag<float, 4> four;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    hn::StoreU(hn::Load(four, fours + 4 * placeOfFour(lane)), four,
+               first + lane / kBlockSide * stride + lane % kBlockSide * 4);
+  }
+}
+
+// The mean of the samples, each over what is behind it.
+inline void TileWorker::blendedOver(const Frame& frame, std::uint32_t block, const State* state, F* sum) {
+  const std::uint32_t samples = frame.info.samples;
+  for (std::uint32_t s = 0; s < samples; ++s) {
+    F color[4];
+    behind(frame, block, s, color);
+    if (state != nullptr) {
+      if (frame.needs.filters) {
+        over<true>(state->of(s), frame.leastTransmittance, color);
+      } else {
+        over<false>(state->of(s), frame.leastTransmittance, color);
+      }
+    }
+    for (std::size_t c = 0; c < 4; ++c) sum[c] = s == 0 ? color[c] : sum[c] + color[c];
+  }
+  if (samples == 1) return;
+  for (std::size_t c = 0; c < 4; ++c) sum[c] = sum[c] * set(1.0F / static_cast<float>(samples));
+}
+
+inline void TileWorker::finishBlock(const Frame& frame, std::uint32_t block, const State* state) {
+  F color[4];
+  blendedOver(frame, block, state, color);
+  write(frame, block, color);
+}
+
+// Hands each pixel's fragments to the host, and blends those that it does not.
+inline void TileWorker::listBlock(const Frame& frame, std::uint32_t block, const SortedRows& sorted) {
+  const std::uint32_t samples = frame.info.samples;
+  State state;
+  blendInto(frame, block, sorted, state);
+  alignas(64) float behindColors[kMaxSamples][4][kLanes];
+  alignas(64) float result[4][kLanes];
+  for (std::uint32_t s = 0; s < samples; ++s) {
+    F color[4];
+    behind(frame, block, s, color);
+    for (std::size_t c = 0; c < 4; ++c) store(behindColors[s][c], color[c]);
+  }
+  F blended[4];
+  blendedOver(frame, block, &state, blended);
+  for (std::size_t c = 0; c < 4; ++c) store(result[c], blended[c]);
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    const std::uint32_t x = blockX(block) + lane % kBlockSide;
+    const std::uint32_t y = blockY(block) + lane / kBlockSide;
+    if (x >= frame.info.width || y >= frame.info.height) continue;
+    layersOf(frame, sorted, lane);
+    if (list_.empty()) continue;
+    float color[4 * kMaxSamples];
+    for (std::uint32_t s = 0; s < samples; ++s) {
+      for (std::size_t c = 0; c < 4; ++c) color[4 * s + c] = behindColors[s][c][lane];
+    }
+    const int isBlended = frame.info.list(frame.info.listUser, frame.info.originX + x, frame.info.originY + y,
+                                          list_.data(), static_cast<std::uint32_t>(list_.size()), color);
+    if (isBlended == 0) continue;
+    for (std::size_t c = 0; c < 4; ++c) {
+      float sum = 0.0F;
+      for (std::uint32_t s = 0; s < samples; ++s) sum += color[4 * s + c];
+      result[c][lane] = sum / static_cast<float>(samples);
+    }
+  }
+  for (std::size_t c = 0; c < 4; ++c) blended[c] = load(result[c]);
+  write(frame, block, blended);
+}
+
+// A pixel's fragments as the host sees them, in list_.
+inline void TileWorker::layersOf(const Frame& frame, const SortedRows& sorted, std::uint32_t lane) {
+  list_.clear();
+  for (std::size_t r = 0; r < sorted.rows; ++r) {
+    const std::uint32_t key = sorted.depthKeyOf(r, lane);
+    if (key >= static_cast<std::uint32_t>(kFarKey)) break;
+    const Row row = rowOf(sorted, r, lane);
+    const auto number = static_cast<std::uint32_t>(row[kLanes * RowShape::kNumber + lane]) & ~kFrontBit;
+    const VitrailCpuDraw& draw = frame.draws[frame.jobs[number >> kJobBits].draw].draw;
+    const bool isOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
+    const std::int32_t bits =
+        isOne ? kOneBits + kNearestKey - static_cast<std::int32_t>(key) : static_cast<std::int32_t>(key) - kNearestKey;
+    VitrailLayer layer{};
+    std::memcpy(&layer.depth, &bits, sizeof(bits));
+    layer.blend = static_cast<std::uint32_t>(draw.blend);
+    layer.coverage = shape_.coverage == 0 ? 1 : static_cast<std::uint32_t>(row[kLanes * shape_.coverage + lane]);
+    layer.word = draw.word;
+    appendLayers(draw, sorted.pairOf(r, lane), frame.needs.filters ? sorted.filterOf(r, lane) : nullptr, layer, list_);
+  }
+}
+
+} // namespace vitrail::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,229 @@
+// What one thread keeps while it draws tiles, and the steps of a tile; each step is a file of its own.
+#if defined(VITRAIL_WORKER_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VITRAIL_WORKER_INL_H
+#undef VITRAIL_WORKER_INL_H
+#else
+#define VITRAIL_WORKER_INL_H
+#endif
+
+#include <array>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "raster/cpu/batch-inl.h"
+#include "raster/cpu/picture.h"
+#include "raster/cpu/resolve-inl.h"
+#include "raster/cpu/shade-inl.h"
+#include "raster/cpu/store-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vitrail::raster::HWY_NAMESPACE {
+
+constexpr std::uint32_t kBlocksAcross = kTileSide / kBlockSide;
+
+// The pixels of each block, in the tile: x below, y in the upper 16 bits.
+struct BlockLanes {
+  alignas(64) std::int32_t position[kBlocks][kLanes];
+  constexpr BlockLanes() : position() {
+    for (std::uint32_t b = 0; b < kBlocks; ++b) {
+      for (std::uint32_t l = 0; l < kLanes; ++l) {
+        const std::uint32_t x = b % kBlocksAcross * kBlockSide + l % kBlockSide;
+        const std::uint32_t y = b / kBlocksAcross * kBlockSide + l / kBlockSide;
+        position[b][l] = static_cast<std::int32_t>(x | y << 16U);
+      }
+    }
+  }
+};
+inline constexpr BlockLanes kBlockLanes;
+
+// Where the pairs of a row's lanes are, in units of 16 bytes from its first.
+struct PairPlaces {
+  alignas(64) std::int32_t place[kLanes];
+  constexpr PairPlaces() : place() {
+    for (std::size_t l = 0; l < kLanes; ++l) place[l] = static_cast<std::int32_t>(placeOfFour(l));
+  }
+};
+inline constexpr PairPlaces kPairPlaces;
+
+// A triangle and a block in which it covers something, and what.
+struct Work {
+  std::uint8_t triangle; // of the batch
+  std::uint8_t block;
+  std::uint16_t pixels; // in which some sample is covered
+};
+
+// Writes the numbers (x + 8 y) of the blocks in a rectangle, and beside each the same tag; up to 7 bytes too many.
+HWY_INLINE std::uint32_t listBlocks(std::uint8_t* ids, std::uint8_t* tags, std::int32_t x0, std::int32_t x1,
+                                    std::int32_t y0, std::int32_t y1, std::uint8_t tag) {
+  constexpr std::uint64_t kOnes = 0x0101010101010101U;
+  std::uint64_t row = 0x0706050403020100U + static_cast<std::uint64_t>(x0 + 8 * y0) * kOnes;
+  const std::uint64_t same = tag * kOnes;
+  const auto width = static_cast<std::uint32_t>(x1 - x0 + 1);
+  std::uint32_t count = 0;
+  for (std::int32_t y = y0; y <= y1; ++y, row += 8 * kOnes, count += width) {
+    std::memcpy(ids + count, &row, sizeof(row));
+    std::memcpy(tags + count, &same, sizeof(same));
+  }
+  return count;
+}
+
+// Opaque surfaces of a tile: of each sample of each pixel the nearest.
+struct OpaqueTile {
+  explicit OpaqueTile(std::uint32_t samples) : depth(samples), shown(samples), color(samples) {}
+  struct Plane {
+    alignas(64) std::int32_t value[kBlocks][kLanes];
+  };
+  struct Surface { // whose number is 0 where there is none, else the triangle's plus 1 with kFrontBit
+    alignas(64) std::int32_t number[kBlocks][kLanes];
+    alignas(64) float weights[6][kBlocks][kLanes];    // second, third, their derivatives
+    alignas(64) std::int32_t centre[kBlocks][kLanes]; // depth key at the pixel's centre
+  };
+  struct Color {
+    alignas(64) float value[4][kBlocks][kLanes];
+  };
+  std::vector<Plane> depth; // keys
+  std::vector<Surface> shown;
+  std::vector<Color> color;
+  std::uint64_t drawn = 0; // blocks in which something is shown
+};
+
+class TileWorker final : public TileWorkspace {
+ public:
+  explicit TileWorker(const Frame& frame)
+      : shape_(frame.needs, frame.info.samples > 1, frame.draws.size()), store_(shape_, frame.budget) {
+    if (frame.needs.opaque) opaque_ = std::make_unique<OpaqueTile>(frame.info.samples);
+  }
+
+  void draw(const Frame& frame, std::uint32_t tile, TileCounts& counts);
+  std::uint64_t fragmentBytes() const override { return store_.peakBytes(); }
+
+ private:
+  // Which part of a block's fragments a pass takes: those beyond `after` and before `until`, as keys. Fragments from
+  // `until` on are left to a later pass.
+  struct Window {
+    alignas(64) std::int32_t after[kLanes];
+    alignas(64) std::int32_t until[kLanes];
+    bool isCut = false;     // some were left
+    bool isCounted = false; // fragments are only counted: nothing shows behind what was blended
+  };
+
+  struct State { // of a block: what its samples come to
+    Blended samples[kMaxSamples];
+    bool isUniform = true; // all of them the same: only the first is there
+
+    State() { samples[0].clear(); }
+    void separate(std::uint32_t count) {
+      if (!isUniform) return;
+      for (std::uint32_t s = 1; s < count; ++s) samples[s] = samples[0];
+      isUniform = false;
+    }
+    const Blended& of(std::uint32_t sample) const { return samples[isUniform ? 0 : sample]; }
+  };
+
+  struct Met { // a triangle in a block
+    Work work;
+    F second; // weights straight on the picture
+    F third;
+    F depth; // at the pixels' centres
+  };
+
+  // A block's first pixel in the frame.
+  std::uint32_t blockX(std::uint32_t block) const {
+    return static_cast<std::uint32_t>(tile_.x) + block % kBlocksAcross * kBlockSide;
+  }
+  std::uint32_t blockY(std::uint32_t block) const {
+    return static_cast<std::uint32_t>(tile_.y) + block / kBlocksAcross * kBlockSide;
+  }
+
+  void merge(const Frame& frame, std::uint32_t tile, bool opaque);
+  template <class Emit>
+  bool rasterise(const Frame& frame, std::uint64_t blocks, Emit emit);
+  template <class Emit>
+  bool flush(const Frame& frame, std::uint64_t blocks, Emit emit);
+  struct Fetched {
+    const VitrailCpuDraw* draw;
+    std::array<const Corner*, 3> corners; // the first is null where it is no triangle
+  };
+  void fetch(const Frame& frame, std::size_t first, std::uint32_t count, Fetched* fetched) const;
+  void add(std::uint32_t number, const VitrailCpuDraw& draw, const Corner& a, const Corner& b, const Corner& c);
+  template <class Emit>
+  bool stage(const Frame& frame, std::uint32_t number, const Fetched& f, std::uint64_t blocks, Emit emit);
+  template <class Emit>
+  bool stagePieces(const Frame& frame, std::uint32_t number, std::uint64_t blocks, Emit emit);
+  HWY_INLINE std::uint32_t cover(std::uint64_t blocks, std::uint32_t items);
+  HWY_INLINE std::uint32_t coverSamples(std::uint64_t blocks, std::uint32_t items, std::uint32_t samples);
+
+  HWY_INLINE void perspective(std::uint32_t t, const F& flatSecond, const F& flatThird, bool derivatives,
+                              F* weights) const;
+  Met meet(std::uint32_t item) const;
+  enum class Emitted { IsStored, IsCrowded, IsFull };
+  template <bool kShaded>
+  Emitted emitTransparent(const Frame& frame, std::uint32_t item, Window* window);
+  template <bool kShaded>
+  bool emit(const Frame& frame, std::uint32_t item, Window* window);
+  HWY_INLINE void emitOpaque(const Frame& frame, std::uint32_t item);
+  HWY_INLINE std::uint32_t testDepth(const Frame& frame, const Work& work, std::uint32_t item, const F& depth, I* keys);
+
+  void drawOpaque(const Frame& frame, std::uint32_t tile);
+  void shadeOpaque(const Frame& frame, std::uint32_t block);
+  void drawParts(const Frame& frame, std::uint64_t blocks, TileCounts& counts);
+  void drawInWindows(const Frame& frame, std::uint32_t block, TileCounts& counts);
+  void shrink(Window& window, std::uint32_t block);
+  void thin(const Frame& frame, std::uint32_t block);
+  bool mayHide(const Frame& frame) const;
+  void shadeBlock(const Frame& frame, std::uint32_t block);
+  I saturationOf(const Frame& frame, const SortedRows& sorted) const;
+  void resolveBlock(const Frame& frame, std::uint32_t block, TileCounts& counts);
+  SortedRows sortBlock(const Frame& frame, std::uint32_t block);
+  static void count(const std::int32_t* layers, TileCounts& counts);
+  static bool isHidden(const Frame& frame, const State& state);
+  void blendInto(const Frame& frame, std::uint32_t block, const SortedRows& sorted, State& state);
+  void coveragesOf(const SortedRows& sorted, std::uint32_t* coverages) const;
+  Row rowOf(const SortedRows& sorted, std::size_t r, std::size_t lane) const;
+  void behind(const Frame& frame, std::uint32_t block, std::uint32_t sample, F* color);
+  float* pixelsOf(const Frame& frame, std::uint32_t block, std::size_t& stride) const;
+  void write(const Frame& frame, std::uint32_t block, const F* color);
+  void blendedOver(const Frame& frame, std::uint32_t block, const State* state, F* sum);
+  void finishBlock(const Frame& frame, std::uint32_t block, const State* state);
+  void listBlock(const Frame& frame, std::uint32_t block, const SortedRows& sorted);
+  void layersOf(const Frame& frame, const SortedRows& sorted, std::uint32_t lane);
+
+  RowShape shape_;
+  Store store_;
+  Batch batch_{};
+  TileBox tile_{};
+  std::vector<std::uint32_t> numbers_;
+  std::array<std::array<Fetched, kBatch>, 2> fetched_{};
+  std::unique_ptr<OpaqueTile> opaque_;
+  bool hasDepth_ = false; // opaque surfaces may hide fragments of this tile
+  std::array<std::uint8_t, kBatch * kBlocks + 64> ids_{};
+  std::array<std::uint8_t, kBatch * kBlocks + 64> tags_{};
+  std::array<Work, kBatch * kBlocks + 64> work_{};
+  std::array<std::array<std::uint16_t, kBatch * kBlocks + 64>, kMaxSamples> sampleMasks_{};
+  // Blocks in which what is far away is known to be hidden: from which depth on, and how many fragments were left out.
+  std::uint64_t saturated_ = 0;
+  std::uint64_t edges_ = 0; // blocks in which a fragment does not cover all samples of its pixel
+  alignas(64) std::int32_t until_[kBlocks][kLanes];
+  alignas(64) std::int32_t hidden_[kBlocks][kLanes];
+  alignas(64) std::int32_t layers_[kLanes]; // fragments of each pixel of the block that was sorted last
+  std::vector<Row> rows_;
+  std::vector<double> keyMemory_;
+  std::vector<std::uint32_t> coverageMemory_;
+  std::vector<VitrailLayer> list_;
+  PixelBlock pixels_;
+  PixelBlock behind_;
+  alignas(64) VitrailCpuFragments fragments_{};
+};
+
+// Memory that is aligned as vectors are, of one that has 64 bytes to spare.
+template <class T>
+T* aligned(T* p) {
+  const std::uintptr_t past = reinterpret_cast<std::uintptr_t>(p) % 64;
+  return reinterpret_cast<T*>(reinterpret_cast<char*>(p) + (past == 0 ? 0 : 64 - past));
+}
+
+} // namespace vitrail::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
