@@ -69,13 +69,16 @@ function(embed_variant target table row color samples sorting access)
   set(variants "${variants}VITRAIL_VARIANT(${stage}, ${enumerator}, ${axes}, ${symbol})\n" PARENT_SCOPE)
 endfunction()
 
-# list_kernels(table): makes generated/kernels/names.inc, VITRAIL_KERNEL(stage, Enumerator, "name") a kernel, which is what
-# the core knows of them. Nothing is compiled.
+# list_kernels(table): makes in generated/kernels
+#   names.inc   VITRAIL_KERNEL(stage, Enumerator, "name") a kernel, which is what the core knows of them
+#   rows.inc    VITRAIL_ROW(stage, Enumerator, samples, sorting, "file", "defines") a row, for backends that compile at run
+#               time; an axis is a value, `each` or `any`
+# Nothing is compiled.
 function(list_kernels table)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${table})
-  file(STRINGS ${table} rows REGEX "^[^#]")
+  file(STRINGS ${table} lines REGEX "^[^#]")
   set(known)
-  foreach(line ${rows})
+  foreach(line ${lines})
     string(REGEX REPLACE "[ \t]+" ";" row "${line}")
     list(GET row 0 name)
     list(GET row 1 entry)
@@ -86,8 +89,16 @@ function(list_kernels table)
       string(REPLACE _ " " words ${name})
       string(APPEND names "VITRAIL_KERNEL(${stage}, ${enumerator}, \"${words}\")\n")
     endif()
+    list(GET row 3 samples)
+    list(GET row 4 sorting)
+    list(GET row 7 defines)
+    string(REPLACE - any axes "${samples}, ${sorting}")
+    string(REGEX REPLACE "^-$" "" defines ${defines})
+    kernel_enumerator(${name} enumerator)
+    string(APPEND rows "VITRAIL_ROW(${stage}, ${enumerator}, ${axes}, \"${entry}\", \"${defines}\")\n")
   endforeach()
   write_kernel_list(names "${names}")
+  write_kernel_list(rows "${rows}")
 endfunction()
 
 function(write_kernel_list file content)

@@ -256,7 +256,7 @@ typedef struct VitrailStats {
   uint32_t approximatePixels;
   /* Pixels (a resolve per sample counts samples) that the driver did not let the resolve finish. Always 0 on a GPU.
    * Mesa's CPU driver ends a shader's loops after 65,535 turns in total, which is enough for lists of 15,000
-   * fragments. */
+   * fragments, through OpenGL for lists of 14,000. */
   uint32_t cutPixels;
 } VitrailStats;
 

@@ -20,4 +20,22 @@
 #define VITRAIL_VIEW_BINDING_DEPTH 2  // sampled image: the opaque depth with several samples
 #define VITRAIL_VIEW_BINDINGS 3
 
+#ifndef __cplusplus
+// What the languages of Vulkan and of OpenGL (VITRAIL_OPENGL) say in different ways. OpenGL has one number for each
+// binding point of a kind, and no specialization constants; the numbers may be moved on by VITRAIL_BINDING_BASE.
+#ifndef VITRAIL_OPENGL
+#define VITRAIL_BOUND(set_number, number) set = set_number, binding = number
+#define VITRAIL_SPECIALIZED(id) layout(constant_id = id)
+#define VITRAIL_TEXTURE_MS texture2DMS
+#else
+#ifdef VITRAIL_BINDING_BASE
+#define VITRAIL_BOUND(set_number, number) binding = VITRAIL_BINDING_BASE + number
+#else
+#define VITRAIL_BOUND(set_number, number) binding = number
+#endif
+#define VITRAIL_SPECIALIZED(id)
+#define VITRAIL_TEXTURE_MS sampler2DMS
+#endif
+#endif
+
 #endif

@@ -56,7 +56,7 @@ layout(early_fragment_tests) in;
 #ifdef VITRAIL_ONLY_FORMAT
 const uint VITRAIL_NODE_FORMAT = VITRAIL_ONLY_FORMAT;
 #else
-layout(constant_id = VITRAIL_CONSTANT_ID) const uint VITRAIL_NODE_FORMAT = 0xffffffffu;
+VITRAIL_SPECIALIZED(VITRAIL_CONSTANT_ID) const uint VITRAIL_NODE_FORMAT = 0xffffffffu;
 #endif
 #ifdef VITRAIL_ONLY_SAMPLES
 const uint VITRAIL_SAMPLES = VITRAIL_ONLY_SAMPLES;
@@ -64,7 +64,7 @@ const uint VITRAIL_SAMPLES = VITRAIL_ONLY_SAMPLES;
 #error VITRAIL_ONLY_SAMPLES is none of 1, 2, 4 and 8
 #endif
 #else
-layout(constant_id = VITRAIL_CONSTANT_ID + 1) const uint VITRAIL_SAMPLES = 0u;
+VITRAIL_SPECIALIZED(VITRAIL_CONSTANT_ID + 1) const uint VITRAIL_SAMPLES = 0u;
 #endif
 #ifdef VITRAIL_ONLY_OVERFLOW
 const uint VITRAIL_KEEP_SUMS = 1u - VITRAIL_ONLY_OVERFLOW;
@@ -73,7 +73,7 @@ const uint VITRAIL_KEEP_SUMS = 1u - VITRAIL_ONLY_OVERFLOW;
 #endif
 #else
 #define VITRAIL_ONLY_OVERFLOW 0 // as far as code is concerned
-layout(constant_id = VITRAIL_CONSTANT_ID + 2) const uint VITRAIL_KEEP_SUMS = 0xffffffffu; // 0 or 1
+VITRAIL_SPECIALIZED(VITRAIL_CONSTANT_ID + 2) const uint VITRAIL_KEEP_SUMS = 0xffffffffu; // 0 or 1
 #endif
 #ifdef VITRAIL_ONLY_LIST_BUILD
 const uint VITRAIL_LOOSE = VITRAIL_ONLY_LIST_BUILD - 1u;
@@ -82,7 +82,7 @@ const uint VITRAIL_LOOSE = VITRAIL_ONLY_LIST_BUILD - 1u;
 #endif
 #else
 #define VITRAIL_ONLY_LIST_BUILD 0
-layout(constant_id = VITRAIL_CONSTANT_ID + 3) const uint VITRAIL_LOOSE = 0xffffffffu; // 0 or 1
+VITRAIL_SPECIALIZED(VITRAIL_CONSTANT_ID + 3) const uint VITRAIL_LOOSE = 0xffffffffu; // 0 or 1
 #endif
 #ifdef VITRAIL_ONLY_USER_WORDS
 const uint VITRAIL_USER_WORDS = VITRAIL_ONLY_USER_WORDS;
@@ -91,25 +91,29 @@ const uint VITRAIL_USER_WORDS = VITRAIL_ONLY_USER_WORDS;
 #endif
 #else
 #define VITRAIL_ONLY_USER_WORDS 1
-layout(constant_id = VITRAIL_CONSTANT_ID + 4) const uint VITRAIL_USER_WORDS = 0xffffffffu; // 0 or 1
+VITRAIL_SPECIALIZED(VITRAIL_CONSTANT_ID + 4) const uint VITRAIL_USER_WORDS = 0xffffffffu; // 0 or 1
 #endif
 
 #if VITRAIL_ONLY_OVERFLOW == 0
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_SUMS, std430) buffer VitrailSumsBlock { uint vitrailPixelSums[]; };
+layout(VITRAIL_BOUND(VITRAIL_SET, VITRAIL_BINDING_SUMS), std430) buffer VitrailSumsBlock { uint vitrailPixelSums[]; };
 #endif
 #ifdef VITRAIL_CPU_DRIVER
 // The same memory again. Mesa's lavapipe waits before every draw until the draws before it are done where it sees that
 // the draw's shader writes a buffer; where a binding is declared more than once, as the pool's is, it does not look.
 // Draws need not wait: what they share is changed by atomics or set by all to one value, and a node has one writer.
-layout(constant_id = VITRAIL_CONSTANT_ID + 5) const uint VITRAIL_NEVER = 0u; // no host sets it
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_CONTROL, std430) buffer VitrailControlAgain {
+#ifndef VITRAIL_OPENGL
+VITRAIL_SPECIALIZED(VITRAIL_CONSTANT_ID + 5) const uint VITRAIL_NEVER = 0u; // no host sets it
+#else
+#define VITRAIL_NEVER uint(vitrailParameters.samples == 0u) // which no compiler knows
+#endif
+layout(VITRAIL_BOUND(VITRAIL_SET, VITRAIL_BINDING_CONTROL), std430) buffer VitrailControlAgain {
   uint vitrailControlAgain[];
 };
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_HEADS, std430) buffer VitrailHeadsAgain {
+layout(VITRAIL_BOUND(VITRAIL_SET, VITRAIL_BINDING_HEADS), std430) buffer VitrailHeadsAgain {
   uint vitrailHeadsAgain[];
 };
 #if VITRAIL_ONLY_OVERFLOW == 0
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_SUMS, std430) buffer VitrailSumsAgain {
+layout(VITRAIL_BOUND(VITRAIL_SET, VITRAIL_BINDING_SUMS), std430) buffer VitrailSumsAgain {
   uint vitrailPixelSumsAgain[];
 };
 #endif

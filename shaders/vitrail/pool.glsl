@@ -46,14 +46,14 @@ uvec2 vitrailWordsAddress(uint count, uint perNode) {
 #define VITRAIL_COMPACT(index) VitrailCompactNodes(vitrailPoolAddress()).nodes[index].words
 #define VITRAIL_HDR(index) VitrailHdrNodes(vitrailPoolAddress()).nodes[index].words
 #else
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailStandardBlock {
+layout(VITRAIL_BOUND(VITRAIL_SET, VITRAIL_BINDING_NODES), std430) buffer VitrailStandardBlock {
   VitrailNodeStandard vitrailStandardNodes[];
 };
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailLinkBlock { uint vitrailLinks[]; };
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailCompactBlock {
+layout(VITRAIL_BOUND(VITRAIL_SET, VITRAIL_BINDING_NODES), std430) buffer VitrailLinkBlock { uint vitrailLinks[]; };
+layout(VITRAIL_BOUND(VITRAIL_SET, VITRAIL_BINDING_NODES), std430) buffer VitrailCompactBlock {
   VitrailNodeCompact vitrailCompactNodes[];
 };
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_NODES, std430) buffer VitrailHdrBlock {
+layout(VITRAIL_BOUND(VITRAIL_SET, VITRAIL_BINDING_NODES), std430) buffer VitrailHdrBlock {
   VitrailNodeHdr vitrailHdrNodes[];
 };
 #define VITRAIL_STANDARD(index) vitrailStandardNodes[index].words

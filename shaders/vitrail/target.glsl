@@ -13,17 +13,17 @@
 #include "bindings.h"
 #include "layout.h"
 
-#ifndef VITRAIL_SET
+#if !defined(VITRAIL_SET) && !defined(VITRAIL_OPENGL)
 #error define VITRAIL_SET, the descriptor set number of vitrailVkTargetDescriptorSet() in your pipeline layout
 #endif
 
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_PARAMETERS, std140) uniform VitrailParametersBlock {
+layout(VITRAIL_BOUND(VITRAIL_SET, VITRAIL_BINDING_PARAMETERS), std140) uniform VitrailParametersBlock {
   VitrailParameters vitrailParameters;
 };
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_CONTROL, std430) buffer VitrailControlBlock {
+layout(VITRAIL_BOUND(VITRAIL_SET, VITRAIL_BINDING_CONTROL), std430) buffer VitrailControlBlock {
   VitrailControl vitrailControl;
 };
-layout(set = VITRAIL_SET, binding = VITRAIL_BINDING_HEADS, std430) buffer VitrailHeadsBlock { uint vitrailHeads[]; };
+layout(VITRAIL_BOUND(VITRAIL_SET, VITRAIL_BINDING_HEADS), std430) buffer VitrailHeadsBlock { uint vitrailHeads[]; };
 
 uint vitrailPoolCapacity() { return vitrailParameters.capacity; }
 #ifdef VITRAIL_BUFFER_REFERENCE

@@ -79,17 +79,6 @@ Spirv fragmentCode(FragmentResolve resolve, bool byAddress, bool networks) {
 
 Spirv vertexCode() { return find({Stage::vert, 0, Color::any, Samples::any, Sorting::any, Access::any, Spirv{}}); }
 
-const char* kernelName(Kernel kernel) {
-#define VITRAIL_NAME_comp(name, words) words,
-#define VITRAIL_NAME_frag(name, words)
-#define VITRAIL_NAME_vert(name, words)
-#define VITRAIL_KERNEL(stage, name, words) VITRAIL_NAME_##stage(name, words)
-  constexpr std::array kNames = {
-#include "kernels/names.inc"
-  };
-  return kNames[static_cast<std::size_t>(kernel)];
-}
-
 std::span<const KernelVariant> kernelVariants() { return kPublicVariants; }
 
 } // namespace vitrail

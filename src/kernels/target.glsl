@@ -7,17 +7,26 @@
 #define VITRAIL_SET 0
 #include "vitrail/target.glsl"
 
-layout(constant_id = 0) const uint kFormat = VITRAIL_FORMAT_STANDARD;
-layout(constant_id = 1) const uint kSamples = 1u;
-layout(constant_id = 2) const bool kNearestIsOne = false;
-layout(constant_id = 3) const uint kMaxLayers = 0u;
-layout(constant_id = 4) const bool kTestDepth = false; // coverage has not passed the depth test
-layout(constant_id = 5) const uint kGroup = 4u;        // list/group.comp: invocations that share a list, 4 or 8
+#ifndef VITRAIL_OPENGL
+VITRAIL_SPECIALIZED(0) const uint kFormat = VITRAIL_FORMAT_STANDARD;
+VITRAIL_SPECIALIZED(1) const uint kSamples = 1u;
+VITRAIL_SPECIALIZED(2) const bool kNearestIsOne = false;
+VITRAIL_SPECIALIZED(3) const uint kMaxLayers = 0u;
+VITRAIL_SPECIALIZED(4) const bool kTestDepth = false; // coverage has not passed the depth test
+VITRAIL_SPECIALIZED(5) const uint kGroup = 4u;        // list/group.comp: invocations that share a list, 4 or 8
+#else // the library defines what follows "VITRAIL_IS_"
+const uint kFormat = VITRAIL_IS_FORMAT;
+const uint kSamples = VITRAIL_IS_SAMPLES;
+const bool kNearestIsOne = VITRAIL_IS_NEAREST_ONE;
+const uint kMaxLayers = VITRAIL_IS_MAX_LAYERS;
+const bool kTestDepth = VITRAIL_IS_TEST_DEPTH;
+const uint kGroup = VITRAIL_IS_GROUP;
+#endif
 
 // Lists need no sorting where only their nearest fragments are kept.
 const bool kCapped = kMaxLayers != 0u && kMaxLayers <= VITRAIL_SHORT_LIST;
 
-layout(set = 0, binding = VITRAIL_BINDING_SUMS, std430) buffer SumsBlock { uint pixelSums[]; };
+layout(VITRAIL_BOUND(0, VITRAIL_BINDING_SUMS), std430) buffer SumsBlock { uint pixelSums[]; };
 
 VitrailLayout vitrailNodes() { return VitrailLayout(kFormat, kSamples, kNearestIsOne); }
 uint vitrailMaxLayers() { return kMaxLayers; }

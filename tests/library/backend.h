@@ -31,6 +31,7 @@ struct Features {
   bool stencil = false;                    // beside a 32-bit float depth
   bool addresses = false;                  // pools can be reached by their address
   std::uint64_t bindingBytes = 0;          // what one binding reaches of a buffer
+  std::uint32_t uncutLayers = 15000;       // of lists that a driver on a CPU walks to the end (VitrailStats::cutPixels)
   std::vector<std::uint32_t> multisampled; // which of 2, 4 and 8 samples it has
 };
 

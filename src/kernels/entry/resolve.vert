@@ -1,6 +1,10 @@
 // One triangle over the viewport.
 #version 460
 
+#ifdef VITRAIL_OPENGL
+#define gl_VertexIndex gl_VertexID
+#endif
+
 void main() {
   vec2 corner = vec2((gl_VertexIndex << 1) & 2, gl_VertexIndex & 2);
   gl_Position = vec4(corner * 2.0 - 1.0, 0.0, 1.0);

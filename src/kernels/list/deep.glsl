@@ -8,14 +8,14 @@
 
 #ifdef VITRAIL_GROUPS
 // Lists that one invocation takes: the pixels of VITRAIL_CLASS_MEDIUM.
-layout(set = 0, binding = VITRAIL_BINDING_MEDIUM_LISTS, std430) buffer MediumListsBlock { uint mediumPixels[]; };
+layout(VITRAIL_BOUND(0, VITRAIL_BINDING_MEDIUM_LISTS), std430) buffer MediumListsBlock { uint mediumPixels[]; };
 // Lists that groups of invocations take: the pixel, and where the second part begins and those after it
 // (list/parts.glsl). From the front VITRAIL_CLASS_LONG for groups of 4, one element each; from the end
 // VITRAIL_CLASS_LONGEST for groups of 8, or of any length, two elements each. A pool has not the nodes for so many that
 // they meet.
-layout(set = 0, binding = VITRAIL_BINDING_LONG_LISTS, std430) buffer LongListsBlock { uvec4 longLists[]; };
+layout(VITRAIL_BOUND(0, VITRAIL_BINDING_LONG_LISTS), std430) buffer LongListsBlock { uvec4 longLists[]; };
 #else
-layout(set = 0, binding = VITRAIL_BINDING_LONG_LISTS, std430) buffer LongListsBlock { uint longPixels[]; };
+layout(VITRAIL_BOUND(0, VITRAIL_BINDING_LONG_LISTS), std430) buffer LongListsBlock { uint longPixels[]; };
 #endif
 
 // The work groups of those dispatches in a row: the least that maxComputeWorkGroupCount may be, rounded down.

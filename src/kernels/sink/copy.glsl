@@ -6,7 +6,7 @@
 #include "target.glsl"
 #include "vitrail/sort.glsl"
 
-layout(set = 0, binding = VITRAIL_BINDING_COPY, std430) buffer CopyBlock {
+layout(VITRAIL_BOUND(0, VITRAIL_BINDING_COPY), std430) buffer CopyBlock {
   VitrailCopyHeader copy;
   uvec2 copied[]; // two words of what lies behind: a VitrailCopiedList, or a quarter of a VitrailLayer
 };

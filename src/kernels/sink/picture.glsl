@@ -10,7 +10,7 @@
 #include "sink/blend.glsl"
 #include "list/sums.glsl"
 
-layout(set = 1, binding = VITRAIL_VIEW_BINDING_COLOR, VITRAIL_COLOR_FORMAT) uniform image2D colorImage;
+layout(VITRAIL_BOUND(1, VITRAIL_VIEW_BINDING_COLOR), VITRAIL_COLOR_FORMAT) uniform image2D colorImage;
 
 uvec2 imagePixel(uint pixelIndex) {
   uint width = vitrailParameters.width;

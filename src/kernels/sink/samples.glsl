@@ -4,12 +4,14 @@
 #ifndef VITRAIL_SAMPLES_GLSL
 #define VITRAIL_SAMPLES_GLSL
 
+#ifndef VITRAIL_OPENGL
 #extension GL_EXT_samplerless_texture_functions : require
+#endif
 
 #include "target.glsl"
 
 #if defined(VITRAIL_MULTISAMPLED) || defined(VITRAIL_TEST_DEPTH)
-layout(set = 1, binding = VITRAIL_VIEW_BINDING_DEPTH) uniform texture2DMS depthImage;
+layout(VITRAIL_BOUND(1, VITRAIL_VIEW_BINDING_DEPTH)) uniform VITRAIL_TEXTURE_MS depthImage;
 
 // Whether a fragment lies behind the opaque scene at a sample, both rounded alike.
 bool isHidden(uvec4 key, ivec2 pixel, int number) {
@@ -20,9 +22,9 @@ bool isHidden(uvec4 key, ivec2 pixel, int number) {
 
 #ifdef VITRAIL_MULTISAMPLED
 #define VITRAIL_ACCUMULATORS 8
-layout(set = 1, binding = VITRAIL_VIEW_BINDING_OPAQUE) uniform texture2DMS opaqueImage;
+layout(VITRAIL_BOUND(1, VITRAIL_VIEW_BINDING_OPAQUE)) uniform VITRAIL_TEXTURE_MS opaqueImage;
 
-ivec2 shownPixel; // the pixel that this invocation resolves
+ivec2 shownPixel = ivec2(0); // the pixel that this invocation resolves
 
 uint vitrailVisible(uvec4 key) {
   uint coverage = vitrailKeyCoverage(key, vitrailNodes());

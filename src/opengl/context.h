@@ -1,0 +1,43 @@
+// What the library keeps for one OpenGL context, or one group of them: functions, programs, limits, sources.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "core/device_limits.h"
+#include "core/log.h"
+#include "functions.h"
+#include "programs.h"
+#include "vitrail/gl.h"
+
+struct VitrailGlContext_T {
+  vitrail::GlFunctions gl;
+  vitrail::Log log;
+  vitrail::DeviceLimits limits;
+  std::uint32_t bindingBase = 0;
+  std::string collectSource;
+  std::string listSource;
+  std::mutex programsMutex; // guards `programs`
+  std::map<vitrail::ProgramKey, GLuint> programs;
+  // The handle and its targets: what the context has is freed with the last of them.
+  std::atomic<std::uint32_t> owners{1};
+
+  // Names an object for debuggers.
+  void label(GLenum kind, GLuint object, const char* prefix, const char* what) const;
+};
+
+namespace vitrail {
+
+// One owner less.
+void releaseContext(VitrailGlContext context);
+
+// Logs that an argument of a call is null.
+VitrailResult nullArgument(const VitrailGlContext_T* context, const char* call);
+
+// `next` of a structure, which this version knows nothing for.
+VitrailResult checkNext(const Log& log, const void* next, const char* structure);
+
+} // namespace vitrail

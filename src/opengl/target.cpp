@@ -1,0 +1,425 @@
+// Creation, resizing and destruction of a target, and what it tells.
+#include "target.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "state.h"
+
+namespace vitrail {
+
+namespace {
+
+TargetInfo targetInfo(const VitrailGlTargetDesc& desc) {
+  TargetInfo info;
+  info.width = desc.width;
+  info.height = desc.height;
+  info.samples = desc.samples;
+  info.nodeFormat = desc.nodeFormat;
+  info.depthOrder = desc.depthOrder;
+  info.resolve = desc.resolve;
+  info.msaaResolve = desc.msaaResolve;
+  info.postDepthCoverage = desc.postDepthCoverage != 0;
+  info.maxLayers = desc.maxLayers;
+  info.overflow = desc.overflow;
+  info.listBuild = desc.listBuild;
+  info.userWords = desc.userWords != 0;
+  info.nodeCapacity = desc.nodeCapacity;
+  info.memoryBudget = desc.memoryBudget;
+  info.areaPixels = desc.areaPixels;
+  info.copyLayers = desc.copyLayers;
+  info.ownBuffer = desc.buffer != 0;
+  info.bufferOffset = desc.bufferOffset;
+  info.bufferSize = desc.bufferSize;
+  info.framesInFlight = desc.framesInFlight;
+  info.canStoreColor = desc.textures.color != nullptr;
+  info.stencilMark = desc.stencilMark != 0;
+  info.hasStencil = true; // the framebuffer may have one
+  return info;
+}
+
+// The first name of an array that is 0.
+void findNull(const std::uint32_t* names, std::uint32_t count, const char* what, ViewsInfo& info) {
+  if (names == nullptr || info.nullName != nullptr) return;
+  const std::uint32_t* found = std::find(names, names + count, 0U);
+  if (found == names + count) return;
+  info.nullName = what;
+  info.nullIndex = static_cast<std::uint32_t>(found - names);
+}
+
+ViewsInfo viewsInfo(const VitrailGlTextures& textures) {
+  ViewsInfo info;
+  info.count = textures.count;
+  info.color = textures.color != nullptr;
+  info.opaque = textures.opaque != nullptr;
+  info.depth = textures.depth != nullptr;
+  if (textures.count > VITRAIL_MAX_VIEWS) return info; // the arrays are not trusted
+  findNull(textures.color, textures.count, "color", info);
+  findNull(textures.opaque, textures.count, "opaque", info);
+  findNull(textures.depth, textures.count, "depth", info);
+  return info;
+}
+
+void keepViews(VitrailGlTarget_T& target, const VitrailGlTextures& textures) {
+  target.views = {};
+  target.viewCount = textures.count;
+  for (std::uint32_t i = 0; i < textures.count; ++i) {
+    if (textures.color != nullptr) target.views[i].color = textures.color[i];
+    if (textures.opaque != nullptr) target.views[i].opaque = textures.opaque[i];
+    if (textures.depth != nullptr) target.views[i].depth = textures.depth[i];
+  }
+}
+
+GLenum colorFormatOf(const VitrailGlTargetDesc& desc) { return desc.colorFormat != 0 ? desc.colorFormat : GL_RGBA16F; }
+
+VitrailResult checkDesc(const VitrailGlContext_T& context, const VitrailGlTargetDesc& desc, const TargetInfo& info) {
+  const VitrailResult result = checkTarget(context.limits, context.log, info);
+  if (result != VITRAIL_SUCCESS) return result;
+  const GLenum format = colorFormatOf(desc);
+  if (info.resolve == VITRAIL_RESOLVE_COMPUTE && format != GL_RGBA16F && format != GL_RGBA32F) {
+    return context.log.fail(VITRAIL_ERROR_FORMAT, "colorFormat 0x%x: a compute resolve writes GL_RGBA16F or GL_RGBA32F",
+                            format);
+  }
+  if (desc.stencilMask > 0xffU) {
+    return context.log.fail(VITRAIL_ERROR_INVALID, "stencilMask 0x%x: a stencil has 8 bits", desc.stencilMask);
+  }
+  return checkViews(context.log, info, viewsInfo(desc.textures));
+}
+
+// ---- What a target is made of
+
+FragmentResolve fragmentKind(const VitrailGlTarget_T& target) {
+  const TargetInfo& info = target.info;
+  const bool dual = !target.severalDrawBuffers;
+  if (info.samples == 1) return dual ? FragmentResolve::SingleDual : FragmentResolve::Single;
+  if (info.perPixel()) return FragmentResolve::PerPixel;
+  if (info.testsDepth()) return dual ? FragmentResolve::PerSampleDualDepth : FragmentResolve::PerSampleDepth;
+  return dual ? FragmentResolve::PerSampleDual : FragmentResolve::PerSample;
+}
+
+ProgramKey programKey(const VitrailGlTarget_T& target, const Pass& pass) {
+  const DeviceLimits& limits = target.context->limits;
+  const TargetInfo& info = target.info;
+  ProgramKey key;
+  key.format = info.nodeFormat;
+  key.samples = info.samples;
+  key.nearestIsOne = info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
+  key.maxLayers = info.maxLayers;
+  key.testDepth = info.testsDepth();
+  key.networks = limits.networks;
+  if (pass.action != Action::Dispatch) {
+    key.draws = true;
+    key.kernel =
+        static_cast<std::uint32_t>(pass.action == Action::DrawPlain ? FragmentResolve::Plain : fragmentKind(target));
+    return key;
+  }
+  key.kernel = static_cast<std::uint32_t>(pass.kernel);
+  key.networks = limits.networks && (limits.exchangesInGroups || info.resolve != VITRAIL_RESOLVE_COMPUTE);
+  if (pass.group != 0) key.group = pass.group;
+  if (pass.call == Call::Resolve) {
+    key.color = target.colorFormat == GL_RGBA32F ? ColorImage::Rgba32f : ColorImage::Rgba16f;
+    key.multisampled = info.samples > 1;
+  } else {
+    key.testDepth = false; // only what writes a picture looks at depth: the others are shared by more targets
+  }
+  return key;
+}
+
+VitrailResult findPrograms(VitrailGlTarget_T& target) {
+  for (const Pass& pass : target.plan.passes()) {
+    GLuint program = 0;
+    if (pass.action == Action::Dispatch || pass.action == Action::Draw || pass.action == Action::DrawPlain) {
+      const VitrailResult result = findProgram(*target.context, programKey(target, pass), &program);
+      if (result != VITRAIL_SUCCESS) return result;
+    }
+    target.programs.push_back(program);
+  }
+  return VITRAIL_SUCCESS;
+}
+
+VitrailResult createStats(VitrailGlTarget_T& target) {
+  const GlFunctions& gl = target.context->gl;
+  const SavedCopies saved(gl);
+  const std::uint64_t bytes = statisticsBytes(target.info.framesInFlight);
+  constexpr GLbitfield kMapped = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+  target.statsBuffer = createBuffer(*target.context, bytes, kMapped | GL_CLIENT_STORAGE_BIT, GL_STREAM_READ,
+                                    target.debugName.c_str(), "statistics");
+  if (target.statsBuffer == 0) return VITRAIL_ERROR_OUT_OF_MEMORY;
+  if (gl.BufferStorage != nullptr && gl.MapBufferRange != nullptr) {
+    target.stats = static_cast<const std::byte*>(
+        gl.MapBufferRange(GL_COPY_WRITE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), kMapped));
+  }
+  target.slots.resize(statisticsSlots(target.info.framesInFlight));
+  target.pending.resize(target.slots.size());
+  return VITRAIL_SUCCESS;
+}
+
+VitrailResult replaceStorage(VitrailGlTarget_T& target, const StorageNeeds& needs) {
+  GlStorage made;
+  const VitrailResult result =
+      made.create(*target.context, needs, target.hostBuffer, target.info.bufferOffset, target.debugName.c_str());
+  if (result != VITRAIL_SUCCESS) return result;
+  target.storage.destroy(*target.context);
+  target.storage = made;
+  target.sums.reset();
+  return VITRAIL_SUCCESS;
+}
+
+VitrailResult buildTarget(VitrailGlTarget_T& target) {
+  DeviceLimits limits = target.context->limits;
+  limits.dualSourceBlending = !target.severalDrawBuffers;
+  target.plan = FramePlan(planFacts(limits, target.info));
+  VitrailResult result = findPrograms(target);
+  if (result == VITRAIL_SUCCESS) result = createStats(target);
+  if (result != VITRAIL_SUCCESS) return result;
+  return replaceStorage(target, storageNeeds(target.context->limits, target.info));
+}
+
+std::unique_ptr<VitrailGlTarget_T> makeTarget(VitrailGlContext context, const VitrailGlTargetDesc& desc,
+                                              const TargetInfo& info) {
+  std::unique_ptr<VitrailGlTarget_T> made(new (std::nothrow) VitrailGlTarget_T);
+  if (!made) return nullptr;
+  made->context = context;
+  ++context->owners;
+  made->info = info;
+  made->info.nodeCapacity = capacityWithin(context->limits, info);
+  made->colorFormat = colorFormatOf(desc);
+  made->hostBuffer = desc.buffer;
+  made->hostBarriers = desc.hostBarriers != 0;
+  made->severalDrawBuffers = desc.severalDrawBuffers != 0;
+  if (desc.stencilMask != 0) made->stencilMask = desc.stencilMask;
+  made->debugName = desc.debugName != nullptr ? desc.debugName : "vitrail";
+  keepViews(*made, desc.textures);
+  return made;
+}
+
+// ---- Statistics
+
+// Takes the counters of a slot from where the GPU has written them, once it has.
+void fetch(VitrailGlTarget_T& target, std::size_t slot) {
+  const GlFunctions& gl = target.context->gl;
+  PendingStats& pending = target.pending[slot];
+  if (pending.fence == nullptr) return;
+  const GLenum state = gl.ClientWaitSync(pending.fence, GL_SYNC_FLUSH_COMMANDS_BIT, 0);
+  if (state != GL_ALREADY_SIGNALED && state != GL_CONDITION_SATISFIED) return;
+  constexpr std::size_t kBytes = offsetof(StatsSlot, facts);
+  StatsSlot& kept = target.slots[slot];
+  if (target.stats != nullptr) {
+    std::memcpy(&kept, target.stats + slot * sizeof(StatsSlot), kBytes);
+  } else {
+    const SavedCopies saved(gl);
+    gl.BindBuffer(GL_COPY_READ_BUFFER, target.statsBuffer);
+    gl.GetBufferSubData(GL_COPY_READ_BUFFER, static_cast<GLintptr>(slot * sizeof(StatsSlot)), kBytes, &kept);
+  }
+  kept.tag = pending.frame + 1;
+  gl.DeleteSync(pending.fence);
+  pending.fence = nullptr;
+}
+
+bool readFrame(VitrailGlTarget_T& target, std::uint64_t frame, VitrailStats& stats) {
+  const std::size_t slot = target.slotOf(frame);
+  fetch(target, slot);
+  return readSlot(target.slots[slot], frame, {static_cast<std::uint32_t>(target.info.nodeFormat), target.info.samples},
+                  stats);
+}
+
+// The statistics of the newest finished frame, of `frame` and those before it that still have a slot.
+bool readNewest(VitrailGlTarget_T& target, std::uint64_t frame, VitrailStats& stats) {
+  for (std::uint64_t back = 0; back < target.slots.size() && back <= frame; ++back) {
+    if (readFrame(target, frame - back, stats)) return true;
+  }
+  return false;
+}
+
+template <class Structure>
+void clearKeepingNext(Structure& structure) {
+  void* next = structure.next;
+  structure = {};
+  structure.next = next;
+}
+
+} // namespace
+
+} // namespace vitrail
+
+extern "C" VitrailResolve vitrailGlDefaultResolve(VitrailGlContext context, const VitrailGlTargetDesc* desc) {
+  if (context == nullptr || desc == nullptr) {
+    vitrail::nullArgument(context, "vitrailGlDefaultResolve");
+    return VITRAIL_RESOLVE_DEFAULT;
+  }
+  return vitrail::defaultResolve(vitrail::targetInfo(*desc));
+}
+
+extern "C" VitrailListBuild vitrailGlDefaultListBuild(VitrailGlContext context, const VitrailGlTargetDesc* desc) {
+  if (context == nullptr || desc == nullptr) {
+    vitrail::nullArgument(context, "vitrailGlDefaultListBuild");
+    return VITRAIL_LIST_BUILD_DEFAULT;
+  }
+  return vitrail::defaultListBuild(context->limits, vitrail::targetInfo(*desc));
+}
+
+extern "C" VitrailResult vitrailGlTargetRequirements(VitrailGlContext context, const VitrailGlTargetDesc* desc,
+                                                     VitrailGlRequirements* requirements) {
+  using namespace vitrail;
+  if (requirements != nullptr) clearKeepingNext(*requirements);
+  if (context == nullptr || desc == nullptr || requirements == nullptr) {
+    return nullArgument(context, "vitrailGlTargetRequirements");
+  }
+  VitrailResult result = checkNext(context->log, desc->next, "VitrailGlTargetDesc");
+  if (result != VITRAIL_SUCCESS) return result;
+  const TargetInfo info = withDefaults(context->limits, targetInfo(*desc));
+  result = checkMemory(context->limits, context->log, info);
+  if (result != VITRAIL_SUCCESS) return result;
+  requirements->size = layoutStorage(storageNeeds(context->limits, info)).total;
+  requirements->alignment = context->limits.alignment;
+  return VITRAIL_SUCCESS;
+}
+
+extern "C" VitrailResult vitrailGlCreateTarget(VitrailGlContext context, const VitrailGlTargetDesc* desc,
+                                               VitrailGlTarget* target) {
+  using namespace vitrail;
+  if (target != nullptr) *target = nullptr;
+  if (context == nullptr || desc == nullptr || target == nullptr) {
+    return nullArgument(context, "vitrailGlCreateTarget");
+  }
+  VitrailResult result = checkNext(context->log, desc->next, "VitrailGlTargetDesc");
+  if (result != VITRAIL_SUCCESS) return result;
+  const TargetInfo info = withDefaults(context->limits, targetInfo(*desc));
+  result = checkDesc(*context, *desc, info);
+  if (result != VITRAIL_SUCCESS) return result;
+  std::unique_ptr<VitrailGlTarget_T> made = makeTarget(context, *desc, info);
+  if (!made) return context->log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory for a target");
+  result = buildTarget(*made);
+  if (result != VITRAIL_SUCCESS) {
+    vitrailGlDestroyTarget(made.release());
+    return result; // the log has the reason
+  }
+  *target = made.release();
+  return VITRAIL_SUCCESS;
+}
+
+extern "C" void vitrailGlDestroyTarget(VitrailGlTarget target) {
+  if (target == nullptr) return;
+  const std::unique_ptr<VitrailGlTarget_T> owned(target);
+  const vitrail::GlFunctions& gl = target->context->gl;
+  for (const vitrail::PendingStats& pending : target->pending) {
+    if (pending.fence != nullptr) gl.DeleteSync(pending.fence);
+  }
+  target->storage.destroy(*target->context);
+  if (target->statsBuffer != 0) gl.DeleteBuffers(1, &target->statsBuffer); // which unmaps it
+  vitrail::releaseContext(target->context);
+}
+
+extern "C" VitrailResult vitrailGlUpdateTarget(VitrailGlTarget target, uint64_t frame) {
+  using namespace vitrail;
+  if (target == nullptr) return VITRAIL_ERROR_INVALID;
+  // A number that is too large says nothing of frames that were never begun.
+  const std::uint64_t number = std::min(target->frames.numberOf(frame), target->frames.numberOf(0));
+  if (target->info.memoryBudget == 0) return VITRAIL_SUCCESS;
+  VitrailStats stats{};
+  if (!readNewest(*target, number, stats) || !target->growth.isNews(stats.frame)) return VITRAIL_SUCCESS;
+  const DeviceLimits& limits = target->context->limits;
+  const std::uint32_t wanted =
+      target->growth.wanted(stats, target->storage.needs.nodeCapacity, budgetCapacity(limits, target->info));
+  if (wanted == target->storage.needs.nodeCapacity) return VITRAIL_SUCCESS;
+  StorageNeeds needs = target->storage.needs;
+  needs.nodeCapacity = wanted;
+  const VitrailResult result = replaceStorage(*target, needs);
+  if (result != VITRAIL_SUCCESS) return result;
+  target->order.drop(target->context->log, "vitrailGlUpdateTarget() gives the target another pool");
+  return VITRAIL_SUCCESS;
+}
+
+extern "C" VitrailResult vitrailGlResizeTarget(VitrailGlTarget target, const VitrailGlResizeInfo* info) {
+  using namespace vitrail;
+  if (target == nullptr || info == nullptr) {
+    return nullArgument(target != nullptr ? target->context : nullptr, "vitrailGlResizeTarget");
+  }
+  const VitrailGlContext_T& context = *target->context;
+  VitrailResult result = checkNext(context.log, info->next, "VitrailGlResizeInfo");
+  if (result != VITRAIL_SUCCESS) return result;
+  if (target->hostBuffer != 0) {
+    return context.log.fail(VITRAIL_ERROR_INVALID, "a target in the host's memory cannot be resized: make another one");
+  }
+  TargetInfo wanted = resized(target->info, target->storage.needs.nodeCapacity, info->width, info->height,
+                              info->nodeCapacity, info->areaPixels);
+  result = checkTarget(context.limits, context.log, wanted);
+  if (result == VITRAIL_SUCCESS) result = checkViews(context.log, wanted, viewsInfo(info->textures));
+  if (result != VITRAIL_SUCCESS) return result;
+  wanted.nodeCapacity = capacityWithin(context.limits, wanted);
+  result = replaceStorage(*target, storageNeeds(context.limits, wanted));
+  if (result != VITRAIL_SUCCESS) return result;
+  target->order.drop(context.log, "vitrailGlResizeTarget()");
+  target->info = wanted;
+  keepViews(*target, info->textures);
+  target->growth.forget();
+  return VITRAIL_SUCCESS;
+}
+
+extern "C" VitrailResolve vitrailGlTargetResolve(VitrailGlTarget target) {
+  return target != nullptr ? target->info.resolve : VITRAIL_RESOLVE_DEFAULT;
+}
+
+extern "C" VitrailListBuild vitrailGlTargetListBuild(VitrailGlTarget target) {
+  return target != nullptr ? target->info.listBuild : VITRAIL_LIST_BUILD_DEFAULT;
+}
+
+extern "C" uint64_t vitrailGlTargetFrame(VitrailGlTarget target) {
+  return target != nullptr ? target->frames.newest() : 0;
+}
+
+extern "C" void vitrailGlTargetMemory(VitrailGlTarget target, VitrailMemory* memory) {
+  if (memory != nullptr) vitrail::clearKeepingNext(*memory);
+  if (target == nullptr || memory == nullptr) {
+    vitrail::nullArgument(target != nullptr ? target->context : nullptr, "vitrailGlTargetMemory");
+    return;
+  }
+  const vitrail::GlStorage& storage = target->storage;
+  memory->nodeCapacity = storage.needs.nodeCapacity;
+  memory->nodeBytes = storage.layout.nodes.size;
+  memory->headBytes = storage.layout.heads.size;
+  memory->totalBytes = storage.layout.total + vitrail::statisticsBytes(target->info.framesInFlight);
+  memory->otherBytes = memory->totalBytes - memory->nodeBytes - memory->headBytes;
+}
+
+extern "C" uint64_t vitrailGlCopySize(VitrailGlTarget target, uint32_t width, uint32_t height) {
+  if (target == nullptr) return 0;
+  return vitrail::copyBytes(std::uint64_t{width} * height, target->info.copyLayers);
+}
+
+extern "C" void vitrailGlCollectSpecialization(VitrailGlContext context, const VitrailGlTargetDesc* desc,
+                                               VitrailGlSpecialization* specialization) {
+  if (specialization != nullptr) *specialization = {};
+  if (context == nullptr || desc == nullptr || specialization == nullptr) {
+    vitrail::nullArgument(context, "vitrailGlCollectSpecialization");
+    return;
+  }
+  const vitrail::TargetInfo info = vitrail::withDefaults(context->limits, vitrail::targetInfo(*desc));
+  std::snprintf(specialization->defines, sizeof(specialization->defines),
+                "#define VITRAIL_ONLY_FORMAT %d\n#define VITRAIL_ONLY_SAMPLES %u\n#define VITRAIL_ONLY_OVERFLOW %d\n"
+                "#define VITRAIL_ONLY_LIST_BUILD %d\n#define VITRAIL_ONLY_USER_WORDS %d\n",
+                static_cast<int>(info.nodeFormat), info.samples, info.keepsSums() ? 0 : 1,
+                static_cast<int>(info.listBuild), info.userWords ? 1 : 0);
+}
+
+extern "C" void vitrailGlTilePlanTarget(VitrailTilePlan plan, VitrailGlTargetDesc* desc) {
+  if (plan == nullptr || desc == nullptr) return;
+  desc->nodeCapacity = vitrailTilePlanNodeCapacity(plan);
+  desc->areaPixels = vitrailTilePlanAreaPixels(plan);
+  desc->memoryBudget = 0;
+  desc->overflow = VITRAIL_OVERFLOW_SKIP;
+}
+
+extern "C" VitrailResult vitrailGlReadStats(VitrailGlTarget target, uint64_t frame, VitrailStats* stats) {
+  using namespace vitrail;
+  if (target == nullptr || stats == nullptr) {
+    if (stats != nullptr) clearKeepingNext(*stats);
+    return nullArgument(target != nullptr ? target->context : nullptr, "vitrailGlReadStats");
+  }
+  const bool newest = frame == 0 && !target->frames.areGiven();
+  const bool read = newest ? readNewest(*target, target->frames.newest(), *stats) : readFrame(*target, frame, *stats);
+  return read ? VITRAIL_SUCCESS : VITRAIL_INCOMPLETE;
+}

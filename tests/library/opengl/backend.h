@@ -1,0 +1,72 @@
+// The OpenGL backend of the tests: one surfaceless EGL context with debug output, and the programs that hosts share.
+#pragma once
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <vitrail/gl.h>
+
+#include "../backend.h"
+
+namespace vitrail::tests::opengl {
+
+// A context without a window, current on the thread that made it. Throws HostError.
+class EglContext {
+ public:
+  // `share`: null, or the context whose objects it sees.
+  explicit EglContext(const EglContext* share = nullptr);
+  ~EglContext();
+  EglContext(const EglContext&) = delete;
+  EglContext& operator=(const EglContext&) = delete;
+
+  void makeCurrent() const;
+  static void makeNoneCurrent();
+
+ private:
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+  EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+// A line of the library's log.
+struct LogLine {
+  VitrailLogSeverity severity = VITRAIL_LOG_ERROR;
+  std::string text;
+};
+
+class OpenGlBackend : public Backend {
+ public:
+  [[nodiscard]] std::string name() const override { return "opengl"; }
+  const Features& features() override;
+  std::unique_ptr<PointHost> makeHost(const HostDesc& desc) override;
+  VitrailTileLimits tileLimits(VitrailNodeFormat format, std::uint32_t samples) override;
+  // Messages of KHR_debug, and lines of the library's log that no test took.
+  std::vector<std::string> takeErrors() override;
+  void close() override;
+
+  VitrailGlContext context();
+  VitrailGlContextDesc contextDesc();
+  [[nodiscard]] const EglContext& egl() const { return *egl_; }
+  std::vector<LogLine> takeLog();
+
+  // The program of these texts, compiled once; with `fragment` empty a compute program. Throws HostError.
+  GLuint program(const std::string& first, const std::string& fragment);
+
+ private:
+  void open();
+
+  std::unique_ptr<EglContext> egl_;
+  VitrailGlContext context_ = nullptr;
+  Features features_;
+  std::map<std::string, GLuint> programs_;
+  std::vector<LogLine> log_;
+  std::vector<std::string> messages_;
+};
+
+OpenGlBackend& backend();
+
+} // namespace vitrail::tests::opengl
