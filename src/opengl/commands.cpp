@@ -18,7 +18,7 @@ void boundary(const VitrailGlTarget_T& target, Call call) {
 }
 
 bool nextIsNull(VitrailGlTarget target, const void* next, const char* structure) {
-  if (checkNext(target->context->log, next, structure) == VITRAIL_SUCCESS) return true;
+  if (checkNoNext(target->context->log, next, structure) == VITRAIL_SUCCESS) return true;
   target->order.setMisused();
   return false;
 }

@@ -133,12 +133,6 @@ VitrailResult nullArgument(const VitrailGlContext_T* context, const char* call) 
   return VITRAIL_ERROR_INVALID;
 }
 
-VitrailResult checkNext(const Log& log, const void* next, const char* structure) {
-  if (next == nullptr) return VITRAIL_SUCCESS;
-  return log.fail(VITRAIL_ERROR_INVALID, "%s::next: version %d.%d knows no further structures", structure,
-                  VITRAIL_VERSION_MAJOR, VITRAIL_VERSION_MINOR);
-}
-
 } // namespace vitrail
 
 void VitrailGlContext_T::label(GLenum kind, GLuint object, const char* prefix, const char* what) const {
@@ -154,7 +148,7 @@ extern "C" VitrailResult vitrailGlCreateContext(const VitrailGlContextDesc* desc
   if (desc == nullptr || context == nullptr) {
     return log.fail(VITRAIL_ERROR_INVALID, "vitrailGlCreateContext: an argument is null");
   }
-  if (checkNext(log, desc->next, "VitrailGlContextDesc") != VITRAIL_SUCCESS) return VITRAIL_ERROR_INVALID;
+  if (checkNoNext(log, desc->next, "VitrailGlContextDesc") != VITRAIL_SUCCESS) return VITRAIL_ERROR_INVALID;
   if (desc->getProcAddress == nullptr) {
     return log.fail(VITRAIL_ERROR_INVALID, "VitrailGlContextDesc needs getProcAddress");
   }

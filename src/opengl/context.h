@@ -37,7 +37,4 @@ void releaseContext(VitrailGlContext context);
 // Logs that an argument of a call is null.
 VitrailResult nullArgument(const VitrailGlContext_T* context, const char* call);
 
-// `next` of a structure, which this version knows nothing for.
-VitrailResult checkNext(const Log& log, const void* next, const char* structure);
-
 } // namespace vitrail

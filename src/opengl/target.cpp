@@ -268,7 +268,7 @@ extern "C" VitrailResult vitrailGlTargetRequirements(VitrailGlContext context, c
   if (context == nullptr || desc == nullptr || requirements == nullptr) {
     return nullArgument(context, "vitrailGlTargetRequirements");
   }
-  VitrailResult result = checkNext(context->log, desc->next, "VitrailGlTargetDesc");
+  VitrailResult result = checkNoNext(context->log, desc->next, "VitrailGlTargetDesc");
   if (result != VITRAIL_SUCCESS) return result;
   const TargetInfo info = withDefaults(context->limits, targetInfo(*desc));
   result = checkMemory(context->limits, context->log, info);
@@ -285,7 +285,7 @@ extern "C" VitrailResult vitrailGlCreateTarget(VitrailGlContext context, const V
   if (context == nullptr || desc == nullptr || target == nullptr) {
     return nullArgument(context, "vitrailGlCreateTarget");
   }
-  VitrailResult result = checkNext(context->log, desc->next, "VitrailGlTargetDesc");
+  VitrailResult result = checkNoNext(context->log, desc->next, "VitrailGlTargetDesc");
   if (result != VITRAIL_SUCCESS) return result;
   const TargetInfo info = withDefaults(context->limits, targetInfo(*desc));
   result = checkDesc(*context, *desc, info);
@@ -339,7 +339,7 @@ extern "C" VitrailResult vitrailGlResizeTarget(VitrailGlTarget target, const Vit
     return nullArgument(target != nullptr ? target->context : nullptr, "vitrailGlResizeTarget");
   }
   const VitrailGlContext_T& context = *target->context;
-  VitrailResult result = checkNext(context.log, info->next, "VitrailGlResizeInfo");
+  VitrailResult result = checkNoNext(context.log, info->next, "VitrailGlResizeInfo");
   if (result != VITRAIL_SUCCESS) return result;
   if (target->hostBuffer != 0) {
     return context.log.fail(VITRAIL_ERROR_INVALID, "a target in the host's memory cannot be resized: make another one");

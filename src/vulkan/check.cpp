@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "convert.h"
+
 namespace vitrail {
 
 namespace {
@@ -97,9 +99,7 @@ void findNull(const VkImageView* views, std::uint32_t count, const char* name, V
 } // namespace
 
 VkResult checkNext(const Log& log, const void* next, const char* structure) {
-  if (next == nullptr) return VK_SUCCESS;
-  return log.fail(VK_ERROR_INITIALIZATION_FAILED, "%s::next: version %d.%d knows no further structures", structure,
-                  VITRAIL_VERSION_MAJOR, VITRAIL_VERSION_MINOR);
+  return toVk(checkNoNext(log, next, structure));
 }
 
 VkResult nullArgument(const VitrailVkContext_T* context, const char* call) {

@@ -1,8 +1,9 @@
-/* A host that links both libraries. */
+/* A host that links all libraries. */
 #include <stdio.h>
 
 #include <vitrail/cpu.h>
 #ifdef WITH_VULKAN
+#include <vitrail/gl.h>
 #include <vitrail/vulkan.h>
 #endif
 
@@ -14,6 +15,7 @@ int main(void) {
 #ifdef WITH_VULKAN
   vitrailVkDestroyContext(VK_NULL_HANDLE);
   vitrailVkDestroyTarget(VK_NULL_HANDLE);
+  vitrailGlDestroyContext(NULL);
 #endif
   printf("components: linked\n");
   return 0;
