@@ -19,6 +19,7 @@
 #include "../../gpu/device.h"
 #include "../../gpu/vk.h"
 #include "../../stage/picture_images.h"
+#include "../../stage/tile_runs.h"
 #include "../method.h"
 #include "../methods.h"
 #include "media.h"
@@ -78,6 +79,13 @@ std::vector<VitrailBounds> boxesOf(const Surfaces& surfaces) {
   return result;
 }
 
+// Points reach beyond the boxes, which are around their middles.
+bool hasPoints(const Surfaces& surfaces) {
+  return std::ranges::any_of(surfaces.scene().transparentDraws(), [](const GpuDraw& draw) {
+    return (draw.features & shaders::FEATURE_SOLID) == shaders::FEATURE_POINTS;
+  });
+}
+
 std::span<const std::uint32_t> collectCode(bool media, bool coverage, bool address) {
   if (media && coverage && address) return shaders::collect_media_coverage_address_frag;
   if (media && coverage) return shaders::collect_media_coverage_frag;
@@ -119,8 +127,8 @@ class LinkedList final : public Method {
   bool writesEveryPixel() const { return options_.samples > 1 && !needs_.perSample; }
   void planTiles(std::span<const VitrailBounds> bounds);
   void drawTiles(Frame& frame);
-  void drawCollecting(Frame& frame);
-  void drawArea(Frame& frame, const VkRect2D& area);
+  void drawCollecting(Frame& frame, std::span<const SurfaceRun> runs);
+  void drawArea(Frame& frame, const VkRect2D& area, std::span<const SurfaceRun> runs);
   VitrailStats readStats() const;
   bool grow(std::uint64_t fragments);
   void add(const VitrailStats& stats);
@@ -348,17 +356,19 @@ void LinkedList::draw(Frame& frame) {
     check(target_.update(frame_ + 1), "vitrailVkUpdateTarget"); // frees the pool that grow() replaced
     countMemory();
   }
-  drawArea(frame, {{0, 0}, wanted_.extent});
+  drawArea(frame, {{0, 0}, wanted_.extent}, source_.transparentRuns());
 }
 
 // Every tile is waited for: what it reports decides whether its parts come next.
 void LinkedList::drawTiles(Frame& frame) {
   frame.submitAndWait(); // the opaque scene
-  planTiles(boxesOf(frame.surfaces()));
+  planTiles(boxesOf(source_));
+  const TileRuns runs(source_, wanted_.extent);
   VitrailRect tile{};
   while (plan_ && plan_.next(tile)) {
-    drawArea(frame,
-             {{static_cast<std::int32_t>(tile.x), static_cast<std::int32_t>(tile.y)}, {tile.width, tile.height}});
+    const VkRect2D area{{static_cast<std::int32_t>(tile.x), static_cast<std::int32_t>(tile.y)},
+                        {tile.width, tile.height}};
+    drawArea(frame, area, runs.touching(area));
     frame.submitAndWait();
     const VitrailStats stats = readStats();
     check(resultOf(plan_.finish(stats)), "vitrailFinishTile");
@@ -368,20 +378,19 @@ void LinkedList::drawTiles(Frame& frame) {
   }
 }
 
-void LinkedList::drawCollecting(Frame& frame) {
-  if (!media_ || !media_->anyNear()) return frame.drawSurfaces(*surfaces_, target_.descriptorSet());
-  const std::vector<SurfaceRun>& runs = source_.transparentRuns();
+void LinkedList::drawCollecting(Frame& frame, std::span<const SurfaceRun> runs) {
+  if (!media_ || !media_->anyNear()) return frame.drawSurfaces(*surfaces_, target_.descriptorSet(), runs);
   frame.drawSurfaces(*surfaces_, target_.descriptorSet(), media_->part(runs, false));
   frame.drawSurfaces(*untested_, target_.descriptorSet(), media_->part(runs, true));
 }
 
-void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
+void LinkedList::drawArea(Frame& frame, const VkRect2D& area, std::span<const SurfaceRun> runs) {
   VkCommandBuffer commands = frame.commands();
   PictureImages& images = frame.images();
   target_.begin(commands, {nullptr, ++frame_, area});
   frame.endPass("clear");
   cmdBeginScope(commands, images.transparentScope(area));
-  drawCollecting(frame);
+  drawCollecting(frame, runs);
   vkCmdEndRendering(commands);
   if (pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE) frame.endPass("collect");
   target_.collected(commands);
@@ -409,7 +418,7 @@ std::uint64_t LinkedList::wordsOf(std::uint64_t bytes) const {
 
 void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
   plan_ = TilePlan();
-  const bool everyPixel = writesEveryPixel();
+  const bool everyPixel = writesEveryPixel() || hasPoints(source_);
   if (bounds.empty() && !everyPixel) return; // nothing to draw
   VitrailTilePlanDesc desc{};
   desc.width = wanted_.extent.width;
