@@ -120,6 +120,7 @@ class LinkedList final : public Method {
   void makeSurfaces();
   VitrailVkTargetDesc targetDesc() const;
   bool createTarget(const VitrailVkTargetDesc& desc);
+  void makeFixedTarget(bool buildsAll);
   bool createWholeTarget(std::uint64_t nodeCapacity);
   void countMemory();
   std::uint64_t wordsOf(std::uint64_t bytes) const;
@@ -192,6 +193,11 @@ void LinkedList::makeContext() {
 
 void LinkedList::chooseResolve() {
   const GpuFeatures& features = gpu_.features();
+  if (media_ && (options_.nodeCapacity > 0 || options_.stencilMark == StencilMark::Off)) {
+    throw GpuError(
+        "objects of this scene absorb light, which is resolved by walking complete lists: leave --overflow "
+        "and --stencil-mark out");
+  }
   if (media_) { // which resolves by compute, a pixel at a time, whatever was asked for: there is no other way
     options_.resolve = VITRAIL_RESOLVE_COMPUTE;
     options_.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
@@ -210,7 +216,13 @@ void LinkedList::chooseResolve() {
     options_.resolve = context_.defaultResolve(target);
   }
   const bool drawn = options_.resolve == VITRAIL_RESOLVE_FRAGMENT;
-  needs_.stencil = drawn && (options_.samples == 1 || needs_.perSample) && features.stencil;
+  if (!drawn && options_.stencilMark == StencilMark::Off) {
+    throw GpuError(
+        "--stencil-mark off is of resolves that are drawn, which is not this device's choice: use --resolve "
+        "fragment");
+  }
+  needs_.stencil = drawn && (options_.samples == 1 || needs_.perSample) && features.stencil &&
+                   options_.stencilMark == StencilMark::On;
   if (options_.samples > 1 && !features.postDepthCoverage) needs_.depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
 }
 
@@ -267,7 +279,8 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
   desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
   desc.maxLayers = options_.maxLayers;
   desc.listBuild = pipelines_.listBuild;
-  desc.overflow = VITRAIL_OVERFLOW_SKIP; // the picture is drawn again, with a larger pool or in tiles
+  // Skipped, the picture is drawn again, with a larger pool or in tiles.
+  desc.overflow = options_.nodeCapacity > 0 ? VITRAIL_OVERFLOW_APPROXIMATE : VITRAIL_OVERFLOW_SKIP;
   desc.colorFormat = PictureImages::kColorFormat;
   if (needs_.stencil) {
     desc.scope.stencilFormat = PictureImages::depthFormat(true);
@@ -295,7 +308,19 @@ void LinkedList::setTarget(const MethodTarget& target) {
                          pixelsOf(target.extent) <= VITRAIL_LIST_BUILD_COMPUTE_MAX_PIXELS;
   const std::uint64_t largest = context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
   const std::uint64_t guess = std::min({kNodesPerPixel * pixelsOf(target.extent), kLargestGuess, largest});
+  if (options_.nodeCapacity > 0) return makeFixedTarget(buildsAll);
   inTiles_ = !buildsAll || !createWholeTarget(target.surfaces ? guess : 0); // drawTiles() knows how large tiles are
+}
+
+// A target that is neither enlarged nor drawn in tiles.
+void LinkedList::makeFixedTarget(bool buildsAll) {
+  if (!buildsAll) {
+    throw GpuError(
+        "--list-build compute draws so large a picture in tiles, and --overflow approximate draws it whole: "
+        "use --list-build fragment, or a smaller --size");
+  }
+  inTiles_ = false;
+  if (!createWholeTarget(options_.nodeCapacity)) check(VK_ERROR_OUT_OF_DEVICE_MEMORY, "vitrailVkCreateTarget");
 }
 
 // A target for the whole picture, whose pool begins with so many nodes; with a budget it follows what pictures need.
@@ -452,7 +477,7 @@ bool LinkedList::finish() {
   if (wasInTiles_) return true;
   const VitrailStats stats = readStats();
   add(stats);
-  if (stats.fragmentsMissing == 0) return true;
+  if (stats.fragmentsMissing == 0 || options_.nodeCapacity > 0) return true;
   inTiles_ = !grow(stats.fragmentsRequested);
   expected_ = stats.fragmentsRequested;
   return false;
@@ -488,6 +513,9 @@ FrameStats LinkedList::stats() const {
   result.nodes = nameOf(options_.nodes);
   result.resolve = nameOf(options_.resolve);
   result.listBuild = nameOf(pipelines_.listBuild);
+  if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT && (options_.samples == 1 || needs_.perSample)) {
+    result.stencilMark = needs_.stencil ? "on" : "off";
+  }
   result.counted = true;
   result.errorBound = vitrailNodeErrorBound(options_.nodes, options_.samples, stats_.layersMax);
   result.layersMean = meanLayers(stats_.fragmentsStored, coveredPixels_);
