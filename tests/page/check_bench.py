@@ -58,6 +58,17 @@ def check_content(browser, report):
              for scenes in groups.values() for _ in measures]
     expect(tables == sizes, f"the tables have {tables} rows and columns, not {sizes}")
     check_skipped(browser, groups.values())
+    check_overflowed(browser, report)
+
+
+def check_overflowed(browser, report):
+    """A frame that had more fragments than nodes is marked in every table, and the mark is told."""
+    count = sum(m["overflowed"] for scene in report["scenes"] for m in scene["measurements"])
+    tables = browser.value("document.querySelectorAll('table').length") / len({s["sweep"] for s in report["scenes"]})
+    marked = browser.value("[...document.querySelectorAll('td')].filter((cell) => cell.textContent.endsWith('†')).length")
+    expect(marked == count * tables, f"{marked} cells are marked as overflowed, not {count * tables}")
+    told = browser.value("document.body.innerText").count("† Not exact")
+    expect((told > 0) == (count > 0), f"the mark of overflowed frames is told {told} times")
 
 
 def check_skipped(browser, groups):
@@ -108,6 +119,8 @@ def main():
             for name, arguments in {
                 "sweeps": ["--sweep", "layers,triangles,samples", "--count", "1", *two],
                 "scenes": ["--scene", "planes,interlocked", *many],
+                "overflow": ["--sweep", "cap", "--count", "8", "--methods", "linked-list", "--overflow", "approximate",
+                             "--node-capacity", "20,100000", *small],
                 "processor": ["--scene", "planes,interlocked", "--methods", "cpu", *small],
             }.items():
                 page = os.path.join(folder, name)

@@ -281,9 +281,11 @@ TEST(Bench, QuietPrintsNothing) {
 TEST(Bench, TheHelpPageNamesEveryOption) {
   const std::string help = vitrail(TemporaryFolder(), {"bench", "--help"}).out;
   for (const char* option :
-       {"MODEL",     "--scene",   "--count",  "--size",   "--opacity", "--methods", "--nodes",
-        "--samples", "--resolve", "--layers", "--passes", "--repeat",  "--warmup",  "--json",
-        "--csv",     "--sweep",   "--output", "-o",       "--quiet",   "--device",  "--list-build"}) {
+       {"MODEL",      "--scene",        "--count",      "--size",         "--opacity",      "--methods",
+        "--nodes",    "--samples",      "--resolve",    "--layers",       "--passes",       "--repeat",
+        "--warmup",   "--json",         "--csv",        "--sweep",        "--output",       "-o",
+        "--quiet",    "--device",       "--list-build", "--msaa-resolve", "--stencil-mark", "--memory-budget",
+        "--overflow", "--node-capacity"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
 }
@@ -313,7 +315,7 @@ TEST(Bench, WrongUsageIsOneLineAndExitCode2) {
       {{"--opacity", "0"}, "--opacity"},
       {{"--opacity", "nan"}, "--opacity"},
       {{"--heatmap", "a.png"}, "--heatmap"},
-      {{"--sweep", "layer"}, "'layer' is not a sweep: layers, triangles, resolution or samples"},
+      {{"--sweep", "layer"}, "'layer' is not a sweep: layers, triangles, resolution, samples or cap"},
       {{"--sweep", ""}, "--sweep"},
       {{"--sweep", "layers,layers"}, "layers twice"},
       {{"--sweep", "layers", "--scene", "spheres"}, "leave MODEL, --scene and --count out"},
@@ -325,6 +327,22 @@ TEST(Bench, WrongUsageIsOneLineAndExitCode2) {
       {{"--sweep", "layers", "--samples", "1,4"}, "one number of --samples"},
       {{"--csv", "a.json"}, "--json and --csv name one file"},
       {{"--layers", "0"}, "--layers"},
+      {{"--layers", "8,16,x"}, "'x' is not a whole number from 1"},
+      {{"--sweep", "cap", "--methods", "weighted"}, "weighted has no choice"},
+      {{"--sweep", "cap,samples", "--layers", "8,16"}, "the steps of --sweep cap"},
+      {{"--msaa-resolve", "per-frame"}, "'per-frame' is not a resolve of samples: per-pixel or per-sample"},
+      {{"--msaa-resolve", "per-sample", "--methods", "weighted"}, "--msaa-resolve has no method that was named"},
+      {{"--stencil-mark", "on,maybe"}, "'maybe' is not on or off"},
+      {{"--stencil-mark", "off", "--methods", "loop"}, "--stencil-mark has no method that was named"},
+      {{"--memory-budget", "64,0"}, "'0' is not a whole number from 1"},
+      {{"--memory-budget", "64", "--methods", "loop,a-buffer"}, "--memory-budget has no method that was named"},
+      {{"--overflow", "ignore"}, "'ignore' is none of grow and approximate"},
+      {{"--overflow", "approximate"}, "add --node-capacity N"},
+      {{"--node-capacity", "100"}, "--node-capacity is of --overflow approximate"},
+      {{"--overflow", "grow", "--node-capacity", "100"}, "--node-capacity is of --overflow approximate"},
+      {{"--overflow", "approximate", "--node-capacity", "-4"}, "'-4' is not a whole number from 1"},
+      {{"--overflow", "approximate", "--node-capacity", "4", "--memory-budget", "1"}, "leave --memory-budget out"},
+      {{"--overflow", "approximate", "--node-capacity", "4", "--methods", "cpu"}, "--overflow has no method"},
       {{"--passes", "1.5"}, "--passes"},
       {{"--methods", "weighted", "--layers", "4"}, "weighted has no choice"},
       {{"--methods", "linked-list,loop", "--passes", "4"}, "linked-list has no choice"},
@@ -402,6 +420,116 @@ TEST(Bench, LayersAndPasses) {
   }
   EXPECT_EQ(count, 8U);
   EXPECT_EQ(scene.at("measurements")[1].at("exact"), false); // 2 of 5
+}
+
+// The measurements of linked-list in the first scene.
+Json listsOf(const TemporaryFolder& folder, Words words) {
+  words.insert(words.begin(), {"bench", "--scene", "spheres", "--count", "8", "--size", "64x48", "--repeat", "1"});
+  words.insert(words.end(), {"--methods", "linked-list", "--json", "a.json"});
+  const ProcessResult result = vitrail(folder, words);
+  EXPECT_EQ(result.exitCode, 0) << result.error;
+  Json lists = Json::array();
+  const Json json = readJson(folder.file("a.json"));
+  for (const Json& each : json.at("scenes")[0].at("measurements")) {
+    if (each.at("method") == "linked-list") lists.push_back(each);
+  }
+  return lists;
+}
+
+TEST(Bench, SeveralLayersAreCompared) {
+  const Json lists = listsOf(TemporaryFolder(), {"--layers", "1,2,64"});
+  ASSERT_EQ(lists.size(), 3U);
+  EXPECT_EQ(lists[0].at("setting"), "linked-list, hdr, 1 layer");
+  EXPECT_EQ(lists[2].at("max_layers"), 64);
+  EXPECT_GT(lists[0].at("approximate_pixels"), lists[1].at("approximate_pixels"));
+  EXPECT_EQ(lists[0].at("exact"), false);
+  EXPECT_EQ(lists[2].at("approximate_pixels"), 0);
+  EXPECT_EQ(lists[2].at("exact"), true);
+}
+
+TEST(Bench, ASweepOverTheCap) {
+  const TemporaryFolder folder;
+  for (const bool own : {false, true}) {
+    Words words{"bench", "--sweep", "cap", "--count", "8", "--size", "64x48", "--repeat", "1"};
+    words.insert(words.end(), {"--methods", "linked-list,weighted", "--json", "a.json"});
+    if (own) words.insert(words.end(), {"--layers", "4,1"});
+    const ProcessResult result = vitrail(folder, words);
+    ASSERT_EQ(result.exitCode, 0) << result.error;
+    const Json scenes = readJson(folder.file("a.json")).at("scenes");
+    std::vector<int> steps;
+    for (const Json& scene : scenes) {
+      EXPECT_EQ(scene.at("sweep"), "cap");
+      steps.push_back(scene.at("step"));
+      const Json& lists = scene.at("measurements")[1];
+      EXPECT_EQ(lists.at("setting"), "linked-list, hdr"); // one line of the chart
+      EXPECT_EQ(lists.at("max_layers"), scene.at("step"));
+      EXPECT_TRUE(scene.at("measurements")[2].at("max_layers").is_null());
+    }
+    EXPECT_EQ(steps, own ? (std::vector<int>{1, 4}) : (std::vector<int>{8, 16, 32}));
+    EXPECT_NE(result.out.find("\ncap: spheres --count 8, 64x48"), std::string::npos) << result.out;
+    if (own) {
+      EXPECT_EQ(scenes[0].at("measurements")[1].at("exact"), false);
+    }
+  }
+}
+
+// Where samples are blended, and whether empty pixels are skipped by the stencil: the device's work, the same
+// fragments.
+TEST(Bench, ResolvesOfSamplesAndTheStencilMark) {
+  const Json lists = listsOf(TemporaryFolder(), {"--samples", "4", "--resolve", "fragment", "--msaa-resolve",
+                                                 "per-pixel,per-sample", "--stencil-mark", "on,off"});
+  ASSERT_EQ(lists.size(), 3U) << lists.dump(1);
+  EXPECT_EQ(lists[0].at("msaa_resolve"), "per-pixel");
+  EXPECT_TRUE(lists[0].at("stencil_mark").is_null()); // every pixel is written
+  EXPECT_FALSE(lists[0].at("passes_ms").contains("box_filter"));
+  for (const std::size_t i : {1U, 2U}) {
+    EXPECT_EQ(lists[i].at("msaa_resolve"), "per-sample");
+    EXPECT_TRUE(lists[i].at("passes_ms").contains("box_filter"));
+    EXPECT_EQ(lists[i].at("fragments"), lists[0].at("fragments"));
+    EXPECT_EQ(lists[i].at("exact"), true);
+  }
+  EXPECT_EQ(lists[1].at("stencil_mark"), "on");
+  EXPECT_EQ(lists[2].at("stencil_mark"), "off");
+}
+
+TEST(Bench, MemoryBudgetsMakeTiles) {
+  TemporaryFolder folder;
+  const ProcessResult result =
+      vitrail(folder, {"bench", "--scene", "mannequins", "--size", "320x180", "--repeat", "1", "--methods",
+                       "linked-list,cpu", "--memory-budget", "1,64", "--samples", "4", "--json", "a.json"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json all = readJson(folder.file("a.json")).at("scenes")[0].at("measurements");
+  ASSERT_EQ(all.size(), 5U);
+  EXPECT_EQ(all[1].at("memory_budget_mib"), 1);
+  EXPECT_GT(all[1].at("tiles"), 1);
+  EXPECT_LE(all[1].at("memory_bytes"), (1 << 20) + 4096);
+  EXPECT_EQ(all[2].at("memory_budget_mib"), 64);
+  EXPECT_EQ(all[2].at("tiles"), 1);
+  EXPECT_EQ(all[1].at("fragments"), all[2].at("fragments"));
+  EXPECT_EQ(all[4].at("setting"), "cpu, in 64 MiB");
+  EXPECT_TRUE(all[0].at("memory_budget_mib").is_null());
+  EXPECT_NE(result.out.find("in 1 MiB drew "), std::string::npos) << result.out;
+}
+
+TEST(Bench, AnOverflowIsMeasuredAndSaid) {
+  for (const std::string resolve : {"compute", "fragment"}) {
+    const TemporaryFolder folder;
+    const Json lists = listsOf(folder, {"--overflow", "approximate", "--node-capacity", "100,1000000", "--resolve",
+                                        resolve, "--csv", "a.csv"});
+    ASSERT_EQ(lists.size(), 2U);
+    EXPECT_EQ(lists[0].at("node_capacity"), 100);
+    EXPECT_EQ(lists[0].at("overflowed"), true);
+    EXPECT_EQ(lists[0].at("exact"), false);
+    EXPECT_EQ(lists[0].at("fragments").at("stored"), 100);
+    EXPECT_GT(lists[0].at("fragments").at("missing"), 0);
+    EXPECT_EQ(lists[1].at("overflowed"), false);
+    EXPECT_EQ(lists[1].at("exact"), true);
+    EXPECT_EQ(lists[1].at("fragments").at("requested"), lists[0].at("fragments").at("requested"));
+    const std::vector<Words> rows = readCsv(folder.file("a.csv"));
+    const auto column = std::ranges::find(rows[0], "overflowed") - rows[0].begin();
+    EXPECT_EQ(rows.at(2).at(static_cast<std::size_t>(column)), "true");
+    EXPECT_EQ(rows.at(3).at(static_cast<std::size_t>(column)), "false");
+  }
 }
 
 // The same picture as the library's resolve, to the last bit of rounding, as long as no list is longer than its array.

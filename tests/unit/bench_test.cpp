@@ -15,6 +15,7 @@
 #include "bench/traffic.h"
 #include "methods/methods.h"
 #include "report/bench_csv.h"
+#include "report/bench_json.h"
 #include "report/bench_table.h"
 #include "report/cells.h"
 
@@ -121,6 +122,42 @@ TEST(BenchMatrix, WhatAMethodDoesNotHaveIsSkippedWithAReason) {
     EXPECT_NE(each.reason.find("sample"), std::string::npos) << each.reason;
   }
   EXPECT_EQ(skipped, (std::vector<std::string>{"insertion, 8 samples", "linked-list, compact, 8 samples"}));
+}
+
+TEST(BenchMatrix, MemoryAndResolvesOfSamplesAreOfTheMethodsThatHaveThem) {
+  BenchMatrix matrix;
+  matrix.methods = {"linked-list", "cpu", "weighted"};
+  matrix.memoryBudgets = {1, 64};
+  EXPECT_EQ(describeAll(matrix),
+            (std::vector<std::string>{"unsorted", "linked-list, hdr, in 1 MiB", "linked-list, hdr, in 64 MiB",
+                                      "cpu, in 1 MiB", "cpu, in 64 MiB", "weighted"}));
+  matrix.memoryBudgets = {0};
+  matrix.nodeCapacities = {1000};
+  EXPECT_EQ(describeAll(matrix),
+            (std::vector<std::string>{"unsorted", "linked-list, hdr, 1000 nodes at most", "cpu", "weighted"}));
+  matrix.nodeCapacities = {0};
+  matrix.methods = {"linked-list"};
+  matrix.samples = {1, 4};
+  matrix.msaaResolves = {VITRAIL_MSAA_RESOLVE_PER_PIXEL, VITRAIL_MSAA_RESOLVE_PER_SAMPLE};
+  matrix.stencilMarks = {StencilMark::On, StencilMark::Off};
+  EXPECT_EQ(describeAll(matrix),
+            (std::vector<std::string>{"unsorted", "linked-list, hdr", "linked-list, hdr, stencil mark off",
+                                      "unsorted, 4 samples", "linked-list, hdr, 4 samples",
+                                      "linked-list, hdr, 4 samples, per-sample",
+                                      "linked-list, hdr, 4 samples, per-sample, stencil mark off"}));
+  EXPECT_EQ(configurationsOf(matrix).skipped.size(), 3U); // per sample of one, twice; no mark of a per-pixel resolve
+  matrix.resolves = {VITRAIL_RESOLVE_COMPUTE};
+  matrix.samples = {1};
+  EXPECT_EQ(describeAll(matrix), (std::vector<std::string>{"unsorted", "linked-list, hdr, compute"}));
+}
+
+TEST(BenchMatrix, SeveralLayersAreCompared) {
+  BenchMatrix matrix;
+  matrix.methods = {"linked-list", "weighted", "loop"};
+  matrix.layers = {8, 32};
+  EXPECT_EQ(describeAll(matrix),
+            (std::vector<std::string>{"unsorted", "linked-list, hdr, 8 layers", "linked-list, hdr, 32 layers",
+                                      "weighted", "loop, 8 layers", "loop, 32 layers"}));
 }
 
 std::string refusalOf(const std::vector<std::string>& methods, const MethodLimits& limits) {
@@ -355,16 +392,18 @@ TEST(BenchCsv, OneRowForEachMeasurement) {
   report.scenes[0].measurements[1].options.maxLayers = 16;
   const std::vector<std::string> lines = linesOf(toCsv(report));
   ASSERT_EQ(lines.size(), 3U);
-  EXPECT_EQ(lines[0],
-            "device,driver,cpu,sweep,step,scene,count,width,height,triangles,method,nodes,resolve,samples,exact,"
-            "fragments,missing,layers_max,tiles,cost_ms,cost_lower_quartile_ms,cost_upper_quartile_ms,frame_ms,"
-            "cost_ratio,frame_ratio,memory_bytes,max_layers,passes,list_build");
+  EXPECT_EQ(
+      lines[0],
+      "device,driver,cpu,sweep,step,scene,count,width,height,triangles,method,nodes,resolve,samples,exact,"
+      "fragments,missing,layers_max,tiles,cost_ms,cost_lower_quartile_ms,cost_upper_quartile_ms,frame_ms,"
+      "cost_ratio,frame_ratio,memory_bytes,max_layers,passes,list_build,msaa_resolve,stencil_mark,memory_budget_mib,"
+      "node_capacity,overflowed,approximate_pixels");
   EXPECT_EQ(lines[1],
             "\"Abacus, \"\"large\"\"\",beads 1.0,false,,,spheres,400,100,10,1600000,unsorted,,,1,false,,,,1,2,"
-            "2,2,4,1,1,0,,,");
+            "2,2,4,1,1,0,,,,,,,,false,");
   EXPECT_EQ(lines[2],
             "\"Abacus, \"\"large\"\"\",beads 1.0,false,,,spheres,400,100,10,1600000,linked-list,standard,"
-            "compute,1,true,700,0,9,1,7,5.25,8.75,9,3.5,2.25,0,16,,fragment");
+            "compute,1,true,700,0,9,1,7,5.25,8.75,9,3.5,2.25,0,16,,fragment,,,,,false,0");
 }
 
 TEST(BenchCsv, ASweepNamesItsStep) {
@@ -373,7 +412,35 @@ TEST(BenchCsv, ASweepNamesItsStep) {
   const std::vector<std::string> lines = linesOf(toCsv(report));
   ASSERT_EQ(lines.size(), 10U); // 5 steps of 2, less one
   EXPECT_NE(lines[1].find(",resolution,57600,spheres,"), std::string::npos) << lines[1];
-  EXPECT_TRUE(lines[1].ends_with(",4,,1,0,,,")) << lines[1]; // no ratio
+  EXPECT_TRUE(lines[1].ends_with(",4,,1,0,,,,,,,,false,")) << lines[1]; // no ratio
+}
+
+// Whoever reads one of the reports learns that a frame had more fragments than nodes.
+TEST(BenchTable, AnOverflowIsSaid) {
+  BenchReport report = smallReport();
+  Measurement& measured = report.scenes[0].measurements[1];
+  measured.options.nodeCapacity = 500;
+  EXPECT_EQ(toTable(report).find("overflowed"), std::string::npos); // they were enough
+  measured.report.complete = false;
+  measured.report.fragmentsMissing = 200;
+  EXPECT_NE(toTable(report).find(" not exact: linked-list, standard, 500 nodes at most overflowed: 200 of 700"),
+            std::string::npos)
+      << toTable(report);
+  EXPECT_TRUE(linesOf(toCsv(report))[2].ends_with(",500,true,0")) << toCsv(report);
+  EXPECT_NE(toJson(report).find("\"overflowed\": true"), std::string::npos);
+}
+
+// Tiles do not hide that a frame is not exact.
+TEST(BenchTable, ACapIsSaidInTiles) {
+  BenchReport report = smallReport();
+  Measurement& measured = report.scenes[0].measurements[1];
+  measured.options.memoryBudget = 2;
+  measured.options.maxLayers = 8;
+  measured.report.complete = false;
+  measured.report.tiles = 3;
+  const std::string table = toTable(report);
+  EXPECT_NE(table.find("in 2 MiB, 8 layers drew 3 tiles"), std::string::npos) << table;
+  EXPECT_NE(table.find("not exact: linked-list, standard, in 2 MiB, 8 layers\n"), std::string::npos) << table;
 }
 
 TEST(BenchTable, SaysWhatItIs) {

@@ -44,6 +44,21 @@ TEST(Sweep, StepsByHand) {
             (Labels{"320x180", "640x360", "1280x720", "1920x1080", "3840x2160"}));
   EXPECT_EQ(labelsOf(SweepKind::Resolution, startOn(true)), (Labels{"160x90", "320x180", "640x360", "960x540"}));
   EXPECT_EQ(labelsOf(SweepKind::Samples, startOn(true)), (Labels{"1", "2", "4", "8"}));
+  EXPECT_EQ(labelsOf(SweepKind::Cap, startOn(false)), (Labels{"8", "16", "32"}));
+  SweepStart start = startOn(true);
+  start.caps = {2, 5};
+  EXPECT_EQ(labelsOf(SweepKind::Cap, start), (Labels{"2", "5"}));
+}
+
+// A setting has one name at all steps.
+TEST(Sweep, NamesOfSettingsLeaveTheStepOut) {
+  MethodOptions options;
+  options.samples = 4;
+  options.maxLayers = 16;
+  EXPECT_EQ(withoutStep(options, SweepKind::Layers), options);
+  EXPECT_EQ(withoutStep(options, SweepKind::Cap).maxLayers, 0U);
+  EXPECT_EQ(withoutStep(options, SweepKind::Cap).samples, 4U);
+  EXPECT_EQ(withoutStep(options, SweepKind::Samples).samples, 1U);
 }
 
 // A step differs from the others in what is swept and in nothing else.
@@ -57,6 +72,7 @@ TEST(Sweep, AllElseStays) {
       if (kind != SweepKind::Resolution) {
         EXPECT_EQ(step.width * 1000 + step.height, 320'180U);
       }
+      EXPECT_EQ(step.cap > 0, kind == SweepKind::Cap);
       if (kind != SweepKind::Samples) {
         EXPECT_EQ(step.samples, 4U);
       }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -17,13 +18,8 @@ bool hasChoices(std::string_view method) {
   return traits.takes(kTakesNodes) && traits.takes(kTakesResolve) && traits.takes(kTakesListBuild);
 }
 
-bool same(const MethodOptions& a, const MethodOptions& b) {
-  return a.name == b.name && a.samples == b.samples && a.nodes == b.nodes && a.resolve == b.resolve &&
-         a.listBuild == b.listBuild;
-}
-
 bool holds(const BenchSettings& settings, const MethodOptions& options) {
-  const auto isIt = [&](const MethodOptions& each) { return same(each, options); };
+  const auto isIt = [&](const MethodOptions& each) { return each == options; };
   return std::ranges::any_of(settings.measured, isIt) ||
          std::ranges::any_of(settings.skipped, isIt, &SkippedSetting::options);
 }
@@ -38,23 +34,36 @@ void addSetting(BenchSettings& settings, const MethodOptions& options) {
   }
 }
 
+// Each setting with every one of the values, where the method has the option.
+template <typename Value>
+void expand(std::vector<MethodOptions>& all, MethodOption option, Value MethodOptions::*member,
+            const std::vector<Value>& values) {
+  if (!traitsOf(all.front().name).takes(option)) return;
+  std::vector<MethodOptions> expanded;
+  for (const MethodOptions& options : all) {
+    for (const Value value : values) {
+      expanded.push_back(options);
+      expanded.back().*member = value;
+    }
+  }
+  all = std::move(expanded);
+}
+
 // Adds what a method has at a sample count.
 void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t samples, const BenchMatrix& matrix) {
   MethodOptions options;
   options.name = method;
   options.samples = samples;
-  options = withLimits(options, matrix.limits);
-  if (!hasChoices(method)) return addSetting(settings, options);
-  for (const VitrailNodeFormat nodes : matrix.nodes) {
-    for (const VitrailResolve resolve : matrix.resolves) {
-      for (const VitrailListBuild listBuild : matrix.listBuilds) {
-        options.nodes = nodes;
-        options.resolve = resolve;
-        options.listBuild = listBuild;
-        addSetting(settings, options);
-      }
-    }
-  }
+  std::vector<MethodOptions> all{withLimits(options, matrix.limits)};
+  expand(all, kTakesNodes, &MethodOptions::nodes, matrix.nodes);
+  expand(all, kTakesResolve, &MethodOptions::resolve, matrix.resolves);
+  expand(all, kTakesListBuild, &MethodOptions::listBuild, matrix.listBuilds);
+  expand(all, kTakesMsaaResolve, &MethodOptions::msaaResolve, matrix.msaaResolves);
+  expand(all, kTakesStencilMark, &MethodOptions::stencilMark, matrix.stencilMarks);
+  expand(all, kTakesOverflow, &MethodOptions::nodeCapacity, matrix.nodeCapacities);
+  expand(all, kTakesMemoryBudget, &MethodOptions::memoryBudget, matrix.memoryBudgets);
+  if (!matrix.layers.empty()) expand(all, kTakesLayers, &MethodOptions::maxLayers, matrix.layers);
+  for (const MethodOptions& each : all) addSetting(settings, each);
 }
 
 } // namespace
@@ -107,6 +116,10 @@ std::string describe(const MethodOptions& options) {
   if (hasChoices(options.name) && options.listBuild != VITRAIL_LIST_BUILD_DEFAULT) {
     text.append(", list build ").append(nameOf(options.listBuild));
   }
+  if (options.msaaResolve != VITRAIL_MSAA_RESOLVE_PER_PIXEL) text.append(", ").append(nameOf(options.msaaResolve));
+  if (options.stencilMark != StencilMark::On) text.append(", stencil mark ").append(nameOf(options.stencilMark));
+  if (options.nodeCapacity > 0) text += fmt::format(", {} nodes at most", options.nodeCapacity);
+  if (options.memoryBudget > 0) text += fmt::format(", in {} MiB", options.memoryBudget);
   if (options.maxLayers > 0)
     text += fmt::format(", {} {}", options.maxLayers, options.maxLayers > 1 ? "layers" : "layer");
   if (options.passes > 0) text += fmt::format(", {} {}", options.passes, options.passes > 1 ? "passes" : "pass");

@@ -35,7 +35,12 @@ struct BenchMatrix {
   std::vector<std::uint32_t> samples = {1};
   std::vector<VitrailResolve> resolves = {VITRAIL_RESOLVE_DEFAULT};
   std::vector<VitrailListBuild> listBuilds = {VITRAIL_LIST_BUILD_DEFAULT};
-  MethodLimits limits; // one for all
+  std::vector<VitrailMsaaResolve> msaaResolves = {VITRAIL_MSAA_RESOLVE_PER_PIXEL};
+  std::vector<StencilMark> stencilMarks = {StencilMark::On};
+  std::vector<std::uint32_t> nodeCapacities = {0}; // MethodOptions::nodeCapacity
+  std::vector<std::uint32_t> memoryBudgets = {0};  // MethodOptions::memoryBudget
+  std::vector<std::uint32_t> layers;               // where there are several; none: those of the limits
+  MethodLimits limits;                             // one for all
 };
 
 // A setting that the options or the device do not allow, and why.
@@ -50,7 +55,7 @@ struct BenchSettings {
 };
 
 // The settings that the choices stand for, by sample count, the baseline of each count first, whether or not it was
-// chosen. A method that has no choice of nodes, resolves and list builds (MethodTraits) is listed once a sample count.
+// chosen. Choices that a method does not have (MethodTraits) it is not listed with.
 // What checkMethodOptions() refuses, such as several samples of a method that has one, is skipped. Nothing is listed
 // twice.
 BenchSettings configurationsOf(const BenchMatrix& matrix);

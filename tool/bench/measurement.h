@@ -37,6 +37,11 @@ struct Measurement {
   std::optional<double> bandwidthShare;
 };
 
+// Whether the fixed pool of Overflow::Approximate was too small: the picture is not exact.
+inline bool hasOverflowed(const Measurement& measured) {
+  return measured.options.nodeCapacity > 0 && measured.report.fragmentsMissing > 0;
+}
+
 struct SceneMeasurement {
   std::string name;
   std::optional<std::uint32_t> count; // of a built-in scene, where it was chosen

@@ -17,6 +17,7 @@ namespace {
 // A setting that the device can do, with what it has drawn so far.
 struct Contender {
   MethodOptions options;
+  RenderOptions picture;
   std::unique_ptr<Renderer> renderer;
   FrameReport report; // of the first frame
   std::vector<PassTimes> frames;
@@ -30,11 +31,19 @@ struct WarmScene {
   std::vector<SkippedSetting> skipped;
 };
 
+// The picture as a setting draws it.
+RenderOptions pictureOf(const BenchRun& run, const MethodOptions& options) {
+  RenderOptions picture = run.picture;
+  if (options.memoryBudget > 0) picture.memoryBudget = std::uint64_t{options.memoryBudget} << 20U;
+  return picture;
+}
+
 Contender prepare(Device& device, const Scene& scene, const BenchRun& run, const MethodOptions& options) {
   Contender contender;
   contender.options = options;
+  contender.picture = pictureOf(run, options);
   contender.renderer = device.makeRenderer(scene, run.opacity, DrawOrder::Forward, options);
-  for (std::uint32_t i = 0; i < run.warmups; ++i) contender.report = contender.renderer->measure(run.picture);
+  for (std::uint32_t i = 0; i < run.warmups; ++i) contender.report = contender.renderer->measure(contender.picture);
   return contender;
 }
 
@@ -91,16 +100,16 @@ WarmScene prepareScene(Device& device, const Scene& scene, const BenchRun& run, 
 
 // Draws all rounds of scenes that are measured with as many. Every frame of a round is of another setting or scene.
 void drawRounds(std::vector<WarmScene>& scenes) {
-  std::vector<std::pair<Contender*, const BenchRun*>> all;
+  std::vector<Contender*> all;
   for (WarmScene& warm : scenes) {
-    for (Contender& contender : warm.contenders) all.emplace_back(&contender, &warm.run);
+    for (Contender& contender : warm.contenders) all.push_back(&contender);
   }
   const BenchRun& first = scenes.front().run;
   for (std::uint32_t round = 0; round < first.repeats; ++round) {
     if (first.progress) first.progress(fmt::format("round {} of {}", round + 1, first.repeats));
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const auto& [contender, run] = all[(round + i) % all.size()];
-      contender->frames.push_back(contender->renderer->measure(run->picture).passesMs);
+      Contender& contender = *all[(round + i) % all.size()];
+      contender.frames.push_back(contender.renderer->measure(contender.picture).passesMs);
     }
   }
 }
@@ -112,7 +121,7 @@ SceneMeasurement finish(WarmScene& warm) {
   result.height = warm.run.picture.height;
   result.skipped = std::move(warm.skipped);
   for (const Contender& contender : warm.contenders) {
-    if (warm.run.takePicture) warm.run.takePicture(contender.options, contender.renderer->render(warm.run.picture));
+    if (warm.run.takePicture) warm.run.takePicture(contender.options, contender.renderer->render(contender.picture));
     result.measurements.push_back(summarize(contender.options, contender.report, contender.frames));
   }
   compare(result.measurements, warm.run.bytesPerSecond);

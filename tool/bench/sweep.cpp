@@ -12,7 +12,8 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr std::array<std::string_view, kSweepKinds.size()> kNames{"layers", "triangles", "resolution", "samples"};
+constexpr std::array<std::string_view, kSweepKinds.size()> kNames{"layers", "triangles", "resolution", "samples",
+                                                                  "cap"};
 
 constexpr std::uint32_t kMostPanesOnGpu = 64;
 constexpr std::uint32_t kMostPanesOnCpu = 32;
@@ -48,7 +49,7 @@ std::optional<SweepKind> sweepNamed(std::string_view name) {
 }
 
 std::vector<SweepStep> planSweep(SweepKind kind, const SweepStart& start) {
-  const SweepStep base{{}, 0, start.width, start.height, start.samples};
+  const SweepStep base{{}, 0, start.width, start.height, start.samples, 0};
   std::vector<SweepStep> steps;
   SweepStep step = base;
   switch (kind) {
@@ -76,8 +77,20 @@ std::vector<SweepStep> planSweep(SweepKind kind, const SweepStart& start) {
         steps.push_back(step);
       }
       break;
+    case SweepKind::Cap:
+      for (const std::uint32_t cap : start.caps) {
+        step.cap = cap;
+        steps.push_back(step);
+      }
+      break;
   }
   return steps;
+}
+
+MethodOptions withoutStep(MethodOptions options, SweepKind kind) {
+  if (kind == SweepKind::Samples) options.samples = 1;
+  if (kind == SweepKind::Cap) options.maxLayers = 0;
+  return options;
 }
 
 SweepPlace placeOf(SweepKind kind, const SweepStep& step, std::uint64_t triangles) {
@@ -88,6 +101,8 @@ SweepPlace placeOf(SweepKind kind, const SweepStep& step, std::uint64_t triangle
       return {kind, static_cast<double>(triangles), shortCount(triangles)};
     case SweepKind::Resolution:
       return {kind, static_cast<double>(step.width) * step.height, fmt::format("{}x{}", step.width, step.height)};
+    case SweepKind::Cap:
+      return {kind, static_cast<double>(step.cap), fmt::format("{}", step.cap)};
     case SweepKind::Samples:
       break;
   }

@@ -66,6 +66,7 @@ BenchRun runOf(const BenchArguments& arguments, const BenchReport& report, const
                std::vector<SkippedSetting>& skipped) {
   BenchMatrix matrix = arguments.matrix;
   if (step.samples != 0) matrix.samples = {step.samples};
+  if (step.cap != 0) matrix.limits.layers = step.cap;
   BenchSettings settings = configurationsOf(matrix);
   SceneArguments view; // of the file's first camera, or the three-quarter view
   view.width = step.width;
@@ -120,6 +121,7 @@ void measureSweep(Device& device, const BenchArguments& arguments, SweepKind kin
   start.height = arguments.width != 0 ? arguments.height : report.isCpu ? 180 : 720;
   start.samples = arguments.matrix.samples.front();
   start.triangles = triangleCount(base.scene);
+  if (!arguments.caps.empty()) start.caps = arguments.caps;
   const std::vector<SweepStep> steps = planSweep(kind, start);
   std::vector<std::vector<SkippedSetting>> refused(steps.size());
 

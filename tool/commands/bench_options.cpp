@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "../methods/methods.h"
 
 #include "device_options.h"
 #include "errors.h"
@@ -41,6 +44,7 @@ What grows, step by step (one scene, default spheres):
                         triangles    every triangle is split into 4, again and again
                         resolution   320x180 to 3840x2160 (on a CPU 160x90 to 960x540)
                         samples      1, 2, 4 and 8 a pixel
+                        cap          8, 16 and 32 layers that are blended exactly, or --layers
 
 What to compare with method unsorted, which is always measured:
   --methods NAME,...    methods of vitrail render (default: all)
@@ -49,7 +53,16 @@ What to compare with method unsorted, which is always measured:
   --samples N,...       1, 2, 4, 8 (default 1)
   --resolve R,...       resolves of such methods: compute, fragment (default: the library's choice)
   --list-build L,...    list builds of such methods: fragment, compute (default: the library's choice)
-  --layers N, --passes N
+  --msaa-resolve R,...  of several samples: per-pixel, per-sample (default per-pixel)
+  --stencil-mark M,...  on, off: whether fragment resolves skip pixels without fragments by the
+                        stencil (default on)
+  --memory-budget MIB,...
+                        for fragments: pictures that need more are drawn in tiles (default: what the
+                        device can give)
+  --overflow O          grow (default): a picture of more fragments than its memory is drawn again.
+                        approximate: it is blended approximately, in --node-capacity nodes
+  --node-capacity N,... nodes of linked-list, of --overflow approximate
+  --layers N,..., --passes N
                         as of vitrail render, of the methods that have them; the others stay as they
                         are
 
@@ -79,6 +92,60 @@ Examples:
 std::optional<std::uint32_t> sampleCount(const std::string& text) {
   constexpr std::array<std::string_view, 4> kCounts{"1", "2", "4", "8"};
   return std::ranges::count(kCounts, text) > 0 ? numberOf<std::uint32_t>(text) : std::nullopt;
+}
+
+std::optional<std::uint32_t> positive(const std::string& text) {
+  const auto value = numberOf<std::uint32_t>(text);
+  return value && *value > 0 ? value : std::nullopt;
+}
+
+// Who has --layers: one number for all, several to compare, or the steps of a sweep.
+void takeLayers(BenchArguments& arguments) {
+  BenchMatrix& matrix = arguments.matrix;
+  const bool isSwept = std::ranges::count(arguments.sweeps, SweepKind::Cap) > 0;
+  MethodLimits limits = matrix.limits;
+  if (!matrix.layers.empty()) limits.layers = matrix.layers.front();
+  if (isSwept && limits.layers == 0) limits.layers = 1; // any: some method has to have the option
+  checkLimitsOf(matrix.methods, limits);
+  if (isSwept) {
+    if (arguments.sweeps.size() > 1 && !matrix.layers.empty()) {
+      throw UsageError("--layers are the steps of --sweep cap: sweep over other things in a run of their own");
+    }
+    arguments.caps = std::move(matrix.layers);
+    matrix.layers.clear();
+    std::ranges::sort(arguments.caps);
+    const auto repeated = std::ranges::unique(arguments.caps);
+    arguments.caps.erase(repeated.begin(), repeated.end());
+  } else if (matrix.layers.size() == 1) {
+    matrix.limits.layers = matrix.layers.front();
+    matrix.layers.clear();
+  }
+}
+
+void checkMemory(const CLI::App& command, const BenchArguments& arguments) {
+  const bool hasCapacity = command.count("--node-capacity") > 0;
+  const bool isFixed = arguments.overflow == Overflow::Approximate;
+  if (isFixed && !hasCapacity)
+    throw UsageError("--overflow approximate needs a number of nodes: add --node-capacity N");
+  if (!isFixed && hasCapacity)
+    throw UsageError("--node-capacity is of --overflow approximate: add that, or leave it out");
+  if (isFixed && command.count("--memory-budget") > 0) {
+    throw UsageError("--overflow approximate has --node-capacity for its memory: leave --memory-budget out");
+  }
+}
+
+// Refuses what none of the methods has.
+void checkChoices(const CLI::App& command, const std::vector<std::string>& methods) {
+  constexpr std::array<std::pair<const char*, MethodOption>, 4> kChoices{{{"--msaa-resolve", kTakesMsaaResolve},
+                                                                          {"--stencil-mark", kTakesStencilMark},
+                                                                          {"--memory-budget", kTakesMemoryBudget},
+                                                                          {"--overflow", kTakesOverflow}}};
+  for (const auto& [option, bit] : kChoices) {
+    const auto hasIt = [bit = bit](const std::string& name) { return traitsOf(name).takes(bit); };
+    if (command.count(option) == 0 || methods.empty() || std::ranges::any_of(methods, hasIt)) continue;
+    throw UsageError(
+        fmt::format("{} has no method that was named: leave it out, or add --methods linked-list", option));
+  }
 }
 
 void checkSweeps(const CLI::App& command, BenchArguments& arguments) {
@@ -115,7 +182,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
   command.add_option("--json", arguments.json);
   command.add_option("--csv", arguments.csv);
   command.add_option("-o,--output", arguments.folder);
-  addList<SweepKind>(command, "--sweep", arguments.sweeps, "a sweep: layers, triangles, resolution or samples",
+  addList<SweepKind>(command, "--sweep", arguments.sweeps, "a sweep: layers, triangles, resolution, samples or cap",
                      sweepNamed);
   command.add_option("--device", arguments.device);
   addWarningOptions(command, arguments);
@@ -136,11 +203,21 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
   addList<VitrailResolve>(command, "--resolve", matrix.resolves, "a resolve: compute or fragment", resolveNamed);
   addList<VitrailListBuild>(command, "--list-build", matrix.listBuilds, "a list build: fragment or compute",
                             listBuildNamed);
-  addLimits(command, matrix.limits);
+  addList<VitrailMsaaResolve>(command, "--msaa-resolve", matrix.msaaResolves,
+                              "a resolve of samples: per-pixel or per-sample", msaaResolveNamed);
+  addList<StencilMark>(command, "--stencil-mark", matrix.stencilMarks, "on or off", stencilMarkNamed);
+  addChoice(command, "--overflow", "grow and approximate", arguments.overflow, overflowNamed);
+  constexpr const char* kPositive = "a whole number from 1";
+  addList<std::uint32_t>(command, "--node-capacity", matrix.nodeCapacities, kPositive, positive);
+  addList<std::uint32_t>(command, "--memory-budget", matrix.memoryBudgets, kPositive, positive);
+  addList<std::uint32_t>(command, "--layers", matrix.layers, kPositive, positive);
+  addPositive(command, "--passes", matrix.limits.passes);
 }
 
 void checkBenchArguments(const CLI::App& command, BenchArguments& arguments) {
-  checkLimitsOf(arguments.matrix.methods, arguments.matrix.limits);
+  takeLayers(arguments);
+  checkMemory(command, arguments);
+  checkChoices(command, arguments.matrix.methods);
   checkLoadOptions(arguments.load, !arguments.model.empty());
   if (!arguments.model.empty()) {
     if (!arguments.scenes.empty()) throw UsageError("a model file and --scene exclude each other: name one of them");

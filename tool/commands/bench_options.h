@@ -22,6 +22,8 @@ struct BenchArguments : WarningOptions {
   std::vector<std::uint32_t> counts; // none, one for all scenes, or one each
   BenchMatrix matrix;
   std::vector<SweepKind> sweeps;
+  std::vector<std::uint32_t> caps; // of the sweep over them; none: its own
+  Overflow overflow = Overflow::Grow;
   std::uint32_t width = 0; // 0: by the kind of device, and of a sweep over resolutions its own
   std::uint32_t height = 0;
   std::optional<float> opacity;

@@ -9,10 +9,11 @@ namespace vitrail::tool {
 
 struct FrameStats {
   // What was taken of the choices that the method has; empty where it has none.
-  std::string nodes{};     // "compact", "standard", "hdr"
-  std::string resolve{};   // "compute", "fragment"
-  std::string listBuild{}; // the same of who puts fragments on their lists
-  bool complete = false;   // every surface was blended, in order
+  std::string nodes{};       // "compact", "standard", "hdr"
+  std::string resolve{};     // "compute", "fragment"
+  std::string listBuild{};   // the same of who puts fragments on their lists
+  std::string stencilMark{}; // "on", "off", of drawn resolves that can have one
+  bool complete = false;     // every surface was blended, in order
   // How far a complete picture may be from the real-number answer for how the method stores surfaces, in 1/255 of the
   // sRGB picture.
   double errorBound = 1.0;

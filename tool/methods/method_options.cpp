@@ -19,6 +19,8 @@ constexpr Names<VitrailListBuild, 2> kListBuilds{
     {{VITRAIL_LIST_BUILD_FRAGMENT, "fragment"}, {VITRAIL_LIST_BUILD_COMPUTE, "compute"}}};
 constexpr Names<VitrailMsaaResolve, 2> kMsaaResolves{
     {{VITRAIL_MSAA_RESOLVE_PER_PIXEL, "per-pixel"}, {VITRAIL_MSAA_RESOLVE_PER_SAMPLE, "per-sample"}}};
+constexpr Names<StencilMark, 2> kStencilMarks{{{StencilMark::On, "on"}, {StencilMark::Off, "off"}}};
+constexpr Names<Overflow, 2> kOverflows{{{Overflow::Grow, "grow"}, {Overflow::Approximate, "approximate"}}};
 
 template <typename Table, typename Choice>
 std::string_view nameIn(const Table& table, Choice choice) {
@@ -39,10 +41,13 @@ std::string_view nameOf(VitrailNodeFormat nodes) { return nameIn(kNodeFormats, n
 std::string_view nameOf(VitrailResolve resolve) { return nameIn(kResolves, resolve); }
 std::string_view nameOf(VitrailListBuild listBuild) { return nameIn(kListBuilds, listBuild); }
 std::string_view nameOf(VitrailMsaaResolve msaaResolve) { return nameIn(kMsaaResolves, msaaResolve); }
+std::string_view nameOf(StencilMark mark) { return nameIn(kStencilMarks, mark); }
 
 std::optional<VitrailNodeFormat> nodeFormatNamed(std::string_view name) { return choiceIn(kNodeFormats, name); }
 std::optional<VitrailResolve> resolveNamed(std::string_view name) { return choiceIn(kResolves, name); }
 std::optional<VitrailListBuild> listBuildNamed(std::string_view name) { return choiceIn(kListBuilds, name); }
 std::optional<VitrailMsaaResolve> msaaResolveNamed(std::string_view name) { return choiceIn(kMsaaResolves, name); }
+std::optional<StencilMark> stencilMarkNamed(std::string_view name) { return choiceIn(kStencilMarks, name); }
+std::optional<Overflow> overflowNamed(std::string_view name) { return choiceIn(kOverflows, name); }
 
 } // namespace vitrail::tool

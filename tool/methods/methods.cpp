@@ -25,7 +25,7 @@ constexpr std::array kMethods{
                  .help = "per-pixel linked lists of any length",
                  .make = makeLinkedList,
                  .options = kTakesSamples | kTakesNodes | kTakesResolve | kTakesListBuild | kTakesMsaaResolve |
-                            kTakesLayers | kTakesMemoryBudget,
+                            kTakesLayers | kTakesMemoryBudget | kTakesStencilMark | kTakesOverflow,
                  .lists = true,
                  .orderIndependent = true},
     MethodTraits{.name = kCpuMethod,
@@ -156,6 +156,9 @@ void checkTaken(const MethodOptions& options) {
   check("--list-build", kTakesListBuild, options.listBuild != defaults.listBuild);
   check("--msaa-resolve", kTakesMsaaResolve, options.msaaResolve != defaults.msaaResolve);
   check("--layers", kTakesLayers, options.maxLayers != defaults.maxLayers);
+  check("--stencil-mark", kTakesStencilMark, options.stencilMark != defaults.stencilMark);
+  check("--overflow", kTakesOverflow, options.nodeCapacity != defaults.nodeCapacity);
+  check("--memory-budget", kTakesMemoryBudget, options.memoryBudget != defaults.memoryBudget);
   check("--passes", kTakesPasses, options.passes != defaults.passes);
 }
 
@@ -164,6 +167,16 @@ void checkStored(const MethodOptions& options) {
     throw std::invalid_argument(
         fmt::format("--nodes compact holds the coverage of at most 4 samples, not {}: use --nodes standard or hdr",
                     options.samples));
+  }
+  if (options.stencilMark == StencilMark::Off) {
+    if (options.resolve == VITRAIL_RESOLVE_COMPUTE) {
+      throw std::invalid_argument("--stencil-mark off is of resolves that are drawn: use --resolve fragment");
+    }
+    if (options.samples > 1 && options.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_PIXEL) {
+      throw std::invalid_argument(
+          "--stencil-mark off is not of per-pixel resolves of several samples, which write every pixel: use "
+          "--msaa-resolve per-sample");
+    }
   }
   if (options.msaaResolve != VITRAIL_MSAA_RESOLVE_PER_SAMPLE) return;
   if (options.samples == 1) throw std::invalid_argument("--msaa-resolve per-sample needs --samples 2, 4 or 8");

@@ -22,14 +22,16 @@ struct MethodHost;
 
 // The options of MethodOptions that only some methods have. What a method has not is refused, never ignored.
 enum MethodOption : std::uint32_t {
-  kTakesSamples = 1U << 0U,     // --samples
-  kTakesNodes = 1U << 1U,       // --nodes
-  kTakesResolve = 1U << 2U,     // --resolve
-  kTakesListBuild = 1U << 3U,   // --list-build
-  kTakesMsaaResolve = 1U << 4U, // --msaa-resolve
-  kTakesLayers = 1U << 5U,      // --layers
-  kTakesPasses = 1U << 6U,      // --passes
-  kTakesMemoryBudget = 1U << 7U // --memory-budget
+  kTakesSamples = 1U << 0U,      // --samples
+  kTakesNodes = 1U << 1U,        // --nodes
+  kTakesResolve = 1U << 2U,      // --resolve
+  kTakesListBuild = 1U << 3U,    // --list-build
+  kTakesMsaaResolve = 1U << 4U,  // --msaa-resolve
+  kTakesLayers = 1U << 5U,       // --layers
+  kTakesPasses = 1U << 6U,       // --passes
+  kTakesMemoryBudget = 1U << 7U, // --memory-budget
+  kTakesStencilMark = 1U << 8U,  // --stencil-mark
+  kTakesOverflow = 1U << 9U      // --overflow
 };
 
 // A row of the table.

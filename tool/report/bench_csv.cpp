@@ -78,6 +78,19 @@ constexpr CsvColumn kCsvColumns[] = {
     {names::kPasses,
      [](const CsvRow& row) { return orEmpty(row.measured.options.passes > 0, row.measured.options.passes); }},
     {names::kListBuild, [](const CsvRow& row) { return row.frame.listBuild; }},
+    {names::kMsaaResolve, [](const CsvRow& row) { return row.frame.msaaResolve; }},
+    {names::kStencilMark, [](const CsvRow& row) { return row.frame.stencilMark; }},
+    {names::kMemoryBudget,
+     [](const CsvRow& row) {
+       return orEmpty(row.measured.options.memoryBudget > 0, row.measured.options.memoryBudget);
+     }},
+    {names::kNodeCapacity,
+     [](const CsvRow& row) {
+       return orEmpty(row.measured.options.nodeCapacity > 0, row.measured.options.nodeCapacity);
+     }},
+    {names::kOverflowed, [](const CsvRow& row) { return cell(hasOverflowed(row.measured)); }},
+    {names::kApproximatePixels,
+     [](const CsvRow& row) { return orEmpty(row.frame.counted, row.frame.approximatePixels); }},
 };
 
 // One line of what `cellOf` says of every column.

@@ -15,21 +15,27 @@ namespace vitrail::tool {
 namespace {
 
 // What measured and skipped settings begin with. `chosen` has the choices that were made, or taken.
-Json settingOf(const MethodOptions& options, const FrameStats& chosen) {
+Json settingOf(const MethodOptions& options, const FrameStats& chosen, std::optional<SweepKind> sweep) {
   return {{names::kMethod, options.name},
-          {"setting", describeWithoutSamples(options)},
+          {"setting", describeWithoutSamples(sweep ? withoutStep(options, *sweep) : options)},
           {names::kNodes, orNull(chosen.nodes)},
           {names::kSamples, options.samples},
           {names::kResolve, orNull(chosen.resolve)},
           {names::kListBuild, orNull(chosen.listBuild)},
           {names::kMaxLayers, limitOrNull(options.maxLayers)},
-          {names::kPasses, limitOrNull(options.passes)}};
+          {names::kPasses, limitOrNull(options.passes)},
+          {names::kStencilMark, orNull(chosen.stencilMark)},
+          {names::kMemoryBudget, limitOrNull(options.memoryBudget)},
+          {names::kNodeCapacity, limitOrNull(options.nodeCapacity)}};
 }
 
-Json toJson(const Measurement& measured) {
+Json toJson(const Measurement& measured, std::optional<SweepKind> sweep) {
   const FrameReport& frame = measured.report;
-  Json json = settingOf(measured.options, frame);
+  Json json = settingOf(measured.options, frame, sweep);
+  json[names::kMsaaResolve] = orNull(frame.msaaResolve);
   json[names::kExact] = isExact(frame);
+  json[names::kOverflowed] = hasOverflowed(measured);
+  json[names::kApproximatePixels] = frame.counted ? Json(frame.approximatePixels) : Json(nullptr);
   json[names::kErrorBound] = errorBoundOf(frame);
   json[names::kFragments] = fragmentsOf(frame);
   json[names::kLayers] = layersOf(frame);
@@ -44,22 +50,26 @@ Json toJson(const Measurement& measured) {
   return json;
 }
 
-Json toJson(const SkippedSetting& skipped) {
+Json toJson(const SkippedSetting& skipped, std::optional<SweepKind> sweep) {
   const MethodOptions& options = skipped.options;
   FrameStats chosen;
   if (traitsOf(options.name).takes(kTakesNodes)) chosen.nodes = nameOf(options.nodes);
   if (options.resolve != VITRAIL_RESOLVE_DEFAULT) chosen.resolve = nameOf(options.resolve);
   if (options.listBuild != VITRAIL_LIST_BUILD_DEFAULT) chosen.listBuild = nameOf(options.listBuild);
-  Json json = settingOf(options, chosen);
+  if (options.stencilMark != StencilMark::On) chosen.stencilMark = nameOf(options.stencilMark);
+  Json json = settingOf(options, chosen, sweep);
+  const bool perSample = options.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_SAMPLE;
+  json[names::kMsaaResolve] = perSample ? Json(nameOf(options.msaaResolve)) : Json(nullptr);
   json["reason"] = skipped.reason;
   return json;
 }
 
 Json toJson(const SceneMeasurement& scene) {
+  const std::optional<SweepKind> kind = scene.sweep ? std::optional(scene.sweep->kind) : std::nullopt;
   Json measurements = Json::array();
-  for (const Measurement& measured : scene.measurements) measurements.push_back(toJson(measured));
+  for (const Measurement& measured : scene.measurements) measurements.push_back(toJson(measured, kind));
   Json skipped = Json::array();
-  for (const SkippedSetting& setting : scene.skipped) skipped.push_back(toJson(setting));
+  for (const SkippedSetting& setting : scene.skipped) skipped.push_back(toJson(setting, kind));
   const bool swept = scene.sweep.has_value();
   return {{names::kScene, scene.name},
           {names::kCount, orNull(scene.count)},

@@ -38,16 +38,11 @@ std::string percent(double fraction) {
 
 std::string rate(double perSecond) { return fmt::format("{:.{}f}", perSecond * 1e-6, perSecond < 1e8 ? 1 : 0); }
 
-// What was measured: the method, its nodes and its resolve, where it has such, and who builds lists if that was chosen.
+// What was measured: the setting, with the resolve that was taken.
 std::string settingOf(const Measurement& measured) {
-  std::string text = measured.options.name;
-  for (const std::string& part : {measured.report.nodes, measured.report.resolve}) {
-    if (!part.empty()) text.append(", ").append(part);
-  }
-  if (measured.options.listBuild != VITRAIL_LIST_BUILD_DEFAULT) {
-    text.append(", list build ").append(measured.report.listBuild);
-  }
-  return text;
+  MethodOptions options = measured.options;
+  if (const std::optional<VitrailResolve> taken = resolveNamed(measured.report.resolve)) options.resolve = *taken;
+  return describeWithoutSamples(options);
 }
 
 std::size_t settingColumns(const SceneMeasurement& scene) {
@@ -74,21 +69,32 @@ std::string labelOf(const Measurement& measured, std::size_t columns) {
 // What has to be known of a measurement beside its numbers.
 std::string noteOn(const Measurement& measured) {
   const FrameReport& frame = measured.report;
-  if (frame.tiles > 1)
-    return fmt::format(" {} drew {} tiles, in less memory\n", describe(measured.options), frame.tiles);
-  if (!frame.counted || frame.complete) return {};
-  if (frame.fragmentsMissing == 0) return fmt::format(" not exact: {}\n", describe(measured.options));
-  return fmt::format(" not exact: {} left out {} of {} fragments; the deepest pixel has {}\n",
-                     describe(measured.options), frame.fragmentsMissing, frame.fragmentsRequested, frame.layersMax);
+  std::string note;
+  if (frame.tiles > 1) {
+    note = fmt::format(" {} drew {} tiles, in less memory\n", describe(measured.options), frame.tiles);
+  }
+  if (!frame.counted || frame.complete) return note;
+  if (hasOverflowed(measured)) {
+    return note + fmt::format(" not exact: {} overflowed: {} of {} fragments had no node; the frame is approximate\n",
+                              describe(measured.options), frame.fragmentsMissing, frame.fragmentsRequested);
+  }
+  if (frame.fragmentsMissing == 0) return note + fmt::format(" not exact: {}\n", describe(measured.options));
+  return note + fmt::format(" not exact: {} left out {} of {} fragments; the deepest pixel has {}\n",
+                            describe(measured.options), frame.fragmentsMissing, frame.fragmentsRequested,
+                            frame.layersMax);
 }
 
 std::string sceneTitle(const SceneMeasurement& scene) {
   std::string title = fmt::format("\n{}", scene.name);
   if (scene.count) title += fmt::format(" --count {}", *scene.count);
   title += fmt::format(", {}x{}: {} triangles", scene.width, scene.height, shortCount(scene.triangles));
+  const bool allOverflowed = std::ranges::none_of(scene.measurements, [](const Measurement& measured) {
+    return measured.report.counted && !hasOverflowed(measured);
+  });
   for (const Measurement& measured : scene.measurements) {
     const FrameReport& frame = measured.report;
-    if (!frame.counted) continue;
+    if (!frame.counted || (hasOverflowed(measured) && !allOverflowed))
+      continue; // those know the stored fragments' layers
     title += fmt::format(", {} transparent fragments, {} deep, {:.1f} on average", shortCount(frame.fragmentsRequested),
                          frame.layersMax, frame.layersMean);
     break;
@@ -138,9 +144,9 @@ std::string sceneTable(const SceneMeasurement& scene) {
   return table + skippedOf(scene);
 }
 
-// A setting's name beside the steps of a sweep. A sweep over samples has one name for all of them.
+// A setting's name beside the steps of a sweep. It is the same at all steps.
 std::string describeInSweep(const SceneMeasurement& step, const Measurement& measured) {
-  return step.sweep->kind == SweepKind::Samples ? describeWithoutSamples(measured.options) : describe(measured.options);
+  return describe(withoutStep(measured.options, step.sweep->kind));
 }
 
 // A number of each setting at each step of a sweep: settings down, steps across.
@@ -217,8 +223,8 @@ std::string sweepTable(const BenchReport& report, SweepKind kind) {
   });
   for (const SceneMeasurement* step : steps) {
     for (const Measurement& measured : step->measurements) {
-      const std::string note = noteOn(measured);
-      if (!note.empty()) table += fmt::format("{} ({})\n", note.substr(0, note.size() - 1), step->sweep->label);
+      std::istringstream notes(noteOn(measured));
+      for (std::string note; std::getline(notes, note);) table += fmt::format("{} ({})\n", note, step->sweep->label);
     }
   }
   return table + skippedOf(steps);

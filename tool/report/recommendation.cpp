@@ -42,10 +42,16 @@ std::string nameOf(const Measurement& measured) { return describeWithoutSamples(
 
 bool isExact(const Measurement& measured) { return isExact(measured.report); }
 
-// A promise rather than what the frames happened to hold: no frame has too many layers for it.
-bool isAlwaysExact(const Measurement& measured) {
-  return isExact(measured) && traitsOf(measured.options.name).wrong.empty();
+// What a setting gets wrong in some frames; nothing of one that is always exact.
+std::string_view wrongOf(const Measurement& measured) {
+  const std::string_view wrong = traitsOf(measured.options.name).wrong;
+  if (!wrong.empty()) return wrong;
+  if (measured.options.maxLayers > 0) return "surfaces beyond the layers are averaged or left out";
+  return measured.options.nodeCapacity > 0 ? "frames of more fragments than nodes are blended approximately" : "";
 }
+
+// A promise rather than what the frames happened to hold: no frame has too many layers for it.
+bool isAlwaysExact(const Measurement& measured) { return isExact(measured) && wrongOf(measured).empty(); }
 
 bool isExactHereAlone(const Measurement& measured) { return isExact(measured) && !isAlwaysExact(measured); }
 
@@ -133,6 +139,8 @@ std::string placesOf(const Scenes& scenes, std::size_t first, std::size_t last) 
       return fmt::format("with {} triangles", range);
     case SweepKind::Resolution:
       return fmt::format("at {} pixels", range);
+    case SweepKind::Cap:
+      return fmt::format("with at most {} {} blended exactly", range, to == "1" ? "layer" : "layers");
     case SweepKind::Samples:
       break;
   }
@@ -196,7 +204,7 @@ std::vector<Candidates> each(const Scenes& scenes, Candidates (*best)(const Scen
 
 // What a method that was exact in these frames gets wrong in others; nothing of one that always is exact.
 std::string elsewhere(const Scenes& scenes, const Run& run) {
-  const std::string_view wrong = traitsOf(measurementOf(*scenes[run.first], run.setting).options.name).wrong;
+  const std::string_view wrong = wrongOf(measurementOf(*scenes[run.first], run.setting));
   return wrong.empty() ? "" : fmt::format(" It was exact in these frames; in others {}.", wrong);
 }
 
@@ -295,7 +303,7 @@ std::string approximateText(const Scenes& scenes, bool isCpu) {
           fmt::format("{} no order-independent method that was measured is cheaper than the exact one.", where));
       continue;
     }
-    const std::string_view wrong = traitsOf(measured.options.name).wrong;
+    const std::string_view wrong = wrongOf(measured);
     const bool wasExact = isExactThroughout(scenes, run);
     sentences.push_back(fmt::format(
         "{} {} is the cheapest order-independent method: {}{}.{}", where, run.setting, numbersOf(scenes, run, isCpu),

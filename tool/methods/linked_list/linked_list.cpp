@@ -19,6 +19,7 @@
 #include "../../gpu/device.h"
 #include "../../gpu/vk.h"
 #include "../../stage/picture_images.h"
+#include "../../stage/tile_runs.h"
 #include "../method.h"
 #include "../methods.h"
 #include "media.h"
@@ -78,6 +79,13 @@ std::vector<VitrailBounds> boxesOf(const Surfaces& surfaces) {
   return result;
 }
 
+// Points reach beyond the boxes, which are around their middles.
+bool hasPoints(const Surfaces& surfaces) {
+  return std::ranges::any_of(surfaces.scene().transparentDraws(), [](const GpuDraw& draw) {
+    return (draw.features & shaders::FEATURE_SOLID) == shaders::FEATURE_POINTS;
+  });
+}
+
 std::span<const std::uint32_t> collectCode(bool media, bool coverage, bool address) {
   if (media && coverage && address) return shaders::collect_media_coverage_address_frag;
   if (media && coverage) return shaders::collect_media_coverage_frag;
@@ -112,6 +120,7 @@ class LinkedList final : public Method {
   void makeSurfaces();
   VitrailVkTargetDesc targetDesc() const;
   bool createTarget(const VitrailVkTargetDesc& desc);
+  void makeFixedTarget(bool buildsAll);
   bool createWholeTarget(std::uint64_t nodeCapacity);
   void countMemory();
   std::uint64_t wordsOf(std::uint64_t bytes) const;
@@ -119,8 +128,8 @@ class LinkedList final : public Method {
   bool writesEveryPixel() const { return options_.samples > 1 && !needs_.perSample; }
   void planTiles(std::span<const VitrailBounds> bounds);
   void drawTiles(Frame& frame);
-  void drawCollecting(Frame& frame);
-  void drawArea(Frame& frame, const VkRect2D& area);
+  void drawCollecting(Frame& frame, std::span<const SurfaceRun> runs);
+  void drawArea(Frame& frame, const VkRect2D& area, std::span<const SurfaceRun> runs);
   VitrailStats readStats() const;
   bool grow(std::uint64_t fragments);
   void add(const VitrailStats& stats);
@@ -184,6 +193,11 @@ void LinkedList::makeContext() {
 
 void LinkedList::chooseResolve() {
   const GpuFeatures& features = gpu_.features();
+  if (media_ && (options_.nodeCapacity > 0 || options_.stencilMark == StencilMark::Off)) {
+    throw GpuError(
+        "objects of this scene absorb light, which is resolved by walking complete lists: leave --overflow "
+        "and --stencil-mark out");
+  }
   if (media_) { // which resolves by compute, a pixel at a time, whatever was asked for: there is no other way
     options_.resolve = VITRAIL_RESOLVE_COMPUTE;
     options_.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
@@ -202,7 +216,13 @@ void LinkedList::chooseResolve() {
     options_.resolve = context_.defaultResolve(target);
   }
   const bool drawn = options_.resolve == VITRAIL_RESOLVE_FRAGMENT;
-  needs_.stencil = drawn && (options_.samples == 1 || needs_.perSample) && features.stencil;
+  if (!drawn && options_.stencilMark == StencilMark::Off) {
+    throw GpuError(
+        "--stencil-mark off is of resolves that are drawn, which is not this device's choice: use --resolve "
+        "fragment");
+  }
+  needs_.stencil = drawn && (options_.samples == 1 || needs_.perSample) && features.stencil &&
+                   options_.stencilMark == StencilMark::On;
   if (options_.samples > 1 && !features.postDepthCoverage) needs_.depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
 }
 
@@ -259,7 +279,8 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
   desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
   desc.maxLayers = options_.maxLayers;
   desc.listBuild = pipelines_.listBuild;
-  desc.overflow = VITRAIL_OVERFLOW_SKIP; // the picture is drawn again, with a larger pool or in tiles
+  // Skipped, the picture is drawn again, with a larger pool or in tiles.
+  desc.overflow = options_.nodeCapacity > 0 ? VITRAIL_OVERFLOW_APPROXIMATE : VITRAIL_OVERFLOW_SKIP;
   desc.colorFormat = PictureImages::kColorFormat;
   if (needs_.stencil) {
     desc.scope.stencilFormat = PictureImages::depthFormat(true);
@@ -287,7 +308,19 @@ void LinkedList::setTarget(const MethodTarget& target) {
                          pixelsOf(target.extent) <= VITRAIL_LIST_BUILD_COMPUTE_MAX_PIXELS;
   const std::uint64_t largest = context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
   const std::uint64_t guess = std::min({kNodesPerPixel * pixelsOf(target.extent), kLargestGuess, largest});
+  if (options_.nodeCapacity > 0) return makeFixedTarget(buildsAll);
   inTiles_ = !buildsAll || !createWholeTarget(target.surfaces ? guess : 0); // drawTiles() knows how large tiles are
+}
+
+// A target that is neither enlarged nor drawn in tiles.
+void LinkedList::makeFixedTarget(bool buildsAll) {
+  if (!buildsAll) {
+    throw GpuError(
+        "--list-build compute draws so large a picture in tiles, and --overflow approximate draws it whole: "
+        "use --list-build fragment, or a smaller --size");
+  }
+  inTiles_ = false;
+  if (!createWholeTarget(options_.nodeCapacity)) check(VK_ERROR_OUT_OF_DEVICE_MEMORY, "vitrailVkCreateTarget");
 }
 
 // A target for the whole picture, whose pool begins with so many nodes; with a budget it follows what pictures need.
@@ -348,17 +381,19 @@ void LinkedList::draw(Frame& frame) {
     check(target_.update(frame_ + 1), "vitrailVkUpdateTarget"); // frees the pool that grow() replaced
     countMemory();
   }
-  drawArea(frame, {{0, 0}, wanted_.extent});
+  drawArea(frame, {{0, 0}, wanted_.extent}, source_.transparentRuns());
 }
 
 // Every tile is waited for: what it reports decides whether its parts come next.
 void LinkedList::drawTiles(Frame& frame) {
   frame.submitAndWait(); // the opaque scene
-  planTiles(boxesOf(frame.surfaces()));
+  planTiles(boxesOf(source_));
+  const TileRuns runs(source_, wanted_.extent);
   VitrailRect tile{};
   while (plan_ && plan_.next(tile)) {
-    drawArea(frame,
-             {{static_cast<std::int32_t>(tile.x), static_cast<std::int32_t>(tile.y)}, {tile.width, tile.height}});
+    const VkRect2D area{{static_cast<std::int32_t>(tile.x), static_cast<std::int32_t>(tile.y)},
+                        {tile.width, tile.height}};
+    drawArea(frame, area, runs.touching(area));
     frame.submitAndWait();
     const VitrailStats stats = readStats();
     check(resultOf(plan_.finish(stats)), "vitrailFinishTile");
@@ -368,20 +403,19 @@ void LinkedList::drawTiles(Frame& frame) {
   }
 }
 
-void LinkedList::drawCollecting(Frame& frame) {
-  if (!media_ || !media_->anyNear()) return frame.drawSurfaces(*surfaces_, target_.descriptorSet());
-  const std::vector<SurfaceRun>& runs = source_.transparentRuns();
+void LinkedList::drawCollecting(Frame& frame, std::span<const SurfaceRun> runs) {
+  if (!media_ || !media_->anyNear()) return frame.drawSurfaces(*surfaces_, target_.descriptorSet(), runs);
   frame.drawSurfaces(*surfaces_, target_.descriptorSet(), media_->part(runs, false));
   frame.drawSurfaces(*untested_, target_.descriptorSet(), media_->part(runs, true));
 }
 
-void LinkedList::drawArea(Frame& frame, const VkRect2D& area) {
+void LinkedList::drawArea(Frame& frame, const VkRect2D& area, std::span<const SurfaceRun> runs) {
   VkCommandBuffer commands = frame.commands();
   PictureImages& images = frame.images();
   target_.begin(commands, {nullptr, ++frame_, area});
   frame.endPass("clear");
   cmdBeginScope(commands, images.transparentScope(area));
-  drawCollecting(frame);
+  drawCollecting(frame, runs);
   vkCmdEndRendering(commands);
   if (pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE) frame.endPass("collect");
   target_.collected(commands);
@@ -409,7 +443,7 @@ std::uint64_t LinkedList::wordsOf(std::uint64_t bytes) const {
 
 void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
   plan_ = TilePlan();
-  const bool everyPixel = writesEveryPixel();
+  const bool everyPixel = writesEveryPixel() || hasPoints(source_);
   if (bounds.empty() && !everyPixel) return; // nothing to draw
   VitrailTilePlanDesc desc{};
   desc.width = wanted_.extent.width;
@@ -443,7 +477,7 @@ bool LinkedList::finish() {
   if (wasInTiles_) return true;
   const VitrailStats stats = readStats();
   add(stats);
-  if (stats.fragmentsMissing == 0) return true;
+  if (stats.fragmentsMissing == 0 || options_.nodeCapacity > 0) return true;
   inTiles_ = !grow(stats.fragmentsRequested);
   expected_ = stats.fragmentsRequested;
   return false;
@@ -479,6 +513,9 @@ FrameStats LinkedList::stats() const {
   result.nodes = nameOf(options_.nodes);
   result.resolve = nameOf(options_.resolve);
   result.listBuild = nameOf(pipelines_.listBuild);
+  if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT && (options_.samples == 1 || needs_.perSample)) {
+    result.stencilMark = needs_.stencil ? "on" : "off";
+  }
   result.counted = true;
   result.errorBound = vitrailNodeErrorBound(options_.nodes, options_.samples, stats_.layersMax);
   result.layersMean = meanLayers(stats_.fragmentsStored, coveredPixels_);

@@ -9,6 +9,7 @@
     triangles: { title: "More triangles, the same surfaces", unit: "triangles" },
     resolution: { title: "More pixels", unit: "pixels" },
     samples: { title: "More samples a pixel", unit: "samples a pixel" },
+    cap: { title: "More layers exactly", unit: "layers that are blended exactly" },
   };
   const MARKS = ["circle", "rect", "triangle", "rectRot", "crossRot", "star"];
 
@@ -102,7 +103,7 @@
       add(row, "td", setting);
       for (const scene of group.scenes) {
         const measured = measurementOf(scene, setting);
-        const cell = add(row, "td", measured ? measure.text(measure.of(measured)) : "–");
+        const cell = add(row, "td", measured ? measure.text(measure.of(measured)) + (measured.overflowed ? " †" : "") : "–");
         if (measured?.exact) cell.className = "equal";
       }
     }
@@ -141,6 +142,9 @@
       }
       for (const measure of MEASURES) fillTable(section, group, measure);
       add(section, "p", "Green: reported as exact.", { class: "quiet" });
+      if (group.scenes.some((scene) => scene.measurements.some((m) => m.overflowed))) {
+        add(section, "p", "† Not exact: there were more fragments than nodes, and the frame is approximate.", { class: "quiet" });
+      }
       fillSkipped(section, group);
     }
   }
