@@ -109,6 +109,7 @@ HWY_INLINE V upperHalf(VI word) {
 // Which texels of a level fragments read, and how much of each.
 struct LevelPlaces {
   alignas(64) std::int32_t index[4][kLanes]; // by texel as in FetchedTexels
+  bool arePairs;                             // in all lanes the right texels follow the left ones in memory
   V right, down;
 };
 
@@ -132,6 +133,7 @@ HWY_INLINE void placeInLevel(const CpuSlot& slot, VI level, V u, V v, M linear, 
   hn::Store(upper + x.second, di, places.index[1]);
   hn::Store(lower + x.first, di, places.index[2]);
   hn::Store(lower + x.second, di, places.index[3]);
+  places.arePairs = hn::AllTrue(di, x.second == x.first + setInt(1));
   places.right = x.weight;
   places.down = y.weight;
 }
@@ -150,22 +152,47 @@ HWY_INLINE void prefetchTexels(const CpuTexture& texture, const LevelPlaces& pla
   }
 }
 
-// Loads of one texel after the other: they are faster than gathers, of which processors make more steps than that.
+// Copies by one vector of exactly so many words: left to itself, the compiler takes them through several registers.
+template <std::size_t kWords>
+HWY_INLINE void copyWords(const std::uint32_t* from, std::uint32_t* to) {
+  if constexpr (kWords <= HWY_LANES(std::uint32_t)) {
+    const hn::FixedTag<std::uint32_t, kWords> d;
+    hn::StoreU(hn::LoadU(d, from), d, to);
+  } else {
+    std::memcpy(to, from, kWords * sizeof(std::uint32_t));
+  }
+}
+
+// Loads of one texel, or two neighbours, after the other: they are faster than gathers, of which processors make more
+// steps than that.
 HWY_INLINE void fetchTexels(const CpuTexture& texture, const LevelPlaces& places, FetchedTexels& to) {
   const std::uint32_t* texels = texture.texels.data();
-  const auto copy = [&](std::size_t k, std::size_t i, std::uint32_t* word)
-                        HWY_ATTR { std::memcpy(word, texels + 2 * static_cast<std::size_t>(places.index[k][i]), 8); };
+  const auto at = [&](std::size_t k, std::size_t i) HWY_ATTR { return static_cast<std::size_t>(places.index[k][i]); };
   if (texture.kind == Texels::Premultiplied) {
+    if (HWY_LIKELY(places.arePairs)) {
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        copyWords<4>(texels + 2 * at(0, i), to.upper[i]);
+        copyWords<4>(texels + 2 * at(2, i), to.lower[i]);
+      }
+      return;
+    }
     for (std::size_t i = 0; i < kLanes; ++i) {
-      copy(0, i, to.upper[i]);
-      copy(1, i, to.upper[i] + 2);
-      copy(2, i, to.lower[i]);
-      copy(3, i, to.lower[i] + 2);
+      copyWords<2>(texels + 2 * at(0, i), to.upper[i]);
+      copyWords<2>(texels + 2 * at(1, i), to.upper[i] + 2);
+      copyWords<2>(texels + 2 * at(2, i), to.lower[i]);
+      copyWords<2>(texels + 2 * at(3, i), to.lower[i] + 2);
+    }
+    return;
+  }
+  if (HWY_LIKELY(places.arePairs)) {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      copyWords<2>(texels + at(0, i), to.upper[i]);
+      copyWords<2>(texels + at(2, i), to.upper[i] + 2);
     }
     return;
   }
   for (std::size_t i = 0; i < kLanes; ++i) {
-    for (std::size_t k = 0; k < 4; ++k) to.upper[i][k] = texels[places.index[k][i]];
+    for (std::size_t k = 0; k < 4; ++k) to.upper[i][k] = texels[at(k, i)];
   }
 }
 
