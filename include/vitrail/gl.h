@@ -120,7 +120,7 @@ typedef struct VitrailGlTargetDesc {
   VitrailResolve resolve;
   VitrailMsaaResolve msaaResolve;
   uint32_t postDepthCoverage; /* 1: shaders define VITRAIL_POST_DEPTH_COVERAGE (GL_ARB_post_depth_coverage) */
-  uint32_t maxLayers;
+  uint32_t maxLayers;         /* with VITRAIL_RESOLVE_COMPUTE on a GPU at most 16 in this version */
   VitrailOverflow overflow;
   VitrailListBuild listBuild;
   uint32_t userWords; /* 1: nodes carry a word of the host's */

@@ -141,7 +141,8 @@ std::uint32_t groupsFor(std::uint32_t pixels) { return (pixels + kGroupSide - 1)
 
 const void* argumentsOf(const GlStorage& storage, const Pass& pass) {
   const std::uint64_t offset = storage.offset + storage.layout.control.offset + pass.arguments;
-  return reinterpret_cast<const void*>(static_cast<std::uintptr_t>(offset)); // OpenGL takes offsets as pointers
+  // OpenGL takes offsets as pointers. NOLINTNEXTLINE(performance-no-int-to-ptr)
+  return reinterpret_cast<const void*>(static_cast<std::uintptr_t>(offset));
 }
 
 void dispatch(const VitrailGlTarget_T& target, const Pass& pass, const GlCallInfo& info) {
