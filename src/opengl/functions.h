@@ -63,6 +63,7 @@ namespace vitrail {
   X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
   X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)                     \
   X(PFNGLOBJECTLABELPROC, ObjectLabel)                         \
+  X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
   X(PFNGLPOLYGONMODEPROC, PolygonMode)                         \
   X(PFNGLSCISSORINDEXEDPROC, ScissorIndexed)                   \
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \

@@ -56,6 +56,7 @@ void clear(VitrailGlTarget_T& target) {
   const GlFunctions& gl = target.context->gl;
   const GlStorage& storage = target.storage;
   const SavedCopies saved(gl);
+  const SavedUnpacking unpacking(gl);
   gl.BindBuffer(GL_COPY_WRITE_BUFFER, storage.buffer);
   const layout::VitrailParameters parameters = parametersOf(
       target.info, storage.needs.nodeCapacity, {0, storage.wholeByBinding}, target.area, target.frames.newest());

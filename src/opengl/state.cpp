@@ -14,6 +14,23 @@ SavedCopies::~SavedCopies() {
   gl_.BindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(write_));
 }
 
+// ---- Clears
+
+SavedUnpacking::SavedUnpacking(const GlFunctions& gl) : gl_(gl) {
+  gl.GetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &buffer_);
+  gl.GetIntegerv(GL_UNPACK_SKIP_PIXELS, &skipPixels_);
+  gl.GetIntegerv(GL_UNPACK_SKIP_ROWS, &skipRows_);
+  gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  gl.PixelStorei(GL_UNPACK_SKIP_PIXELS, 0);
+  gl.PixelStorei(GL_UNPACK_SKIP_ROWS, 0);
+}
+
+SavedUnpacking::~SavedUnpacking() {
+  gl_.BindBuffer(GL_PIXEL_UNPACK_BUFFER, static_cast<GLuint>(buffer_));
+  gl_.PixelStorei(GL_UNPACK_SKIP_PIXELS, skipPixels_);
+  gl_.PixelStorei(GL_UNPACK_SKIP_ROWS, skipRows_);
+}
+
 // ---- Shaders
 
 namespace {

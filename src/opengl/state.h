@@ -22,6 +22,21 @@ class SavedCopies {
   GLint write_ = 0;
 };
 
+// How pixels are unpacked, which drivers (Mesa) heed for the value of a clear.
+class SavedUnpacking {
+ public:
+  explicit SavedUnpacking(const GlFunctions& gl);
+  ~SavedUnpacking();
+  SavedUnpacking(const SavedUnpacking&) = delete;
+  SavedUnpacking& operator=(const SavedUnpacking&) = delete;
+
+ private:
+  const GlFunctions& gl_;
+  GLint buffer_ = 0;
+  GLint skipPixels_ = 0;
+  GLint skipRows_ = 0;
+};
+
 // Program, buffer and indirect bindings of a pass that runs shaders, and with `images` those of a resolve's pictures.
 class SavedShaders {
  public:

@@ -79,9 +79,7 @@ void EglContext::makeNoneCurrent() {
   eglMakeCurrent(eglGetCurrentDisplay(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
-void OpenGlBackend::open() {
-  if (egl_) return;
-  egl_ = std::make_unique<EglContext>();
+void OpenGlBackend::listen() {
   glEnable(GL_DEBUG_OUTPUT);
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
   glDebugMessageCallback(
@@ -93,6 +91,12 @@ void OpenGlBackend::open() {
         if (wrong) backend->messages_.emplace_back(std::string("KHR_debug: ") + text);
       },
       this);
+}
+
+void OpenGlBackend::open() {
+  if (egl_) return;
+  egl_ = std::make_unique<EglContext>();
+  listen();
   features_.dualSourceBlending = true;
   features_.sampleRateShading = true;
   features_.postDepthCoverage = epoxy_has_gl_extension("GL_ARB_post_depth_coverage");
@@ -187,5 +191,20 @@ GLuint OpenGlBackend::program(const std::string& first, const std::string& fragm
 }
 
 OpenGlBackend& backend() { return Registered<OpenGlBackend>::get(); }
+
+void expectOneLine(const std::string& word) {
+  const std::vector<LogLine> lines = backend().takeLog();
+  EXPECT_EQ(lines.size(), 1U) << "lines about " << word;
+  for (const LogLine& line : lines) {
+    EXPECT_NE(line.text.find(word), std::string::npos) << "the log says: " << line.text;
+    EXPECT_EQ(line.text.find('\n'), std::string::npos) << "the log says: " << line.text;
+  }
+}
+
+void OpenGlTest::SetUp() { backend().features(); }
+
+void OpenGlTest::TearDown() {
+  for (const std::string& error : backend().takeErrors()) ADD_FAILURE() << error;
+}
 
 } // namespace vitrail::tests::opengl

@@ -52,6 +52,8 @@ class OpenGlBackend : public Backend {
   VitrailGlContextDesc contextDesc();
   [[nodiscard]] const EglContext& egl() const { return *egl_; }
   std::vector<LogLine> takeLog();
+  // Has what KHR_debug says of the context that is current among the errors, too.
+  void listen();
 
   // The program of these texts, compiled once; with `fragment` empty a compute program. Throws HostError.
   GLuint program(const std::string& first, const std::string& fragment);
@@ -68,5 +70,16 @@ class OpenGlBackend : public Backend {
 };
 
 OpenGlBackend& backend();
+
+// The library has logged one line since the last look, and the word is in it.
+void expectOneLine(const std::string& word);
+
+// A test of what only OpenGL has. The backend's context is current.
+class OpenGlTest : public ::testing::Test {
+ protected:
+  void SetUp() override;
+  // Fails the test for every message of KHR_debug and every line of the log that it did not take.
+  void TearDown() override;
+};
 
 } // namespace vitrail::tests::opengl

@@ -59,6 +59,7 @@ class OpenGlHost : public PointHost {
   void collected();
   void resolve(PointTextures& textures, std::uint64_t view);
   void end();
+  [[nodiscard]] PointResult read(const PointTextures& textures, std::uint64_t frame) const;
 
  private:
   void makeTextures();
@@ -71,7 +72,6 @@ class OpenGlHost : public PointHost {
   void barrier(VitrailGlBarrierPoint point) const;
   void walk(const VitrailRect& area, GLuint buffer);
   [[nodiscard]] std::vector<FloatColor> pixels(const PointTextures& textures) const;
-  [[nodiscard]] PointResult read(const PointTextures& textures, std::uint64_t frame) const;
   [[nodiscard]] std::vector<std::uint32_t> wordsAt(std::uint64_t offset, std::uint64_t size) const; // of memory_
   [[nodiscard]] VitrailRect wholeArea() const { return {0, 0, desc_.width, desc_.height}; }
 
