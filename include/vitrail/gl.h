@@ -33,7 +33,8 @@
  * Rows: pixels count from the lower left corner, as gl_FragCoord does, in areas, copies and lists alike.
  *
  * Barriers: the calls make those between the library's passes, and one behind a resolve by compute for whatever the
- * host does with the texture next. With hostBarriers the host makes those between calls.
+ * host does with the texture next. With hostBarriers those between calls, and that one,
+ * are the host's.
  *
  * Lost contexts: calls do nothing that can be seen, as OpenGL's own; objects are destroyed as ever, or left to the end
  * of the context.
