@@ -176,6 +176,13 @@ std::uint32_t planFacts(const DeviceLimits& limits, const TargetInfo& info) {
   return facts;
 }
 
+FragmentResolve fragmentResolve(const TargetInfo& info, bool dual) {
+  if (info.samples == 1) return dual ? FragmentResolve::SingleDual : FragmentResolve::Single;
+  if (info.perPixel()) return FragmentResolve::PerPixel;
+  if (info.testsDepth()) return dual ? FragmentResolve::PerSampleDualDepth : FragmentResolve::PerSampleDepth;
+  return dual ? FragmentResolve::PerSampleDual : FragmentResolve::PerSample;
+}
+
 FramePlan::FramePlan(std::uint32_t facts) {
   for (const Row& row : kRows) {
     if ((facts & row.all) == row.all && (facts & row.none) == 0) passes_.push_back(row.pass);

@@ -107,6 +107,9 @@ enum PlanFact : std::uint32_t {
 };
 std::uint32_t planFacts(const DeviceLimits& limits, const TargetInfo& info);
 
+// Which fragment resolve draws a target's lists; `dual`: with dual-source blending.
+FragmentResolve fragmentResolve(const TargetInfo& info, bool dual);
+
 // The passes of a frame in their order, and the barriers between its calls.
 class FramePlan {
  public:

@@ -48,11 +48,4 @@ struct Log {
   }
 };
 
-// `next` of a structure, which this version knows nothing for.
-inline VitrailResult checkNoNext(const Log& log, const void* next, const char* structure) {
-  if (next == nullptr) return VITRAIL_SUCCESS;
-  return log.fail(VITRAIL_ERROR_INVALID, "%s::next: version %d.%d knows no further structures", structure,
-                  VITRAIL_VERSION_MAJOR, VITRAIL_VERSION_MINOR);
-}
-
 } // namespace vitrail

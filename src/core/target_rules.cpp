@@ -209,30 +209,31 @@ VitrailResult checkTarget(const DeviceLimits& limits, const Log& log, const Targ
 
 VitrailResult checkViews(const Log& log, const TargetInfo& info, const ViewsInfo& views) {
   if (views.count > VITRAIL_MAX_VIEWS) {
-    return log.fail(VITRAIL_ERROR_INVALID, "views.count %u: at most %d", views.count, VITRAIL_MAX_VIEWS);
+    return log.fail(VITRAIL_ERROR_INVALID, "%s.count %u: at most %d", views.field, views.count, VITRAIL_MAX_VIEWS);
   }
   if (views.count == 0 && (views.color || views.opaque || views.depth)) {
-    return log.fail(VITRAIL_ERROR_INVALID, "views.count is 0, and views.%s is given: say how many views there are",
+    return log.fail(VITRAIL_ERROR_INVALID, "%s.count is 0, and %s.%s is given: say how many views there are",
+                    views.field, views.field,
                     views.color    ? "color"
                     : views.opaque ? "opaque"
                                    : "depth");
   }
   if (views.count != 0 && !views.color && !views.opaque && !views.depth) {
-    return log.fail(VITRAIL_ERROR_INVALID, "views.count is %u, and no array of views is given", views.count);
+    return log.fail(VITRAIL_ERROR_INVALID, "%s.count is %u, and no array of views is given", views.field, views.count);
   }
   if (views.nullName != nullptr) {
-    return log.fail(VITRAIL_ERROR_INVALID, "views.%s[%u] is a null handle", views.nullName, views.nullIndex);
+    return log.fail(VITRAIL_ERROR_INVALID, "%s.%s[%u] is a null handle", views.field, views.nullName, views.nullIndex);
   }
   if (info.resolve == VITRAIL_RESOLVE_COMPUTE && !views.color) {
-    return log.fail(VITRAIL_ERROR_INVALID, "a compute resolve needs views.color to write to");
+    return log.fail(VITRAIL_ERROR_INVALID, "a compute resolve needs %s.color to write to", views.field);
   }
   if (info.perPixel() && !views.opaque) {
-    return log.fail(VITRAIL_ERROR_INVALID, "a resolve of %u samples per pixel needs views.opaque to read",
-                    info.samples);
+    return log.fail(VITRAIL_ERROR_INVALID, "a resolve of %u samples per pixel needs %s.opaque to read", info.samples,
+                    views.field);
   }
   if (info.testsDepth() && !views.depth) {
-    return log.fail(VITRAIL_ERROR_INVALID, "%u samples without postDepthCoverage need views.depth to test against",
-                    info.samples);
+    return log.fail(VITRAIL_ERROR_INVALID, "%u samples without postDepthCoverage need %s.depth to test against",
+                    info.samples, views.field);
   }
   return VITRAIL_SUCCESS;
 }
@@ -257,6 +258,22 @@ std::uint32_t maxNodeCapacity(const DeviceLimits& limits, std::uint32_t format, 
   const std::uint64_t listed = nodesForGroupLists(limits.storageBufferRange);
   const std::uint32_t indices = maxNodeIndexCount(format, samples != 0 ? samples : 1);
   return static_cast<std::uint32_t>(std::min<std::uint64_t>({most / bytes, listed, indices}));
+}
+
+VitrailResult tileLimits(const DeviceLimits& limits, const Log& log, std::uint32_t format, std::uint32_t samples,
+                         VitrailTileLimits& tiles) {
+  if (nodeBytes(format) == 0) {
+    return log.fail(VITRAIL_ERROR_INVALID, "nodeFormat %u is none of VitrailNodeFormat", format);
+  }
+  tiles.memoryBytes = std::min(limits.allocationSize, limits.heapSize);
+  tiles.alignment = limits.alignment;
+  tiles.nodeCapacity = maxNodeCapacity(limits, format, samples, false);
+  tiles.areaPixels =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(limits.storageBufferRange / sizeof(layout::uint), kMost32));
+  if (tiles.nodeCapacity == 0) {
+    return log.fail(VITRAIL_ERROR_FORMAT, "nodeFormat %u has no nodes at %u samples", format, samples);
+  }
+  return VITRAIL_SUCCESS;
 }
 
 std::uint32_t budgetCapacity(const DeviceLimits& limits, const TargetInfo& info) {

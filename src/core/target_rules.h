@@ -7,6 +7,7 @@
 #include "device_limits.h"
 #include "log.h"
 #include "pool.h"
+#include "vitrail/tiles.h"
 #include "vitrail/types.h"
 
 namespace vitrail {
@@ -51,6 +52,7 @@ struct TargetInfo {
 
 // What images the host gives, each kind with as many views as `count` says.
 struct ViewsInfo {
+  const char* field = "views"; // the descriptor's, for messages
   std::uint32_t count = 0;
   bool color = false;
   bool opaque = false;
@@ -78,6 +80,10 @@ StorageNeeds storageNeeds(const DeviceLimits& limits, const TargetInfo& info);
 
 // The most nodes that one pool can have on a device; 0 where the format is none, or not at that sample count.
 std::uint32_t maxNodeCapacity(const DeviceLimits& limits, std::uint32_t format, std::uint32_t samples, bool userWords);
+
+// What a device can hold of such nodes, for plans of tiles; `next` stays. Logs the reason where it fails.
+VitrailResult tileLimits(const DeviceLimits& limits, const Log& log, std::uint32_t format, std::uint32_t samples,
+                         VitrailTileLimits& tiles);
 
 // The nodes that the budget has room for, at most as many as a pool can have.
 std::uint32_t budgetCapacity(const DeviceLimits& limits, const TargetInfo& info);

@@ -1,4 +1,5 @@
 // The calls of a frame.
+#include "core/frame_start.h"
 #include "core/parameters.h"
 #include "target.h"
 #include "vitrail/bindings.h"
@@ -25,15 +26,7 @@ bool nextIsNull(VitrailGlTarget target, const void* next, const char* structure)
 
 // Starts the frame on the host's side: its number, its area.
 void beginFrame(VitrailGlTarget_T& target, const VitrailGlBeginInfo& info, bool open) {
-  // Begun over an open one, what it has may be what the host meant for that one; the same number says otherwise.
-  if (open && (info.frame == 0 || info.frame != target.frames.newest())) target.order.setMisused();
-  if (target.frames.any() && info.frame != 0 && info.frame < target.frames.newest()) {
-    target.context->log.warn("frame %llu is begun after frame %llu: frame numbers rise",
-                             static_cast<unsigned long long>(info.frame),
-                             static_cast<unsigned long long>(target.frames.newest()));
-    target.growth.forget(); // what was read of later frames is no news any more
-  }
-  target.frames.begin(info.frame, open);
+  startFrame(target.frames, target.order, target.growth, target.context->log, info.frame, open);
   bool whole = true;
   target.area =
       areaOfFrame(target.info, target.context->log, info.area.x, info.area.y, info.area.width, info.area.height, whole);
@@ -47,35 +40,6 @@ std::uint32_t viewOf(VitrailGlTarget_T& target, const VitrailGlResolveInfo* info
   target.context->log.warn("view %u is resolved, the target has %u: view 0 is taken", view, target.viewCount);
   target.order.setMisused();
   return 0;
-}
-
-// Whether that can be copied; logs why not.
-bool canCopy(const VitrailGlTarget_T& target, const VitrailGlCopyInfo& info) {
-  const Log& log = target.context->log;
-  const VitrailRect& copied = info.area;
-  const VitrailRect& area = target.area;
-  const std::uint64_t pixels = std::uint64_t{copied.width} * copied.height;
-  const bool inside = pixels != 0 && copied.x >= area.x && copied.y >= area.y &&
-                      std::uint64_t{copied.x} + copied.width <= std::uint64_t{area.x} + area.width &&
-                      std::uint64_t{copied.y} + copied.height <= std::uint64_t{area.y} + area.height;
-  if (target.info.copyLayers == 0) {
-    log.error("vitrailGlCopyLists: the target was made without copyLayers");
-  } else if (!inside) {
-    log.error("vitrailGlCopyLists: %ux%u pixels at %u,%u are not inside the frame's area, %ux%u at %u,%u", copied.width,
-              copied.height, copied.x, copied.y, area.width, area.height, area.x, area.y);
-  } else if (pixels > target.info.copyLayers) {
-    log.error("vitrailGlCopyLists: %llu pixels; copyLayers %u is the most", static_cast<unsigned long long>(pixels),
-              target.info.copyLayers);
-  } else if (info.buffer == 0 || info.offset % 4 != 0) {
-    log.error("vitrailGlCopyLists needs a buffer, and an offset that is a multiple of 4");
-  } else if (info.size < copyBytes(pixels, target.info.copyLayers)) {
-    log.error("vitrailGlCopyLists: size %llu; %llu bytes are written, as vitrailGlCopySize says",
-              static_cast<unsigned long long>(info.size),
-              static_cast<unsigned long long>(copyBytes(pixels, target.info.copyLayers)));
-  } else {
-    return true;
-  }
-  return false;
 }
 
 } // namespace
@@ -117,7 +81,10 @@ extern "C" void vitrailGlCopyLists(VitrailGlTarget target, const VitrailGlCopyIn
     return target->order.setMisused();
   }
   if (!nextIsNull(target, info->next, "VitrailGlCopyInfo")) return;
-  if (!canCopy(*target, *info)) return target->order.setMisused(); // what is in the host's buffer is of another frame
+  const CopyRequest request{info->area.x,      info->area.y, info->area.width, info->area.height,
+                            info->buffer != 0, info->offset, info->size,       "vitrailGlCopySize"};
+  if (!canCopy(target->context->log, kPrefix, target->info, target->area, request))
+    return target->order.setMisused(); // what is in the host's buffer is of another frame
   GlCallInfo call;
   call.copied = info->area;
   call.copyBuffer = info->buffer;

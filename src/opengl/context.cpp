@@ -202,23 +202,7 @@ extern "C" uint32_t vitrailGlMaxNodeCapacity(VitrailGlContext context, VitrailNo
 extern "C" VitrailResult vitrailGlTileLimits(VitrailGlContext context, VitrailNodeFormat format, uint32_t samples,
                                              VitrailTileLimits* limits) {
   using namespace vitrail;
-  if (limits != nullptr) {
-    void* next = limits->next;
-    *limits = {};
-    limits->next = next;
-  }
+  if (limits != nullptr) clearKeepingNext(*limits);
   if (context == nullptr || limits == nullptr) return nullArgument(context, "vitrailGlTileLimits");
-  const DeviceLimits& device = context->limits;
-  if (nodeBytes(format) == 0) {
-    return context->log.fail(VITRAIL_ERROR_INVALID, "nodeFormat %d is none of VitrailNodeFormat", format);
-  }
-  limits->memoryBytes = std::min(device.allocationSize, device.heapSize);
-  limits->alignment = device.alignment;
-  limits->nodeCapacity = maxNodeCapacity(device, format, samples, false);
-  limits->areaPixels = static_cast<std::uint32_t>(
-      std::min<std::uint64_t>(device.storageBufferRange / sizeof(layout::uint), 0xffffffffU));
-  if (limits->nodeCapacity == 0) {
-    return context->log.fail(VITRAIL_ERROR_FORMAT, "nodeFormat %d has no nodes at %u samples", format, samples);
-  }
-  return VITRAIL_SUCCESS;
+  return tileLimits(context->limits, context->log, format, samples, *limits);
 }

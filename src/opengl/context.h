@@ -9,6 +9,7 @@
 
 #include "core/device_limits.h"
 #include "core/log.h"
+#include "core/structures.h"
 #include "functions.h"
 #include "programs.h"
 #include "vitrail/gl.h"

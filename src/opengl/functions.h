@@ -15,6 +15,7 @@ namespace vitrail {
   X(PFNGLBINDBUFFERRANGEPROC, BindBufferRange)                 \
   X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                   \
   X(PFNGLBINDIMAGETEXTUREPROC, BindImageTexture)               \
+  X(PFNGLBINDSAMPLERPROC, BindSampler)                         \
   X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
   X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
   X(PFNGLBLENDEQUATIONSEPARATEIPROC, BlendEquationSeparatei)   \

@@ -78,6 +78,8 @@ SavedShaders::SavedShaders(const GlFunctions& gl, GLenum indirect, bool images)
   for (std::size_t i = 0; i < textures_.size(); ++i) {
     gl.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
     gl.GetIntegerv(GL_TEXTURE_BINDING_2D_MULTISAMPLE, &textures_[i]);
+    gl.GetIntegerv(GL_SAMPLER_BINDING, &samplers_[i]);
+    gl.BindSampler(static_cast<GLuint>(i), 0);
   }
   gl.ActiveTexture(static_cast<GLenum>(activeTexture_));
 }
@@ -87,6 +89,7 @@ SavedShaders::~SavedShaders() {
     for (std::size_t i = 0; i < textures_.size(); ++i) {
       gl_.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
       gl_.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, static_cast<GLuint>(textures_[i]));
+      gl_.BindSampler(static_cast<GLuint>(i), static_cast<GLuint>(samplers_[i]));
     }
     gl_.ActiveTexture(static_cast<GLenum>(activeTexture_));
     gl_.BindImageTexture(VITRAIL_VIEW_BINDING_COLOR, static_cast<GLuint>(image_.name), image_.level, image_.layered,

@@ -73,6 +73,7 @@ class SavedShaders {
   } image_;
   GLint activeTexture_ = 0;
   std::array<GLint, VITRAIL_VIEW_BINDINGS> textures_{}; // GL_TEXTURE_BINDING_2D_MULTISAMPLE of the units
+  std::array<GLint, VITRAIL_VIEW_BINDINGS> samplers_{}; // which say how others would be read
 };
 
 // What a full-screen triangle sets beside those.
@@ -85,12 +86,13 @@ class SavedDraw {
 
   // What is off while the triangle is drawn. (Blending, scissor and stencil test are set by the draw.)
   static constexpr std::array kOff = {
-      GLenum{GL_DEPTH_TEST},     GLenum{GL_CULL_FACE},           GLenum{GL_RASTERIZER_DISCARD},
-      GLenum{GL_COLOR_LOGIC_OP}, GLenum{GL_SAMPLE_MASK},         GLenum{GL_SAMPLE_COVERAGE},
-      GLenum{GL_SAMPLE_SHADING}, GLenum{GL_CLIP_DISTANCE0},      GLenum{GL_CLIP_DISTANCE1},
-      GLenum{GL_CLIP_DISTANCE2}, GLenum{GL_CLIP_DISTANCE3},      GLenum{GL_CLIP_DISTANCE4},
-      GLenum{GL_CLIP_DISTANCE5}, GLenum{GL_CLIP_DISTANCE6},      GLenum{GL_CLIP_DISTANCE7},
-      GLenum{GL_STENCIL_TEST},   GLenum{GL_SAMPLE_ALPHA_TO_ONE}, GLenum{GL_SAMPLE_ALPHA_TO_COVERAGE}};
+      GLenum{GL_DEPTH_TEST},       GLenum{GL_CULL_FACE},           GLenum{GL_RASTERIZER_DISCARD},
+      GLenum{GL_COLOR_LOGIC_OP},   GLenum{GL_SAMPLE_MASK},         GLenum{GL_SAMPLE_COVERAGE},
+      GLenum{GL_SAMPLE_SHADING},   GLenum{GL_CLIP_DISTANCE0},      GLenum{GL_CLIP_DISTANCE1},
+      GLenum{GL_CLIP_DISTANCE2},   GLenum{GL_CLIP_DISTANCE3},      GLenum{GL_CLIP_DISTANCE4},
+      GLenum{GL_CLIP_DISTANCE5},   GLenum{GL_CLIP_DISTANCE6},      GLenum{GL_CLIP_DISTANCE7},
+      GLenum{GL_STENCIL_TEST},     GLenum{GL_SAMPLE_ALPHA_TO_ONE}, GLenum{GL_SAMPLE_ALPHA_TO_COVERAGE},
+      GLenum{GL_PRIMITIVE_RESTART}}; // which some drivers heed without indices, too
 
  private:
   struct Stencil {

@@ -18,14 +18,6 @@ Specialization constantsOf(const TargetInfo& info) {
   return constants;
 }
 
-FragmentResolve fragmentKind(const DeviceLimits& limits, const TargetInfo& info) {
-  const bool dual = limits.dualSourceBlending;
-  if (info.samples == 1) return dual ? FragmentResolve::SingleDual : FragmentResolve::Single;
-  if (info.perPixel()) return FragmentResolve::PerPixel;
-  if (info.testsDepth()) return dual ? FragmentResolve::PerSampleDualDepth : FragmentResolve::PerSampleDepth;
-  return dual ? FragmentResolve::PerSampleDual : FragmentResolve::PerSample;
-}
-
 VkResult findComputePipeline(VitrailVkTarget_T& target, const Pass& pass, VkPipeline* pipeline) {
   const DeviceLimits& limits = target.context->limits;
   const bool byCompute = target.info.resolve == VITRAIL_RESOLVE_COMPUTE;
@@ -49,7 +41,8 @@ VkResult findComputePipeline(VitrailVkTarget_T& target, const Pass& pass, VkPipe
 VkResult makeFragmentPipeline(VitrailVkTarget_T& target, const Pass& pass, VkPipeline* pipeline) {
   const DeviceLimits& limits = target.context->limits;
   FragmentInfo info;
-  info.resolve = pass.action == Action::DrawPlain ? FragmentResolve::Plain : fragmentKind(limits, target.info);
+  info.resolve = pass.action == Action::DrawPlain ? FragmentResolve::Plain
+                                                  : fragmentResolve(target.info, limits.dualSourceBlending);
   info.byAddress = limits.poolByAddress;
   info.networks = limits.networks;
   info.constants = target.constants;

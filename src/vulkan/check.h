@@ -2,6 +2,7 @@
 #pragma once
 
 #include "context.h"
+#include "core/structures.h"
 #include "core/target_rules.h"
 #include "vitrail/vulkan.h"
 
@@ -9,14 +10,6 @@ namespace vitrail {
 
 // Refuses, with a log line, a descriptor whose `next` is not null.
 VkResult checkNext(const Log& log, const void* next, const char* structure);
-
-// Zeroes a structure that the library fills in; its `next` is the host's.
-template <class Structure>
-void clearKeepingNext(Structure& structure) {
-  void* next = structure.next;
-  structure = {};
-  structure.next = next;
-}
 
 // For a call whose argument is null.
 VkResult nullArgument(const VitrailVkContext_T* context, const char* call);

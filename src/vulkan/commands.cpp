@@ -1,6 +1,7 @@
 // The recording calls.
 #include "check.h"
 #include "convert.h"
+#include "core/frame_start.h"
 #include "record.h"
 
 namespace vitrail {
@@ -33,15 +34,8 @@ bool nextIsNull(VitrailVkTarget target, const void* next, const char* structure)
 
 // Starts the frame on the host's side: its number, its memory, its area.
 void beginFrame(VitrailVkTarget_T& target, const VitrailVkBeginInfo& info, bool open) {
-  // Begun over an open one, what it has may be what the host meant for that one; the same number says otherwise.
-  if (open && (info.frame == 0 || info.frame != target.frames.newest())) target.order.setMisused();
-  if (target.frames.any() && info.frame != 0 && info.frame < target.frames.newest()) {
-    target.context->log.warn("frame %llu is begun after frame %llu: frame numbers rise",
-                             static_cast<unsigned long long>(info.frame),
-                             static_cast<unsigned long long>(target.frames.newest()));
-    target.growth.forget(); // what was read of later frames is no news any more
-  }
-  if (target.frames.begin(info.frame, open)) { // a second time: the first one was never submitted
+  if (startFrame(target.frames, target.order, target.growth, target.context->log, info.frame,
+                 open)) { // a second time: the first one was never submitted
     for (Storage& storage : target.retired) storage.use.drop(target.frames.begun());
   }
   target.storage.use.add(target.frames.begun());
@@ -60,37 +54,6 @@ std::uint32_t viewOf(VitrailVkTarget_T& target, const VitrailVkResolveInfo* info
   target.context->log.warn("view %u is resolved, the target has %u: view 0 is taken", view, target.storage.viewCount);
   target.order.setMisused();
   return 0;
-}
-
-// Whether that can be copied; logs why not.
-bool canCopy(const VitrailVkTarget_T& target, const VitrailVkCopyInfo& info) {
-  const Log& log = target.context->log;
-  const VkRect2D& copied = info.area;
-  const std::uint64_t pixels = std::uint64_t{copied.extent.width} * copied.extent.height;
-  const VitrailRect& area = target.area;
-  const bool inside = pixels != 0 && copied.offset.x >= static_cast<std::int64_t>(area.x) &&
-                      copied.offset.y >= static_cast<std::int64_t>(area.y) &&
-                      copied.offset.x + std::int64_t{copied.extent.width} <= std::int64_t{area.x} + area.width &&
-                      copied.offset.y + std::int64_t{copied.extent.height} <= std::int64_t{area.y} + area.height;
-  if (target.info.copyLayers == 0) {
-    log.error("vitrailVkCmdCopyLists: the target was made without copyLayers");
-  } else if (!inside) {
-    log.error("vitrailVkCmdCopyLists: %ux%u pixels at %d,%d are not inside the frame's area, %ux%u at %u,%u",
-              copied.extent.width, copied.extent.height, copied.offset.x, copied.offset.y, area.width, area.height,
-              area.x, area.y);
-  } else if (pixels > target.info.copyLayers) {
-    log.error("vitrailVkCmdCopyLists: %llu pixels; copyLayers %u is the most", static_cast<unsigned long long>(pixels),
-              target.info.copyLayers);
-  } else if (info.buffer == VK_NULL_HANDLE || info.offset % 4 != 0) {
-    log.error("vitrailVkCmdCopyLists needs a buffer, and an offset that is a multiple of 4");
-  } else if (info.size < copyBytes(pixels, target.info.copyLayers)) {
-    log.error("vitrailVkCmdCopyLists: size %llu; %llu bytes are written, as vitrailVkCopySize says",
-              static_cast<unsigned long long>(info.size),
-              static_cast<unsigned long long>(copyBytes(pixels, target.info.copyLayers)));
-  } else {
-    return true;
-  }
-  return false;
 }
 
 } // namespace
@@ -129,7 +92,12 @@ extern "C" void vitrailVkCmdCopyLists(VkCommandBuffer commandBuffer, VitrailVkTa
     return target->order.setMisused();
   }
   if (!nextIsNull(target, info->next, "VitrailVkCopyInfo")) return;
-  if (!canCopy(*target, *info)) return target->order.setMisused(); // what is in the host's buffer is of another frame
+  const VkRect2D& copied = info->area;
+  const CopyRequest request{
+      copied.offset.x, copied.offset.y, copied.extent.width, copied.extent.height, info->buffer != VK_NULL_HANDLE,
+      info->offset,    info->size,      "vitrailVkCopySize"};
+  if (!canCopy(target->context->log, kPrefix, target->info, target->area, request))
+    return target->order.setMisused(); // what is in the host's buffer is of another frame
   CallInfo call;
   call.copied = {static_cast<std::uint32_t>(info->area.offset.x), static_cast<std::uint32_t>(info->area.offset.y),
                  info->area.extent.width, info->area.extent.height};

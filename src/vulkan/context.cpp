@@ -6,6 +6,7 @@
 #include <new>
 
 #include "check.h"
+#include "convert.h"
 #include "core/target_rules.h"
 #include "vitrail/bindings.h"
 
@@ -254,18 +255,5 @@ extern "C" VkResult vitrailVkTileLimits(VitrailVkContext context, VitrailNodeFor
   using namespace vitrail;
   if (limits != nullptr) clearKeepingNext(*limits);
   if (context == nullptr || limits == nullptr) return nullArgument(context, "vitrailVkTileLimits");
-  const DeviceLimits& device = context->limits;
-  if (nodeBytes(format) == 0) {
-    return context->log.fail(VK_ERROR_INITIALIZATION_FAILED, "nodeFormat %d is none of VitrailNodeFormat", format);
-  }
-  limits->memoryBytes = std::min(device.allocationSize, device.heapSize);
-  limits->alignment = device.alignment;
-  limits->nodeCapacity = maxNodeCapacity(device, format, samples, false);
-  limits->areaPixels = static_cast<std::uint32_t>(
-      std::min<std::uint64_t>(device.storageBufferRange / sizeof(layout::uint), 0xffffffffU));
-  if (limits->nodeCapacity == 0) {
-    return context->log.fail(VK_ERROR_FORMAT_NOT_SUPPORTED, "nodeFormat %d has no nodes at %d samples", format,
-                             static_cast<int>(samples));
-  }
-  return VK_SUCCESS;
+  return toVk(tileLimits(context->limits, context->log, format, samples, *limits));
 }

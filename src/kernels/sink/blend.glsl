@@ -68,9 +68,14 @@ void vitrailAddTail(inout VitrailSink sink, uvec4 key) {
   VITRAIL_EACH_SAMPLE(VITRAIL_ADD)
 }
 
-// Puts the tail behind what is there.
+// Puts the tail behind what is there. By a copy: NVIDIA's compiler of GLSL (580, for OpenGL) loses what is written
+// through two references into one structure here.
 void vitrailBlendTail(inout VitrailSink sink) {
-#define VITRAIL_BLEND_TAIL(s) vitrailCompose(sink.pairs[s], vitrailPairOfSums(sink.tails[s]));
+#define VITRAIL_BLEND_TAIL(s) { \
+  VitrailPair blended = sink.pairs[s]; \
+  vitrailCompose(blended, vitrailPairOfSums(sink.tails[s])); \
+  sink.pairs[s] = blended; \
+}
   VITRAIL_EACH_SAMPLE(VITRAIL_BLEND_TAIL)
 }
 

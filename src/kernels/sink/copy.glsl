@@ -17,8 +17,8 @@ struct VitrailSink {
 };
 
 // Where this invocation's list goes: its first layer, and how many there is room for.
-uint copyFirst;
-uint copyCount;
+uint copyFirst = 0u; // Mesa warns of what it cannot see set
+uint copyCount = 0u;
 
 VitrailSink vitrailBegin() { return VitrailSink(0u, true); }
 

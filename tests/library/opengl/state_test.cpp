@@ -113,12 +113,13 @@ bool isOnByDefault(GLenum name) { return name == GL_MULTISAMPLE || name == GL_DI
 constexpr GLuint kBuffers = 8; // binding points of uniform and storage buffers
 constexpr GLuint kUnits = 4;   // of textures and of images
 constexpr GLuint kPlanes = 3;  // draw buffers and viewports
+constexpr GLuint kNoIndex = 99;
 
 class Taker {
  public:
   Snapshot take() {
-    for (const Name& one : kValues) {
-      std::vector<double>& values = at(one.text, 0, 4);
+    for (const Name& one : kValues) { // not as index 0: some have indexed values of the same name
+      std::vector<double>& values = at(one.text, kNoIndex, 4);
       glGetDoublev(one.name, values.data());
     }
     for (const Name& one : kSwitches) at(one.text, 0, 1)[0] = glIsEnabled(one.name);
@@ -348,7 +349,8 @@ class Hostile {
     constexpr std::array kTargets = {GL_UNIFORM_BUFFER,   GL_SHADER_STORAGE_BUFFER, GL_DRAW_INDIRECT_BUFFER,
                                      GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER,     GL_DISPATCH_INDIRECT_BUFFER,
                                      GL_ARRAY_BUFFER,     GL_PIXEL_UNPACK_BUFFER};
-    for (std::size_t i = 0; i < kTargets.size(); ++i) glBindBuffer(kTargets[i], buffers_[i]);
+    for (std::size_t i = 0; i < kTargets.size(); ++i)
+      glBindBuffer(kTargets[i], buffers_[7 - i]); // not those of index 0
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffers_[6]);
     glBindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, buffers_[5]);
     glBindRenderbuffer(GL_RENDERBUFFER, renderbuffer_);
