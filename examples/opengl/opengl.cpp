@@ -75,7 +75,6 @@ void main() {
   vitrailCollect(vec4(reflectance * sky, reflectance), VITRAIL_PREMULTIPLIED);
 }
 )";
-
 void check(bool well, const std::string& what) {
   if (!well) throw std::runtime_error(what);
 }
@@ -84,7 +83,8 @@ void check(bool well, const std::string& what) {
 void openContext() {
   EGLDeviceEXT device = nullptr;
   EGLint devices = 0;
-  check(eglQueryDevicesEXT(1, &device, &devices) == EGL_TRUE && devices > 0, "EGL has no device");
+  const bool lists = epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration");
+  check(lists && eglQueryDevicesEXT(1, &device, &devices) == EGL_TRUE && devices > 0, "EGL has no device");
   EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
   check(eglInitialize(display, nullptr, nullptr) == EGL_TRUE && eglBindAPI(EGL_OPENGL_API) == EGL_TRUE,
         "EGL has no OpenGL");
@@ -167,7 +167,7 @@ void draw(const char* path) {
   const std::string vertex = std::string(kVersion) + kScene + kVertex;
   const GLuint floor = createProgram(vertex, std::string(kVersion) + kScene + kFloor);
   const GLuint glass = createProgram(vertex, std::string(kVersion) + vitrailGlCollectSource(context) + kScene + kGlass);
-  GLuint framebuffer = 0, vertices = 0;
+  GLuint framebuffer = 0, vertices = 0; // the panes have no vertices of their own
   glGenFramebuffers(1, &framebuffer);
   glGenVertexArrays(1, &vertices);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);

@@ -27,7 +27,6 @@ GLbitfield bitsOf(const Barriers& barriers) {
     if ((after & (kAccessShaderRead | kAccessShaderWrite)) != 0) {
       bits |= picture ? GL_SHADER_IMAGE_ACCESS_BARRIER_BIT : GL_SHADER_STORAGE_BARRIER_BIT;
     }
-    if ((after & kAccessUniformRead) != 0) bits |= GL_UNIFORM_BARRIER_BIT;
     if ((after & kAccessIndirectRead) != 0) bits |= GL_COMMAND_BARRIER_BIT;
     if ((after & (kAccessTransferRead | kAccessTransferWrite)) != 0) bits |= GL_BUFFER_UPDATE_BARRIER_BIT;
   }

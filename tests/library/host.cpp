@@ -11,6 +11,18 @@ FloatColor behindAt(const HostDesc& desc, std::uint32_t sample) {
   return desc.behindSamples.empty() ? desc.behind : desc.behindSamples.at(sample);
 }
 
+StorageLayout layoutOf(const HostDesc& desc, std::uint64_t alignment) {
+  StorageNeeds parts;
+  parts.areaPixels = desc.width * desc.height;
+  parts.nodeCapacity = desc.capacity;
+  parts.format = desc.nodes;
+  parts.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
+  parts.userWords = desc.userWords;
+  parts.copyLayers = desc.copyLayers;
+  parts.alignment = alignment;
+  return layoutStorage(parts);
+}
+
 void scatterNodes(const HostDesc& desc, const StorageLayout& storage, std::span<std::byte> memory) {
   if (desc.nodes != VITRAIL_NODE_STANDARD || desc.samples != 1) {
     throw std::logic_error("scatterNodes: knows standard nodes at one sample only");

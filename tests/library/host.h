@@ -161,6 +161,9 @@ class PointHost {
   [[nodiscard]] virtual std::optional<VitrailStats> stats(std::uint64_t frame) const = 0;
 };
 
+// Where everything lies in the memory of such a host's target.
+StorageLayout layoutOf(const HostDesc& desc, std::uint64_t alignment);
+
 // Moves every node of a frame that has been collected to another place of its pool, in a copy of the target's memory.
 // For `standard` nodes at one sample.
 void scatterNodes(const HostDesc& desc, const StorageLayout& storage, std::span<std::byte> memory);

@@ -5,9 +5,17 @@
 
 #include <volk.h>
 
+#include <vitrail/tiles.h>
+
 #include "surfaces.h"
 
 namespace vitrail::tool {
+
+// The boxes of the transparent surfaces as the library takes them, seen with the surfaces' view.
+std::vector<VitrailBounds> clipBoxesOf(const Surfaces& surfaces);
+
+// Whether the draw is of points, which reach beyond their box: it is around their middles.
+bool drawsPoints(const GpuDraw& draw);
 
 class TileRuns {
  public:
@@ -15,23 +23,12 @@ class TileRuns {
   TileRuns(const Surfaces& surfaces, VkExtent2D extent);
 
   // Parts of the transparent draws, in the order of submission, without the instances whose boxes do not touch the
-  // area. It is conservative: whatever changes a pixel of the area is there.
+  // area. It is conservative, as vitrailProjectBounds() is: whatever changes a pixel of the area is there.
   std::vector<SurfaceRun> touching(const VkRect2D& area) const;
 
  private:
-  // Pixels, not clipped to the picture.
-  struct Extent {
-    double left = 0.0;
-    double right = 0.0;
-    double top = 0.0;
-    double bottom = 0.0;
-  };
-
-  Extent project(const PlacedBox& box, const glm::dmat4& clipFromWorld, double margin) const;
-
-  VkExtent2D picture_;
-  std::vector<SurfaceRun> runs_; // with one box each, the instances of a draw one by one where they have boxes
-  std::vector<Extent> extents_;  // of each
+  std::vector<SurfaceRun> runs_;   // with one box each, the instances of a draw one by one where they have boxes
+  std::vector<VitrailRect> areas_; // that each can reach
 };
 
 } // namespace vitrail::tool

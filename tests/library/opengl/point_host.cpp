@@ -309,15 +309,7 @@ void OpenGlHost::guard(VitrailGlTargetDesc& desc) {
   memory_ = makeBuffer(needs.size + 2 * guardBytes_);
   const std::vector<std::uint32_t> words((needs.size + 2 * guardBytes_) / sizeof(std::uint32_t), kGuard);
   glBufferSubData(GL_COPY_WRITE_BUFFER, 0, static_cast<GLsizeiptr>(words.size() * sizeof(std::uint32_t)), words.data());
-  StorageNeeds parts;
-  parts.areaPixels = desc.width * desc.height;
-  parts.nodeCapacity = desc.nodeCapacity;
-  parts.format = desc.nodeFormat;
-  parts.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
-  parts.userWords = desc_.userWords;
-  parts.copyLayers = desc_.copyLayers;
-  parts.alignment = needs.alignment;
-  storage_ = layoutStorage(parts);
+  storage_ = layoutOf(desc_, needs.alignment);
   desc.buffer = memory_;
   desc.bufferOffset = guardBytes_;
   desc.bufferSize = needs.size;

@@ -138,15 +138,7 @@ void VulkanHost::guard(VitrailVkTargetDesc& desc) {
     // Writer: the fill. Readers and writers: the library, first its clears.
     cmdBarrier(commands, kTransferWrite, kTransferWrite);
   });
-  StorageNeeds parts;
-  parts.areaPixels = desc.extent.width * desc.extent.height;
-  parts.nodeCapacity = desc.nodeCapacity;
-  parts.format = desc.nodeFormat;
-  parts.keepSums = desc.overflow == VITRAIL_OVERFLOW_APPROXIMATE;
-  parts.userWords = desc_.userWords;
-  parts.copyLayers = desc_.copyLayers;
-  parts.alignment = needs.alignment;
-  storage_ = layoutStorage(parts);
+  storage_ = layoutOf(desc_, needs.alignment);
   desc.buffer = memory_.get();
   desc.bufferOffset = guardBytes_;
   desc.bufferSize = needs.size;

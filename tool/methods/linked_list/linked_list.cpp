@@ -4,7 +4,6 @@
 // lets it grow, within the budget. A picture that does not fit into it, or by default into what the device can hold, is
 // drawn in tiles.
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -63,28 +62,6 @@ VkResult resultOf(VitrailResult result) {
 }
 
 std::uint64_t pixelsOf(VkExtent2D extent) { return std::uint64_t{extent.width} * extent.height; }
-
-// The boxes of the transparent surfaces as the library takes them, seen with the frame's view.
-std::vector<VitrailBounds> boxesOf(const Surfaces& surfaces) {
-  std::vector<VitrailBounds> result;
-  result.reserve(surfaces.scene().transparentBoxes().size());
-  for (const PlacedBox& placed : surfaces.scene().transparentBoxes()) {
-    const glm::mat4 clip(glm::dmat4(surfaces.view().viewProjection) * glm::dmat4(placed.model));
-    VitrailBounds bounds{};
-    std::memcpy(bounds.min, &placed.box.min, sizeof(bounds.min));
-    std::memcpy(bounds.max, &placed.box.max, sizeof(bounds.max));
-    std::memcpy(bounds.clipFromBox, &clip, sizeof(bounds.clipFromBox));
-    result.push_back(bounds);
-  }
-  return result;
-}
-
-// Points reach beyond the boxes, which are around their middles.
-bool hasPoints(const Surfaces& surfaces) {
-  return std::ranges::any_of(surfaces.scene().transparentDraws(), [](const GpuDraw& draw) {
-    return (draw.features & shaders::FEATURE_SOLID) == shaders::FEATURE_POINTS;
-  });
-}
 
 std::span<const std::uint32_t> collectCode(bool media, bool coverage, bool address) {
   if (media && coverage && address) return shaders::collect_media_coverage_address_frag;
@@ -387,7 +364,7 @@ void LinkedList::draw(Frame& frame) {
 // Every tile is waited for: what it reports decides whether its parts come next.
 void LinkedList::drawTiles(Frame& frame) {
   frame.submitAndWait(); // the opaque scene
-  planTiles(boxesOf(source_));
+  planTiles(clipBoxesOf(source_));
   const TileRuns runs(source_, wanted_.extent);
   VitrailRect tile{};
   while (plan_ && plan_.next(tile)) {
@@ -443,7 +420,7 @@ std::uint64_t LinkedList::wordsOf(std::uint64_t bytes) const {
 
 void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
   plan_ = TilePlan();
-  const bool everyPixel = writesEveryPixel() || hasPoints(source_);
+  const bool everyPixel = writesEveryPixel() || std::ranges::any_of(source_.scene().transparentDraws(), drawsPoints);
   if (bounds.empty() && !everyPixel) return; // nothing to draw
   VitrailTilePlanDesc desc{};
   desc.width = wanted_.extent.width;
