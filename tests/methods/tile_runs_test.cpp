@@ -29,7 +29,7 @@ void addInstances(Scene& scene, const std::vector<glm::vec3>& places) {
 }
 
 // How often the instances of a scene are drawn in an area, by the runs that reach it.
-std::uint32_t drawnIn(const TileRuns& runs, const VkRect2D& area) {
+std::uint32_t drawnIn(const TileRuns& runs, const VitrailRect& area) {
   std::uint32_t count = 0;
   for (const SurfaceRun& run : runs.touching(area)) count += run.instanceCount;
   return count;
@@ -37,10 +37,11 @@ std::uint32_t drawnIn(const TileRuns& runs, const VkRect2D& area) {
 
 class TileRunsTest : public GpuTest {
  protected:
-  TileRuns runsOf(const Scene& scene, const View& view) {
-    surfaces_.emplace(gpu(), scene, std::nullopt, DrawOrder::Forward);
-    surfaces_->setView(makeFrameData(view, kTiledSide, kTiledSide, surfaces_->scene().origin()));
-    return TileRuns(*surfaces_, {kTiledSide, kTiledSide});
+  static TileRuns runsOf(const Scene& scene, const View& view) {
+    const SceneDraws draws(scene, std::nullopt, DrawOrder::Forward, UINT32_MAX);
+    SurfaceList surfaces(draws, scene, 0);
+    surfaces.setView(makeFrameData(view, kTiledSide, kTiledSide, draws.origin()));
+    return TileRuns(surfaces, kTiledSide, kTiledSide);
   }
 
   // In tiles of few pixels: the same bits, whatever the order.
@@ -60,26 +61,23 @@ class TileRunsTest : public GpuTest {
       }
     }
   }
-
- private:
-  std::optional<Surfaces> surfaces_;
 };
 
 TEST_F(TileRunsTest, InstancesAreDrawnWhereTheyAre) {
   Scene scene;
   addInstances(scene, {{-0.5F, 0.5F, 0.0F}, {0.5F, 0.5F, 0.0F}, {-0.5F, -0.5F, 0.0F}, {0.6F, 0.5F, 0.0F}});
   const TileRuns runs = runsOf(scene, straightView());
-  EXPECT_EQ(drawnIn(runs, {{0, 0}, {kTiledSide, kTiledSide}}), 4U);
-  EXPECT_EQ(runs.touching({{0, 0}, {kTiledSide, kTiledSide}}).size(), 1U)
+  EXPECT_EQ(drawnIn(runs, {0, 0, kTiledSide, kTiledSide}), 4U);
+  EXPECT_EQ(runs.touching({0, 0, kTiledSide, kTiledSide}).size(), 1U)
       << "instances that follow each other are one run";
-  EXPECT_EQ(drawnIn(runs, {{0, 0}, {50, 50}}), 1U) << "upper left";
-  EXPECT_EQ(drawnIn(runs, {{50, 0}, {50, 50}}), 2U) << "upper right";
-  EXPECT_EQ(runs.touching({{50, 0}, {50, 50}}).size(), 2U) << "they do not follow each other";
-  EXPECT_EQ(drawnIn(runs, {{0, 50}, {50, 50}}), 1U) << "lower left";
-  EXPECT_EQ(drawnIn(runs, {{50, 50}, {50, 50}}), 0U) << "lower right";
+  EXPECT_EQ(drawnIn(runs, {0, 0, 50, 50}), 1U) << "upper left";
+  EXPECT_EQ(drawnIn(runs, {50, 0, 50, 50}), 2U) << "upper right";
+  EXPECT_EQ(runs.touching({50, 0, 50, 50}).size(), 2U) << "they do not follow each other";
+  EXPECT_EQ(drawnIn(runs, {0, 50, 50, 50}), 1U) << "lower left";
+  EXPECT_EQ(drawnIn(runs, {50, 50, 50, 50}), 0U) << "lower right";
   // The first square has the pixels 20 to 29 of both axes.
-  EXPECT_EQ(drawnIn(runs, {{0, 0}, {20, 20}}), 1U) << "a tile that it touches";
-  EXPECT_EQ(drawnIn(runs, {{0, 0}, {15, 15}}), 0U);
+  EXPECT_EQ(drawnIn(runs, {0, 0, 20, 20}), 1U) << "a tile that it touches";
+  EXPECT_EQ(drawnIn(runs, {0, 0, 15, 15}), 0U);
 }
 
 TEST_F(TileRunsTest, WhatReachesBehindTheEyeIsDrawnInEveryTile) {
@@ -88,8 +86,8 @@ TEST_F(TileRunsTest, WhatReachesBehindTheEyeIsDrawnInEveryTile) {
   scene.draws[0].transform = glm::mat4(1.0F);
   scene.draws[0].transform[0] = glm::vec4(0.0F, 0.0F, 50.0F, 0.0F); // its plane holds the view's axis
   const TileRuns runs = runsOf(scene, reference::wideView());
-  EXPECT_EQ(drawnIn(runs, {{0, 0}, {1, 1}}), 1U);
-  EXPECT_EQ(drawnIn(runs, {{99, 99}, {1, 1}}), 1U);
+  EXPECT_EQ(drawnIn(runs, {0, 0, 1, 1}), 1U);
+  EXPECT_EQ(drawnIn(runs, {99, 99, 1, 1}), 1U);
 }
 
 TEST_F(TileRunsTest, ScenesOfManyObjectsAreTheSameInEveryOrder) {

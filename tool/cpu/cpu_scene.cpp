@@ -16,6 +16,7 @@
 #include "../stage/light_data.h"
 #include "../stage/material_data.h"
 #include "../stage/placement.h"
+#include "../stage/texels.h"
 #include "brightest.h"
 #include "cpu_texture.h"
 #include "shade.h"
@@ -23,12 +24,6 @@
 namespace vitrail::tool {
 
 namespace {
-
-std::vector<std::uint32_t> drawnMaterials(const Scene& scene) {
-  std::set<std::uint32_t> used;
-  for (const Draw& draw : scene.draws) used.insert(draw.material);
-  return {used.begin(), used.end()};
-}
 
 std::vector<std::string> volumeWarnings(const Scene& scene) {
   const Solids solids(scene, false);
@@ -143,7 +138,7 @@ CpuScene::Impl::Impl(const Scene& scene, std::optional<float> opacity, DrawOrder
                      VitrailCpuInstructions instructions, Scene* released)
     : origin_(drawnOrigin(scene)),
       warnings_(volumeWarnings(scene)),
-      textures_(scene, drawnMaterials(scene), nullptr),
+      textures_(scene, usedMaterials(scene), nullptr),
       frame_(makeShadeFrame({}, makeLightData(scene, origin_))) {
   listGroups(scene, opacity, order);
   takeMeshes(scene, order, released);

@@ -165,21 +165,13 @@ CpuTexture makeCpuTexture(const Image& image, Texels kind) {
   return texture;
 }
 
-CpuTextures::CpuTextures(const Scene& scene, const std::vector<std::uint32_t>& used, Scene* released) {
-  std::map<std::int32_t, bool> translucent; // by image
+CpuTextures::CpuTextures(const Scene& scene, const std::vector<std::uint32_t>& used, Scene* released)
+    : premultiplied_(premultipliedMaterials(scene, used)) {
   for (const std::uint32_t material : used) {
     const Material& source = scene.materials.at(material);
-    const TextureSlot& base = source.baseColorTexture;
-    bool premultiplied = source.alphaMode != AlphaMode::Opaque && isFilled(scene, base);
-    if (premultiplied) {
-      const auto [known, isNew] = translucent.try_emplace(base.image, false);
-      if (isNew) known->second = isTranslucent(scene.images.at(static_cast<std::size_t>(base.image)));
-      premultiplied = known->second;
-    }
-    premultiplied_[material] = premultiplied;
     const auto slots = slotsOf(source);
     for (std::uint32_t i = 0; i < shaders::SLOT_COUNT; ++i) {
-      if (isFilled(scene, *slots.at(i))) textures_[{slots.at(i)->image, texelsOf(source, i, premultiplied)}];
+      if (isFilled(scene, *slots.at(i))) textures_[{slots.at(i)->image, texelsOf(source, i, isPremultiplied(material))}];
     }
   }
   std::vector<std::pair<const Key, CpuTexture>*> todo;
@@ -202,7 +194,7 @@ CpuSlots CpuTextures::slots(const Scene& scene, std::uint32_t material, std::uin
   for (std::uint32_t i = 0; i < shaders::SLOT_COUNT; ++i) {
     if ((features & 1U << i) == 0) continue;
     const TextureSlot& slot = *slots.at(i);
-    result.at(i) = {&textures_.at({slot.image, texelsOf(source, i, premultiplied_.at(material))}), slot.sampler};
+    result.at(i) = {&textures_.at({slot.image, texelsOf(source, i, isPremultiplied(material))}), slot.sampler};
   }
   return result;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -50,7 +51,7 @@ class CpuTextures {
   CpuTextures& operator=(const CpuTextures&) = delete;
 
   // Whether the base colour texture of a material that was named in `used` is premultiplied.
-  bool isPremultiplied(std::uint32_t material) const { return premultiplied_.at(material); }
+  bool isPremultiplied(std::uint32_t material) const { return premultiplied_.contains(material); }
 
   // The slots of such a material that are set in `features` (surface_shared.h). They last as long as this.
   CpuSlots slots(const Scene& scene, std::uint32_t material, std::uint32_t features) const;
@@ -59,7 +60,7 @@ class CpuTextures {
   using Key = std::pair<std::int32_t, Texels>; // an image and how it is kept
 
   std::map<Key, CpuTexture> textures_;
-  std::map<std::uint32_t, bool> premultiplied_; // by material
+  std::set<std::uint32_t> premultiplied_; // materials
 };
 
 } // namespace vitrail::tool

@@ -3,21 +3,15 @@
 
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <volk.h>
 
 #include "features.h"
+#include "gpu_error.h"
 
 namespace vitrail::tool {
-
-// A device, driver or memory that cannot do what was asked, the processor too: what() is one line that says what and
-// what to do.
-struct GpuError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 // What `vitrail info` shows of a device.
 struct DeviceSummary {

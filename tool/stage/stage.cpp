@@ -98,7 +98,7 @@ void Stage::drawOpaque(Frame& frame, const Background& background) {
   VkCommandBuffer commands = frame.commands();
   cmdBegin(commands, background);
   const std::vector<GpuDraw>& draws = surfaces_.scene().opaqueDraws();
-  surfaces_.cmdDraw(commands, draws, Surfaces::runsOf(draws), opaque_->surfaces);
+  surfaces_.cmdDraw(commands, draws, runsOf(draws), opaque_->surfaces);
   vkCmdEndRendering(commands);
   frame.endPass("opaque");
 }

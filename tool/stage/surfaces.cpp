@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "placement.h"
 #include "shaders/surface.vert.h"
 #include "shaders/surface_clipped.vert.h"
 
@@ -27,17 +26,7 @@ VkPrimitiveTopology topologyOf(std::uint32_t features) {
   return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
 }
 
-// The scene's clip planes in the GPU's space, filled up with planes that keep everything.
-void setClipPlanes(const Scene& scene, const glm::dvec3& origin, shaders::FrameData& view) {
-  for (std::size_t i = 0; i < shaders::CLIP_PLANE_COUNT; ++i) {
-    view.clipPlanes[i] = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
-    if (i >= scene.clipPlanes.size()) continue;
-    view.clipPlanes[i] = placedClipPlane(scene.clipPlanes[i], origin);
-  }
-}
-
 void checkClipPlanes(const Gpu& gpu, const Scene& scene) {
-  static_assert(kMostClipPlanes == shaders::CLIP_PLANE_COUNT);
   if (scene.clipPlanes.empty() || gpu.features().clipPlanes >= shaders::CLIP_PLANE_COUNT) return;
   throw GpuError(
       fmt::format("{} cannot cut a model: it lacks clip distances (see --clip-plane)", gpu.properties().deviceName));
@@ -57,7 +46,7 @@ SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const Gpu
   for (const GpuDraw& draw : draws) {
     if (pipelines_.contains(draw.features)) continue;
     GraphicsPipelineInfo info;
-    info.vertexShader = surfaces.isClipped() ? std::span<const std::uint32_t>(shaders::surface_clipped_vert)
+    info.vertexShader = surfaces.list().isClipped() ? std::span<const std::uint32_t>(shaders::surface_clipped_vert)
                                              : std::span<const std::uint32_t>(shaders::surface_vert);
     info.vertices = surfaceVertexLayout();
     info.topology = topologyOf(draw.features);
@@ -75,8 +64,7 @@ Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
     : gpu_(gpu),
       scene_(gpu, scene, opacity, order, released),
       pointSize_(drawnPointSize(gpu, scene.pointSize)),
-      transparentRuns_(runsOf(scene_.transparentDraws())),
-      isClipped_(!scene.clipPlanes.empty()),
+      list_(scene_, scene, scene_.lightCount()),
       viewBuffer_(gpu, sizeof(shaders::FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::Upload,
                   "frame data"),
       frameSet_(gpu,
@@ -85,28 +73,14 @@ Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
                  {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_FRAGMENT_BIT}},
                 "frame") {
   checkClipPlanes(gpu, scene);
-  setClipPlanes(scene, scene_.origin(), view_);
   frameSet_.writeBuffer(0, viewBuffer_.get(), viewBuffer_.size());
   frameSet_.writeBuffer(1, scene_.materials().get(), sizeof(shaders::MaterialData));
   frameSet_.writeBuffer(2, scene_.lights().get(), scene_.lights().size());
 }
 
-std::vector<SurfaceRun> Surfaces::runsOf(std::span<const GpuDraw> draws) {
-  std::vector<SurfaceRun> runs;
-  runs.reserve(draws.size());
-  for (std::uint32_t i = 0; i < draws.size(); ++i) {
-    const GpuDraw& draw = draws[i];
-    runs.push_back({i, draw.firstIndex, draw.indexCount, draw.firstInstance, draw.instanceCount});
-  }
-  return runs;
-}
-
 void Surfaces::setView(const shaders::FrameData& view) {
-  const shaders::FrameData last = view_;
-  view_ = view;
-  view_.toLight.w = static_cast<float>(scene_.lightCount());
-  std::ranges::copy(last.clipPlanes, view_.clipPlanes);
-  std::memcpy(viewBuffer_.mapped(), &view_, sizeof(view_));
+  list_.setView(view);
+  std::memcpy(viewBuffer_.mapped(), &list_.view(), sizeof(view));
 }
 
 void Surfaces::cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout) const {
@@ -144,14 +118,19 @@ void Surfaces::cmdDraw(VkCommandBuffer commands, std::span<const GpuDraw> draws,
 // Binds what a draw reads; of what `before`, if anything, has bound, what differs.
 void Surfaces::cmdBind(VkCommandBuffer commands, VkPipelineLayout layout, const GpuDraw& draw,
                        const GpuDraw* before) const {
-  if (before == nullptr || before->materialOffset != draw.materialOffset) {
-    const std::array<VkDescriptorSet, 2> sets{frameSet_.set(), draw.textures};
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 2, sets.data(), 1,
-                            &draw.materialOffset);
+  if (before == nullptr || before->material != draw.material) {
+    const std::array<VkDescriptorSet, 2> sets{frameSet_.set(), scene_.textures(draw.material)};
+    const std::uint32_t offset = draw.material * kUniformStride<shaders::MaterialData>;
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 2, sets.data(), 1, &offset);
   }
   if (before == nullptr || before->mesh != draw.mesh) scene_.streams().cmdBind(commands, draw.mesh);
-  if (before == nullptr || before->frontFace != draw.frontFace) vkCmdSetFrontFace(commands, draw.frontFace);
-  if (before == nullptr || before->cullMode != draw.cullMode) vkCmdSetCullMode(commands, draw.cullMode);
+  // A mirror turns the triangles round, and glTF means the side that was outside before.
+  if (before == nullptr || before->mirrored != draw.mirrored) {
+    vkCmdSetFrontFace(commands, draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+  }
+  if (before == nullptr || before->backFaceCulled != draw.backFaceCulled) {
+    vkCmdSetCullMode(commands, draw.backFaceCulled ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE);
+  }
 }
 
 } // namespace vitrail::tool

@@ -13,7 +13,7 @@
 #include "../gpu/descriptors.h"
 #include "../gpu/pipeline.h"
 #include "gpu_scene.h"
-#include "surface_shared.h"
+#include "surface_list.h"
 
 namespace vitrail::tool {
 
@@ -46,15 +46,6 @@ class SurfacePipelines {
   std::map<std::uint32_t, Unique<VkPipeline>> pipelines_;
 };
 
-// A part of a draw: indices and instances of it that are drawn together.
-struct SurfaceRun {
-  std::uint32_t draw = 0; // index into GpuScene's opaque or transparent draws
-  std::uint32_t firstIndex = 0;
-  std::uint32_t indexCount = 0;
-  std::uint32_t firstInstance = 0; // among all instances, as GpuDraw's
-  std::uint32_t instanceCount = 1;
-};
-
 // What a device makes of the wanted size of points, in pixels: it has bounds of its own.
 float drawnPointSize(const Gpu& gpu, float wanted);
 
@@ -66,16 +57,12 @@ class Surfaces {
   Gpu& gpu() const { return gpu_; }
   const GpuScene& scene() const { return scene_; }
   float pointSize() const { return pointSize_; } // in pixels
-  // What draws all of a list of draws, in its order.
-  static std::vector<SurfaceRun> runsOf(std::span<const GpuDraw> draws);
-  const std::vector<SurfaceRun>& transparentRuns() const { return transparentRuns_; }
+  const SurfaceList& list() const { return list_; }
+  const std::vector<SurfaceRun>& transparentRuns() const { return list_.transparentRuns(); }
 
-  // Whether planes cut some of the scene away.
-  bool isClipped() const { return isClipped_; }
-
-  // Its clip planes are the scene's, whatever `view` says. No frame is pending.
+  // As SurfaceList. No frame is pending.
   void setView(const shaders::FrameData& view);
-  const shaders::FrameData& view() const { return view_; }
+  const shaders::FrameData& view() const { return list_.view(); }
 
   VkDescriptorSetLayout frameLayout() const { return frameSet_.layout(); } // set 0
   // Binds set 0 for shaders that read the view alone.
@@ -93,9 +80,7 @@ class Surfaces {
   Gpu& gpu_;
   GpuScene scene_;
   float pointSize_;
-  std::vector<SurfaceRun> transparentRuns_;
-  bool isClipped_;
-  shaders::FrameData view_{};
+  SurfaceList list_;
   GpuBuffer viewBuffer_; // shaders::FrameData
   SingleSet frameSet_;
 };

@@ -1,6 +1,7 @@
 #include "texels.h"
 
 #include <array>
+#include <map>
 
 #include <glm/gtc/packing.hpp>
 
@@ -44,6 +45,26 @@ Texels texelsOf(const Material& material, std::uint32_t slot, bool premultiplied
     default:
       return Texels::Linear;
   }
+}
+
+std::vector<std::uint32_t> usedMaterials(const Scene& scene) {
+  std::set<std::uint32_t> used;
+  for (const Draw& draw : scene.draws) used.insert(draw.material);
+  return {used.begin(), used.end()};
+}
+
+std::set<std::uint32_t> premultipliedMaterials(const Scene& scene, const std::vector<std::uint32_t>& materials) {
+  std::set<std::uint32_t> result;
+  std::map<std::int32_t, bool> translucent; // by image
+  for (const std::uint32_t material : materials) {
+    const Material& source = scene.materials.at(material);
+    const TextureSlot& base = source.baseColorTexture;
+    if (source.alphaMode == AlphaMode::Opaque || !isFilled(scene, base)) continue;
+    const auto [known, isNew] = translucent.try_emplace(base.image, false);
+    if (isNew) known->second = isTranslucent(scene.images.at(static_cast<std::size_t>(base.image)));
+    if (known->second) result.insert(material);
+  }
+  return result;
 }
 
 std::vector<std::uint16_t> premultiply(const Image& image) {

@@ -30,7 +30,7 @@ VkSamplerAddressMode addressMode(Wrap wrap) {
 } // namespace
 
 MaterialTextures::MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& scene,
-                                   const std::vector<std::uint32_t>& used)
+                                   const SceneDraws& draws)
     : gpu_(gpu) {
   GpuImageInfo info;
   info.extent = {1, 1};
@@ -43,15 +43,12 @@ MaterialTextures::MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& sc
 
   std::map<Combination, std::size_t> known;
   std::vector<Combination> combinations;
-  for (const std::uint32_t material : used) {
+  for (const std::uint32_t material : draws.materials()) {
     const Material& source = scene.materials.at(material);
     const auto slots = slotsOf(source);
     Combination combination;
-    if (source.alphaMode != AlphaMode::Opaque && hasAlpha(scene, source.baseColorTexture)) {
-      premultiplied_.insert(material);
-    }
     for (std::uint32_t i = 0; i < shaders::SLOT_COUNT; ++i) {
-      const Texels texels = texelsOf(source, i, isPremultiplied(material));
+      const Texels texels = texelsOf(source, i, draws.isPremultiplied(material));
       combination.at(i) = slotTexture(uploader, scene, *slots.at(i), texels);
     }
     const auto [found, isNew] = known.try_emplace(combination, combinations.size());
@@ -59,13 +56,6 @@ MaterialTextures::MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& sc
     setOfMaterial_[material] = found->second;
   }
   createSets(combinations);
-}
-
-bool MaterialTextures::hasAlpha(const Scene& scene, const TextureSlot& slot) {
-  if (!isFilled(scene, slot)) return false;
-  const auto [known, isNew] = translucent_.try_emplace(slot.image, false);
-  if (isNew) known->second = isTranslucent(scene.images.at(static_cast<std::size_t>(slot.image)));
-  return known->second;
 }
 
 void MaterialTextures::createLayout() {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "../gpu/unique.h"
 #include "../gpu/upload.h"
 #include "../scene/scene.h"
+#include "scene_draws.h"
 #include "surface_shared.h"
 #include "texels.h"
 
@@ -19,18 +19,14 @@ namespace vitrail::tool {
 
 class MaterialTextures {
  public:
-  // Uploads what the materials named in `used` (indices, each once) sample.
-  MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& scene, const std::vector<std::uint32_t>& used);
+  // Uploads what the materials of a scene's draws sample.
+  MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& scene, const SceneDraws& draws);
 
   // A combined image sampler for each slot; the slots that a material leaves empty hold a white texel.
   VkDescriptorSetLayout layout() const { return layout_.get(); }
 
-  // The set of a material that was named in `used`.
+  // The set of a material that the draws have.
   VkDescriptorSet set(std::uint32_t material) const { return sets_.at(setOfMaterial_.at(material)); }
-
-  // Whether the base colour texture of a material that was named in `used` is kept premultiplied: where its alpha
-  // counts and is not 1 everywhere.
-  bool isPremultiplied(std::uint32_t material) const { return premultiplied_.contains(material); }
 
  private:
   using Combination = std::array<std::pair<VkImageView, VkSampler>, shaders::SLOT_COUNT>;
@@ -42,8 +38,6 @@ class MaterialTextures {
   VkImageView view(Uploader& uploader, const Scene& scene, std::uint32_t image, Texels texels);
   VkSampler sampler(const Sampler& sampler);
 
-  bool hasAlpha(const Scene& scene, const TextureSlot& slot);
-
   Gpu& gpu_;
   std::map<std::pair<std::uint32_t, Texels>, GpuImage> images_; // by number
   GpuImage white_;
@@ -52,8 +46,6 @@ class MaterialTextures {
   Unique<VkDescriptorPool> pool_;
   std::vector<VkDescriptorSet> sets_;
   std::map<std::uint32_t, std::size_t> setOfMaterial_;
-  std::set<std::uint32_t> premultiplied_;    // materials
-  std::map<std::int32_t, bool> translucent_; // by image: whether its alpha is not 1 everywhere
 };
 
 } // namespace vitrail::tool

@@ -17,7 +17,7 @@ bool meet(std::int64_t a, std::int64_t aSize, std::int64_t b, std::int64_t bSize
 
 } // namespace
 
-std::vector<VitrailBounds> clipBoxesOf(const Surfaces& surfaces) {
+std::vector<VitrailBounds> clipBoxesOf(const SurfaceList& surfaces) {
   std::vector<VitrailBounds> result;
   result.reserve(surfaces.scene().transparentBoxes().size());
   for (const PlacedBox& placed : surfaces.scene().transparentBoxes()) {
@@ -33,15 +33,15 @@ std::vector<VitrailBounds> clipBoxesOf(const Surfaces& surfaces) {
 
 bool drawsPoints(const GpuDraw& draw) { return (draw.features & shaders::FEATURE_SOLID) == shaders::FEATURE_POINTS; }
 
-TileRuns::TileRuns(const Surfaces& surfaces, VkExtent2D extent) {
+TileRuns::TileRuns(const SurfaceList& surfaces, std::uint32_t width, std::uint32_t height) {
   const std::vector<VitrailBounds> boxes = clipBoxesOf(surfaces);
   const std::vector<SurfaceRun>& draws = surfaces.transparentRuns();
   const bool oneEach = boxes.size() == draws.size(); // else one for every instance
   for (const SurfaceRun& draw : draws) {
     const bool points = drawsPoints(surfaces.scene().transparentDraws().at(draw.draw));
     for (std::uint32_t i = 0; i < (oneEach ? 1 : draw.instanceCount); ++i) {
-      VitrailRect area{0, 0, extent.width, extent.height};
-      if (!points) vitrailProjectBounds(1, &boxes.at(runs_.size()), extent.width, extent.height, &area);
+      VitrailRect area{0, 0, width, height};
+      if (!points) vitrailProjectBounds(1, &boxes.at(runs_.size()), width, height, &area);
       areas_.push_back(area);
       runs_.push_back(draw);
       if (oneEach) continue;
@@ -51,12 +51,12 @@ TileRuns::TileRuns(const Surfaces& surfaces, VkExtent2D extent) {
   }
 }
 
-std::vector<SurfaceRun> TileRuns::touching(const VkRect2D& area) const {
+std::vector<SurfaceRun> TileRuns::touching(const VitrailRect& area) const {
   std::vector<SurfaceRun> result;
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     const VitrailRect& reached = areas_[i];
-    if (!meet(reached.x, reached.width, area.offset.x, area.extent.width) ||
-        !meet(reached.y, reached.height, area.offset.y, area.extent.height)) {
+    if (!meet(reached.x, reached.width, area.x, area.width) ||
+        !meet(reached.y, reached.height, area.y, area.height)) {
       continue;
     }
     if (!result.empty() && follows(result.back(), runs_[i])) {

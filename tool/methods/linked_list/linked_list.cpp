@@ -364,13 +364,13 @@ void LinkedList::draw(Frame& frame) {
 // Every tile is waited for: what it reports decides whether its parts come next.
 void LinkedList::drawTiles(Frame& frame) {
   frame.submitAndWait(); // the opaque scene
-  planTiles(clipBoxesOf(source_));
-  const TileRuns runs(source_, wanted_.extent);
+  planTiles(clipBoxesOf(source_.list()));
+  const TileRuns runs(source_.list(), wanted_.extent.width, wanted_.extent.height);
   VitrailRect tile{};
   while (plan_ && plan_.next(tile)) {
     const VkRect2D area{{static_cast<std::int32_t>(tile.x), static_cast<std::int32_t>(tile.y)},
                         {tile.width, tile.height}};
-    drawArea(frame, area, runs.touching(area));
+    drawArea(frame, area, runs.touching(tile));
     frame.submitAndWait();
     const VitrailStats stats = readStats();
     check(resultOf(plan_.finish(stats)), "vitrailFinishTile");

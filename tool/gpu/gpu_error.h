@@ -1,0 +1,14 @@
+// Why a picture cannot be drawn here.
+#pragma once
+
+#include <stdexcept>
+
+namespace vitrail::tool {
+
+// A device, driver or memory that cannot do what was asked, the processor too: what() is one line that says what and
+// what to do.
+struct GpuError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+} // namespace vitrail::tool
