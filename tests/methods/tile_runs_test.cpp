@@ -68,8 +68,7 @@ TEST_F(TileRunsTest, InstancesAreDrawnWhereTheyAre) {
   addInstances(scene, {{-0.5F, 0.5F, 0.0F}, {0.5F, 0.5F, 0.0F}, {-0.5F, -0.5F, 0.0F}, {0.6F, 0.5F, 0.0F}});
   const TileRuns runs = runsOf(scene, straightView());
   EXPECT_EQ(drawnIn(runs, {0, 0, kTiledSide, kTiledSide}), 4U);
-  EXPECT_EQ(runs.touching({0, 0, kTiledSide, kTiledSide}).size(), 1U)
-      << "instances that follow each other are one run";
+  EXPECT_EQ(runs.touching({0, 0, kTiledSide, kTiledSide}).size(), 1U) << "instances that follow each other are one run";
   EXPECT_EQ(drawnIn(runs, {0, 0, 50, 50}), 1U) << "upper left";
   EXPECT_EQ(drawnIn(runs, {50, 0, 50, 50}), 2U) << "upper right";
   EXPECT_EQ(runs.touching({50, 0, 50, 50}).size(), 2U) << "they do not follow each other";

@@ -171,7 +171,8 @@ CpuTextures::CpuTextures(const Scene& scene, const std::vector<std::uint32_t>& u
     const Material& source = scene.materials.at(material);
     const auto slots = slotsOf(source);
     for (std::uint32_t i = 0; i < shaders::SLOT_COUNT; ++i) {
-      if (isFilled(scene, *slots.at(i))) textures_[{slots.at(i)->image, texelsOf(source, i, isPremultiplied(material))}];
+      if (isFilled(scene, *slots.at(i)))
+        textures_[{slots.at(i)->image, texelsOf(source, i, isPremultiplied(material))}];
     }
   }
   std::vector<std::pair<const Key, CpuTexture>*> todo;

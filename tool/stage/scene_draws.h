@@ -66,7 +66,8 @@ class SceneDraws {
   // What the draws use, in rising order.
   const std::vector<std::uint32_t>& materials() const { return materials_; }
   bool usesMesh(std::size_t mesh) const { return ranges_[mesh].opaque || ranges_[mesh].transparent; }
-  // Whether the base colour texture of a material is kept premultiplied: where its alpha counts and is not 1 everywhere.
+  // Whether the base colour texture of a material is kept premultiplied: where its alpha counts and is not 1
+  // everywhere.
   bool isPremultiplied(std::uint32_t material) const { return premultiplied_.contains(material); }
 
   // What a graphics API copies to the device: the transforms of all instances, kInstanceBytes each, some at a time;

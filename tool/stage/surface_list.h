@@ -1,4 +1,5 @@
-// The transparent surfaces of a scene in the order of submission, and the view that they are seen with. No graphics API.
+// The transparent surfaces of a scene in the order of submission, and the view that they are seen with. No graphics
+// API.
 #pragma once
 
 #include <cstdint>

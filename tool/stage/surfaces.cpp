@@ -47,7 +47,7 @@ SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const Gpu
     if (pipelines_.contains(draw.features)) continue;
     GraphicsPipelineInfo info;
     info.vertexShader = surfaces.list().isClipped() ? std::span<const std::uint32_t>(shaders::surface_clipped_vert)
-                                             : std::span<const std::uint32_t>(shaders::surface_vert);
+                                                    : std::span<const std::uint32_t>(shaders::surface_vert);
     info.vertices = surfaceVertexLayout();
     info.topology = topologyOf(draw.features);
     info.depthTest = VK_COMPARE_OP_GREATER_OR_EQUAL; // of surfaces in one plane the one that is drawn last is seen

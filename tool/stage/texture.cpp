@@ -29,8 +29,7 @@ VkSamplerAddressMode addressMode(Wrap wrap) {
 
 } // namespace
 
-MaterialTextures::MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& scene,
-                                   const SceneDraws& draws)
+MaterialTextures::MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& scene, const SceneDraws& draws)
     : gpu_(gpu) {
   GpuImageInfo info;
   info.extent = {1, 1};

@@ -55,8 +55,7 @@ std::vector<SurfaceRun> TileRuns::touching(const VitrailRect& area) const {
   std::vector<SurfaceRun> result;
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     const VitrailRect& reached = areas_[i];
-    if (!meet(reached.x, reached.width, area.x, area.width) ||
-        !meet(reached.y, reached.height, area.y, area.height)) {
+    if (!meet(reached.x, reached.width, area.x, area.width) || !meet(reached.y, reached.height, area.y, area.height)) {
       continue;
     }
     if (!result.empty() && follows(result.back(), runs_[i])) {

@@ -1,5 +1,5 @@
-// The vertices of all meshes as arrays on a device: one for each attribute, in which a mesh that does not have it takes no
-// room. No graphics API.
+// The vertices of all meshes as arrays on a device: one for each attribute, in which a mesh that does not have it takes
+// no room. No graphics API.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@ constexpr std::uint32_t kInstanceBinding = kStreamCount;
 
 // Of each array: its name, and the bytes of a vertex.
 extern const std::array<const char*, kStreamCount> kStreamNames;
-inline constexpr std::array<std::uint32_t, kStreamCount> kStreamBytes{
-    sizeof(glm::vec3), sizeof(std::uint32_t), sizeof(std::uint32_t),
-    sizeof(glm::vec2), sizeof(glm::vec2),     sizeof(std::uint64_t)};
+inline constexpr std::array<std::uint32_t, kStreamCount> kStreamBytes{sizeof(glm::vec3),     sizeof(std::uint32_t),
+                                                                      sizeof(std::uint32_t), sizeof(glm::vec2),
+                                                                      sizeof(glm::vec2),     sizeof(std::uint64_t)};
 
 // A mesh's arrays; empty where it does not have the attribute.
 std::array<std::span<const std::byte>, kStreamCount> vertexArrays(const Mesh& mesh);

@@ -217,7 +217,7 @@ void LinkedList::makeSurfaces() {
   const bool isCpu = gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   const bool spares = !isCpu || kind.listBuild == VITRAIL_LIST_BUILD_COMPUTE;
   kind.depthFromW = spares && !media_ && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
-  const bool wantsUntested = media_ && media_->anyNear();
+  const bool wantsUntested = media_ && media_->objects().anyNear();
   if (surfaces_ && kind == pipelines_ && (untested_ || !wantsUntested)) return;
   pipelines_ = kind;
   const VitrailVkSpecialization specialization = context_.collectSpecialization(desc);
@@ -381,9 +381,9 @@ void LinkedList::drawTiles(Frame& frame) {
 }
 
 void LinkedList::drawCollecting(Frame& frame, std::span<const SurfaceRun> runs) {
-  if (!media_ || !media_->anyNear()) return frame.drawSurfaces(*surfaces_, target_.descriptorSet(), runs);
-  frame.drawSurfaces(*surfaces_, target_.descriptorSet(), media_->part(runs, false));
-  frame.drawSurfaces(*untested_, target_.descriptorSet(), media_->part(runs, true));
+  if (!media_ || !media_->objects().anyNear()) return frame.drawSurfaces(*surfaces_, target_.descriptorSet(), runs);
+  frame.drawSurfaces(*surfaces_, target_.descriptorSet(), media_->objects().part(runs, false));
+  frame.drawSurfaces(*untested_, target_.descriptorSet(), media_->objects().part(runs, true));
 }
 
 void LinkedList::drawArea(Frame& frame, const VkRect2D& area, std::span<const SurfaceRun> runs) {
