@@ -36,8 +36,11 @@
  * host does with the texture next. With hostBarriers those between calls, and that one,
  * are the host's.
  *
- * Lost contexts: calls do nothing that can be seen, as OpenGL's own; objects are destroyed as ever, or left to the end
- * of the context.
+ * Lost contexts (GL_CONTEXT_LOST): calls of a frame do nothing, as OpenGL's own. Calls that return a VitrailResult say
+ * VITRAIL_ERROR_DEVICE_LOST where they need OpenGL: creating, resizing, a pool that is to change, and statistics that
+ * were not read before and so will never be there, so that no host waits for them for ever. A frame that was lost is
+ * never `complete`. No call waits. Destroying calls free what the library has of its own, and OpenGL's objects go with
+ * the context. glGetGraphicsResetStatus() stays the host's: the library does not call it.
  *
  * Out of order, null: as in vulkan.h. Calls that return a VitrailResult return VITRAIL_ERROR_INVALID where a required
  * pointer is null.
@@ -77,7 +80,8 @@ typedef struct VitrailGlContextDesc {
 #define VITRAIL_GL_BINDINGS 5
 
 /* Builds what the targets share. Errors: VITRAIL_ERROR_INVALID for a missing field, VITRAIL_ERROR_UNSUPPORTED where no
- * context is current, it is older than OpenGL 4.3, or it lacks what the library needs. On error *context is null. */
+ * context is current, it is older than OpenGL 4.3, or it lacks what the library needs, VITRAIL_ERROR_DEVICE_LOST where
+ * it is lost. On error *context is null. */
 VITRAIL_API VitrailResult vitrailGlCreateContext(const VitrailGlContextDesc* desc, VitrailGlContext* context);
 
 /* Destroys the context. Its targets are destroyed before; where some are left the log says so, and the context is freed
@@ -170,8 +174,8 @@ VITRAIL_API VitrailResult vitrailGlTargetRequirements(VitrailGlContext context, 
 
 /* Makes the memory of one view; the first target of its kind also compiles its resolve programs. Errors:
  * VITRAIL_ERROR_INVALID for a field that is not as described, VITRAIL_ERROR_FORMAT, VITRAIL_ERROR_UNSUPPORTED for
- * samples or a program that the driver refuses, VITRAIL_ERROR_OUT_OF_MEMORY; the log says which and by how much. On
- * error *target is null. */
+ * samples or a program that the driver refuses, VITRAIL_ERROR_OUT_OF_MEMORY, VITRAIL_ERROR_DEVICE_LOST; the log says
+ * which and by how much. On error *target is null. */
 VITRAIL_API VitrailResult vitrailGlCreateTarget(VitrailGlContext context, const VitrailGlTargetDesc* desc,
                                                 VitrailGlTarget* target);
 
@@ -188,7 +192,7 @@ VITRAIL_API void vitrailGlTargetMemory(VitrailGlTarget target, VitrailMemory* me
 
 /* Prepares a target with a memory budget for `frame` (0: the next one): reads the statistics of the newest frame that
  * has finished, and makes a larger or smaller pool where the need has changed. Never waits. Errors:
- * VITRAIL_ERROR_OUT_OF_MEMORY; the target stays as it was and can be used. */
+ * VITRAIL_ERROR_OUT_OF_MEMORY; the target stays as it was and can be used. VITRAIL_ERROR_DEVICE_LOST. */
 VITRAIL_API VitrailResult vitrailGlUpdateTarget(VitrailGlTarget target, uint64_t frame);
 
 typedef struct VitrailGlResizeInfo {
@@ -296,7 +300,8 @@ VITRAIL_API uint32_t vitrailGlBarriers(VitrailGlTarget target, VitrailGlBarrierP
 /* ---- Statistics and tiles --------------------------------------------------------------------------------------- */
 
 /* Reads what the GPU reported about a frame, as vitrailVkReadStats(): VITRAIL_INCOMPLETE until it has executed, and
- * once it is more than framesInFlight frames old. Never waits. */
+ * once it is more than framesInFlight frames old. VITRAIL_ERROR_DEVICE_LOST in place of that once the context is lost.
+ * Never waits. */
 VITRAIL_API VitrailResult vitrailGlReadStats(VitrailGlTarget target, uint64_t frame, VitrailStats* stats);
 
 /* What the device can hold, for VitrailTilePlanDesc::limits (tiles.h). */

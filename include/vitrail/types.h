@@ -41,6 +41,7 @@ typedef enum VitrailResult {
   VITRAIL_ERROR_UNSUPPORTED = -2,   /* the device, or a feature that was not enabled, rules it out */
   VITRAIL_ERROR_FORMAT = -3,        /* a format does not go with the rest */
   VITRAIL_ERROR_OUT_OF_MEMORY = -4, /* it exceeds the budget, a limit of the device, or what is left */
+  VITRAIL_ERROR_DEVICE_LOST = -5,   /* the device or its context is lost: destroy what there is of it, and begin anew */
   VITRAIL_RESULT_MAX_ENUM = 0x7fffffff
 } VitrailResult;
 

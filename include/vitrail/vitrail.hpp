@@ -1,11 +1,15 @@
 // Move-only C++ wrappers of Vitrail's C headers: they own the handles and change nothing else. Every function is
-// documented in vulkan.h and tiles.h. C++17 or later. VITRAIL_NO_VULKAN leaves out what needs Vulkan's headers.
+// documented in vulkan.h, gl.h and tiles.h. C++17 or later. VITRAIL_NO_VULKAN leaves out what needs Vulkan's headers;
+// what is of OpenGL needs no header of OpenGL's, and is there where the package has gl.h.
 #pragma once
 
 #include <vitrail/tiles.h>
 #include <vitrail/types.h>
 #ifndef VITRAIL_NO_VULKAN
 #include <vitrail/vulkan.h>
+#endif
+#if __has_include(<vitrail/gl.h>)
+#include <vitrail/gl.h>
 #endif
 
 #include <cstdint>
@@ -158,6 +162,110 @@ class Target {
 };
 
 } // namespace vulkan
+#endif
+
+#ifdef VITRAIL_GL_H
+namespace opengl {
+
+// Owns a VitrailGlContext.
+class Context {
+ public:
+  Context() = default;
+  ~Context() { vitrailGlDestroyContext(handle_); }
+  Context(Context&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+  Context& operator=(Context&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+
+  // Replaces what `context` owns. On error it owns nothing.
+  static VitrailResult create(const VitrailGlContextDesc& desc, Context& context) {
+    context = Context();
+    return vitrailGlCreateContext(&desc, &context.handle_);
+  }
+
+  explicit operator bool() const { return handle_ != nullptr; }
+  VitrailGlContext handle() const { return handle_; }
+  const char* collectSource() const { return vitrailGlCollectSource(handle_); }
+  const char* listSource() const { return vitrailGlListSource(handle_); }
+  std::uint32_t maxNodeCapacity(VitrailNodeFormat format, std::uint32_t samples = 1) const {
+    return vitrailGlMaxNodeCapacity(handle_, format, samples);
+  }
+  VitrailResolve defaultResolve(const VitrailGlTargetDesc& desc) const {
+    return vitrailGlDefaultResolve(handle_, &desc);
+  }
+  VitrailListBuild defaultListBuild(const VitrailGlTargetDesc& desc) const {
+    return vitrailGlDefaultListBuild(handle_, &desc);
+  }
+  VitrailGlSpecialization collectSpecialization(const VitrailGlTargetDesc& desc) const {
+    VitrailGlSpecialization specialization{};
+    vitrailGlCollectSpecialization(handle_, &desc, &specialization);
+    return specialization;
+  }
+  VitrailResult targetRequirements(const VitrailGlTargetDesc& desc, VitrailGlRequirements& requirements) const {
+    return vitrailGlTargetRequirements(handle_, &desc, &requirements);
+  }
+  VitrailResult tileLimits(VitrailNodeFormat format, std::uint32_t samples, VitrailTileLimits& limits) const {
+    return vitrailGlTileLimits(handle_, format, samples, &limits);
+  }
+
+ private:
+  VitrailGlContext handle_ = nullptr;
+};
+
+// Owns a VitrailGlTarget. Its context outlives it.
+class Target {
+ public:
+  Target() = default;
+  ~Target() { vitrailGlDestroyTarget(handle_); }
+  Target(Target&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+  Target& operator=(Target&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+
+  // Replaces what `target` owns. On error it owns nothing.
+  static VitrailResult create(const Context& context, const VitrailGlTargetDesc& desc, Target& target) {
+    target = Target();
+    return vitrailGlCreateTarget(context.handle(), &desc, &target.handle_);
+  }
+
+  explicit operator bool() const { return handle_ != nullptr; }
+  VitrailGlTarget handle() const { return handle_; }
+  VitrailResolve resolveKind() const { return vitrailGlTargetResolve(handle_); }
+  VitrailListBuild listBuild() const { return vitrailGlTargetListBuild(handle_); }
+  std::uint64_t frame() const { return vitrailGlTargetFrame(handle_); }
+  VitrailMemory memory() const {
+    VitrailMemory memory{};
+    vitrailGlTargetMemory(handle_, &memory);
+    return memory;
+  }
+
+  VitrailResult update(std::uint64_t frame = 0) { return vitrailGlUpdateTarget(handle_, frame); }
+  VitrailResult resize(const VitrailGlResizeInfo& info) { return vitrailGlResizeTarget(handle_, &info); }
+
+  void begin(const VitrailGlBeginInfo& info = {}) const { vitrailGlBegin(handle_, &info); }
+  void bind() const { vitrailGlBind(handle_); }
+  void collected() const { vitrailGlCollected(handle_); }
+  void resolve(const VitrailGlResolveInfo& info = {}) const { vitrailGlResolve(handle_, &info); }
+  void end() const { vitrailGlEnd(handle_); }
+
+  std::uint64_t copySize(std::uint32_t width, std::uint32_t height) const {
+    return vitrailGlCopySize(handle_, width, height);
+  }
+  void copyLists(const VitrailGlCopyInfo& info) const { vitrailGlCopyLists(handle_, &info); }
+
+  // The bits for glMemoryBarrier().
+  std::uint32_t barriers(VitrailGlBarrierPoint point) const { return vitrailGlBarriers(handle_, point); }
+  VitrailResult readStats(std::uint64_t frame, VitrailStats& stats) const {
+    return vitrailGlReadStats(handle_, frame, &stats);
+  }
+
+ private:
+  VitrailGlTarget handle_ = nullptr;
+};
+
+} // namespace opengl
 #endif
 
 } // namespace vitrail

@@ -23,6 +23,9 @@ struct FrameFacts {
   std::uint32_t sumsCleared;
 };
 
+// StatsSlot::begunFrame before the first frame.
+constexpr std::uint32_t kNoFrame = 0xffffffffU;
+
 // The memory that one frame's counters are copied to. The tag is 0 from the start of a frame until its counters are
 // there: a slot whose tag is right, before and after the counters are read, is whole.
 struct StatsSlot {

@@ -89,6 +89,7 @@ void readLimits(VitrailGlContext_T& context) {
 VitrailResult checkVersion(const VitrailGlContext_T& context) {
   const auto* version = reinterpret_cast<const char*>(context.gl.GetString(GL_VERSION));
   if (version == nullptr) {
+    if (takeErrors(context.gl).lost) return contextIsLost(context);
     return context.log.fail(VITRAIL_ERROR_UNSUPPORTED, "vitrailGlCreateContext: no OpenGL context is current");
   }
   const GLint major = integer(context.gl, GL_MAJOR_VERSION);
@@ -126,6 +127,24 @@ void releaseContext(VitrailGlContext context) {
   if (context->owners.fetch_sub(1) > 1) return;
   const std::unique_ptr<VitrailGlContext_T> owned(context);
   for (const auto& [key, program] : context->programs) context->gl.DeleteProgram(program);
+}
+
+ErrorFlags takeErrors(const GlFunctions& gl) {
+  ErrorFlags flags;
+  // There may be one flag of each kind, and the one of a lost context comes again and again.
+  constexpr int kMostFlags = 16;
+  for (int i = 0; i < kMostFlags && !flags.lost; ++i) {
+    const GLenum error = gl.GetError();
+    if (error == GL_NO_ERROR) break;
+    flags.any = true;
+    flags.lost = error == GL_CONTEXT_LOST;
+  }
+  return flags;
+}
+
+VitrailResult contextIsLost(const VitrailGlContext_T& context) {
+  return context.log.fail(VITRAIL_ERROR_DEVICE_LOST,
+                          "the OpenGL context is lost: destroy what was made in it, and begin anew in another one");
 }
 
 VitrailResult nullArgument(const VitrailGlContext_T* context, const char* call) {

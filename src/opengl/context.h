@@ -35,6 +35,16 @@ namespace vitrail {
 // One owner less.
 void releaseContext(VitrailGlContext context);
 
+// What the error flags of OpenGL held, which are clear now.
+struct ErrorFlags {
+  bool any = false;
+  bool lost = false; // the context: GL_CONTEXT_LOST
+};
+ErrorFlags takeErrors(const GlFunctions& gl);
+
+// Logs that the context of OpenGL is lost.
+VitrailResult contextIsLost(const VitrailGlContext_T& context);
+
 // Logs that an argument of a call is null.
 VitrailResult nullArgument(const VitrailGlContext_T* context, const char* call);
 

@@ -122,6 +122,7 @@ VitrailResult findProgram(VitrailGlContext_T& context, const ProgramKey& key, GL
     const std::string reason = build(context.gl, made, key);
     if (!reason.empty()) {
       context.gl.DeleteProgram(made);
+      if (takeErrors(context.gl).lost) return contextIsLost(context);
       return context.log.fail(VITRAIL_ERROR_UNSUPPORTED, "%s: the driver does not take its shader: %s", name,
                               reason.c_str());
     }

@@ -92,6 +92,7 @@ void finishStatistics(VitrailGlTarget_T& target) {
   if (pending.fence != nullptr) gl.DeleteSync(pending.fence);
   target.slots[slot].facts = {target.storage.needs.nodeCapacity, target.order.misused() ? 1U : 0U, target.sums.fact()};
   pending = {gl.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0), frame};
+  if (pending.fence == nullptr) target.lost = true;
 }
 
 void beginCopy(const VitrailGlTarget_T& target, const VitrailRect& area) {

@@ -7,32 +7,35 @@
 
 namespace vitrail {
 
-GLuint createBuffer(const VitrailGlContext_T& context, std::uint64_t bytes, GLbitfield storage, GLenum usage,
-                    const char* name, const char* what) {
+VitrailResult createBuffer(const VitrailGlContext_T& context, const BufferDesc& desc, GLuint* buffer) {
   const GlFunctions& gl = context.gl;
+  *buffer = 0;
   // What the host left there would be taken for this buffer's.
-  bool left = false;
-  for (int i = 0; i < 16 && gl.GetError() != GL_NO_ERROR; ++i) left = true; // a lost context may go on for ever
-  if (left)
+  const ErrorFlags left = takeErrors(gl);
+  if (left.lost) return contextIsLost(context);
+  if (left.any) {
     context.log.warn("an error flag of OpenGL was set before this call, and is cleared: glGetError() says it no more");
-  GLuint buffer = 0;
-  gl.GenBuffers(1, &buffer);
-  gl.BindBuffer(GL_COPY_WRITE_BUFFER, buffer);
-  const auto size = static_cast<GLsizeiptr>(bytes);
+  }
+  GLuint made = 0;
+  gl.GenBuffers(1, &made);
+  gl.BindBuffer(GL_COPY_WRITE_BUFFER, made);
+  const auto size = static_cast<GLsizeiptr>(desc.bytes);
   if (gl.BufferStorage != nullptr) {
-    gl.BufferStorage(GL_COPY_WRITE_BUFFER, size, nullptr, storage);
+    gl.BufferStorage(GL_COPY_WRITE_BUFFER, size, desc.data, desc.storage);
   } else {
-    gl.BufferData(GL_COPY_WRITE_BUFFER, size, nullptr, usage);
+    gl.BufferData(GL_COPY_WRITE_BUFFER, size, desc.data, desc.usage);
   }
   const GLenum error = gl.GetError();
-  if (buffer != 0 && error == GL_NO_ERROR) {
-    context.label(GL_BUFFER, buffer, name, what);
-    return buffer;
+  if (made != 0 && error == GL_NO_ERROR) {
+    context.label(GL_BUFFER, made, desc.name, desc.what);
+    *buffer = made;
+    return VITRAIL_SUCCESS;
   }
-  gl.DeleteBuffers(1, &buffer);
-  context.log.error("no memory for %s: %llu bytes, OpenGL says 0x%x: use a smaller nodeCapacity or memoryBudget", what,
-                    static_cast<unsigned long long>(bytes), error);
-  return 0;
+  gl.DeleteBuffers(1, &made);
+  if (error == GL_CONTEXT_LOST) return contextIsLost(context);
+  return context.log.fail(VITRAIL_ERROR_OUT_OF_MEMORY,
+                          "no memory for %s: %llu bytes, OpenGL says 0x%x: use a smaller nodeCapacity or memoryBudget",
+                          desc.what, static_cast<unsigned long long>(desc.bytes), error);
 }
 
 VitrailResult GlStorage::create(const VitrailGlContext_T& context, const StorageNeeds& wanted, GLuint hostBuffer,
@@ -44,8 +47,9 @@ VitrailResult GlStorage::create(const VitrailGlContext_T& context, const Storage
     offset = hostOffset;
   } else {
     const SavedCopies saved(context.gl);
-    buffer = createBuffer(context, layout.total, GL_DYNAMIC_STORAGE_BIT, GL_DYNAMIC_COPY, name, "fragment lists");
-    if (buffer == 0) return VITRAIL_ERROR_OUT_OF_MEMORY;
+    const BufferDesc desc{layout.total, nullptr, GL_DYNAMIC_STORAGE_BIT, GL_DYNAMIC_COPY, name, "fragment lists"};
+    const VitrailResult result = createBuffer(context, desc, &buffer);
+    if (result != VITRAIL_SUCCESS) return result;
     own = true;
   }
   wholeByBinding = layout.nodes.size <= context.limits.storageBufferRange;

@@ -23,9 +23,16 @@ struct GlStorage {
   void bind(const VitrailGlContext_T& context, GLuint base, std::uint32_t count) const;
 };
 
-// Makes a buffer object of so many bytes; leaves it bound to GL_COPY_WRITE_BUFFER. `storage`: flags of
-// glBufferStorage(), where there is that, else `usage` holds. 0: there is no memory for it, as the log says.
-GLuint createBuffer(const VitrailGlContext_T& context, std::uint64_t bytes, GLbitfield storage, GLenum usage,
-                    const char* name, const char* what);
+struct BufferDesc {
+  std::uint64_t bytes;
+  const void* data;   // null: anything
+  GLbitfield storage; // flags of glBufferStorage(), where there is that,
+  GLenum usage;       // else this holds
+  const char* name;
+  const char* what;
+};
+
+// Makes a buffer object; leaves it bound to GL_COPY_WRITE_BUFFER. Logs its errors; then *buffer is 0.
+VitrailResult createBuffer(const VitrailGlContext_T& context, const BufferDesc& desc, GLuint* buffer);
 
 } // namespace vitrail

@@ -137,15 +137,18 @@ VitrailResult createStats(VitrailGlTarget_T& target) {
   const SavedCopies saved(gl);
   const std::uint64_t bytes = statisticsBytes(target.info.framesInFlight);
   constexpr GLbitfield kMapped = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-  target.statsBuffer = createBuffer(*target.context, bytes, kMapped | GL_CLIENT_STORAGE_BIT, GL_STREAM_READ,
-                                    target.debugName.c_str(), "statistics");
-  if (target.statsBuffer == 0) return VITRAIL_ERROR_OUT_OF_MEMORY;
+  target.slots.resize(statisticsSlots(target.info.framesInFlight));
+  target.pending.resize(target.slots.size());
+  // Counters of no frame, for one whose commands never run though its fence says so: a context was lost.
+  for (StatsSlot& slot : target.slots) slot.begunFrame = kNoFrame;
+  const BufferDesc desc{bytes,          target.slots.data(),      kMapped | GL_CLIENT_STORAGE_BIT,
+                        GL_STREAM_READ, target.debugName.c_str(), "statistics"};
+  const VitrailResult result = createBuffer(*target.context, desc, &target.statsBuffer);
+  if (result != VITRAIL_SUCCESS) return result;
   if (gl.BufferStorage != nullptr && gl.MapBufferRange != nullptr) {
     target.stats = static_cast<const std::byte*>(
         gl.MapBufferRange(GL_COPY_WRITE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), kMapped));
   }
-  target.slots.resize(statisticsSlots(target.info.framesInFlight));
-  target.pending.resize(target.slots.size());
   return VITRAIL_SUCCESS;
 }
 
@@ -194,6 +197,7 @@ void fetch(VitrailGlTarget_T& target, std::size_t slot) {
   PendingStats& pending = target.pending[slot];
   if (pending.fence == nullptr) return;
   const GLenum state = gl.ClientWaitSync(pending.fence, GL_SYNC_FLUSH_COMMANDS_BIT, 0);
+  if (state == GL_WAIT_FAILED) target.lost = true; // the fence is one: nothing else can be wrong
   if (state != GL_ALREADY_SIGNALED && state != GL_CONDITION_SATISFIED) return;
   constexpr std::size_t kBytes = offsetof(StatsSlot, facts);
   StatsSlot& kept = target.slots[slot];
@@ -303,7 +307,8 @@ extern "C" VitrailResult vitrailGlUpdateTarget(VitrailGlTarget target, uint64_t 
   const std::uint64_t number = std::min(target->frames.numberOf(frame), target->frames.numberOf(0));
   if (target->info.memoryBudget == 0) return VITRAIL_SUCCESS;
   VitrailStats stats{};
-  if (!readNewest(*target, number, stats) || !target->growth.isNews(stats.frame)) return VITRAIL_SUCCESS;
+  if (!readNewest(*target, number, stats)) return target->lost ? VITRAIL_ERROR_DEVICE_LOST : VITRAIL_SUCCESS;
+  if (!target->growth.isNews(stats.frame)) return VITRAIL_SUCCESS;
   const DeviceLimits& limits = target->context->limits;
   const std::uint32_t wanted =
       target->growth.wanted(stats, target->storage.needs.nodeCapacity, budgetCapacity(limits, target->info));
@@ -404,5 +409,6 @@ extern "C" VitrailResult vitrailGlReadStats(VitrailGlTarget target, uint64_t fra
   }
   const bool newest = frame == 0 && !target->frames.areGiven();
   const bool read = newest ? readNewest(*target, target->frames.newest(), *stats) : readFrame(*target, frame, *stats);
-  return read ? VITRAIL_SUCCESS : VITRAIL_INCOMPLETE;
+  if (read) return VITRAIL_SUCCESS;
+  return target->lost ? VITRAIL_ERROR_DEVICE_LOST : VITRAIL_INCOMPLETE;
 }

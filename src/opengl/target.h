@@ -51,6 +51,7 @@ struct VitrailGlTarget_T {
   const std::byte* stats = nullptr;      // where it is mapped
   std::vector<vitrail::StatsSlot> slots; // what is known of each
   std::vector<vitrail::PendingStats> pending;
+  bool lost = false; // the context is: statistics that are not there yet will never be
   vitrail::Growth growth;
   vitrail::SumsClear sums;
 

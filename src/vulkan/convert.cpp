@@ -30,6 +30,8 @@ VkResult toVk(VitrailResult result) {
       return VK_ERROR_FORMAT_NOT_SUPPORTED;
     case VITRAIL_ERROR_OUT_OF_MEMORY:
       return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    case VITRAIL_ERROR_DEVICE_LOST:
+      return VK_ERROR_DEVICE_LOST;
     case VITRAIL_ERROR_INVALID:
     case VITRAIL_RESULT_MAX_ENUM:
       break;

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <vitrail/gl.h>
@@ -49,6 +50,8 @@ class OpenGlBackend : public Backend {
   void close() override;
 
   VitrailGlContext context();
+  // Hosts are made with that one from now on; gives the one before, which is null where none was made yet.
+  VitrailGlContext exchangeContext(VitrailGlContext context) { return std::exchange(context_, context); }
   VitrailGlContextDesc contextDesc();
   [[nodiscard]] const EglContext& egl() const { return *egl_; }
   std::vector<LogLine> takeLog();

@@ -1,18 +1,156 @@
-// The barriers of a frame, as a host with a render graph asks for them, and makes them. Nothing validates them here: a
-// driver on a CPU runs what it is given in order.
+// The barriers of a frame. OpenGL has no validation of them: hazards.h looks at a record of the calls, and must object
+// where any one barrier is left out. llvmpipe, which runs dispatches before draws that it has put off, must draw a
+// wrong picture without the one between them.
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "../expected.h"
 #include "backend.h"
+#include "framed.h"
+#include "hazards.h"
 #include "point_host.h"
+#include "tapped.h"
 
 namespace vitrail::tests::opengl {
 namespace {
 
 class BarriersTest : public OpenGlTest {};
+
+// Hosts whose calls are written down.
+class RecordTest : public OpenGlTest {
+ protected:
+  void SetUp() override {
+    OpenGlTest::SetUp();
+    VitrailGlContextDesc desc = backend().contextDesc();
+    tap.real = desc.getProcAddress;
+    desc.getProcAddress = tappedLoader;
+    ASSERT_EQ(vitrailGlCreateContext(&desc, &context_), VITRAIL_SUCCESS);
+    usual_ = backend().exchangeContext(context_);
+  }
+  void TearDown() override {
+    backend().exchangeContext(usual_);
+    vitrailGlDestroyContext(context_);
+    tap.reset();
+    OpenGlTest::TearDown();
+  }
+
+  static constexpr std::string_view kFrame = "(a frame)";
+  static constexpr std::uint64_t kFrames = 4;
+
+  // What some frames call. The one before the last is dropped when it has drawn, so that nothing of what shaders wrote
+  // has a barrier when the last one begins.
+  static std::vector<TappedCall> record(const HostDesc& desc, const std::vector<Point>& points, bool hostBarriers) {
+    OpenGlHost host(backend(), desc, hostBarriers);
+    GLuint copied = 0;
+    glGenBuffers(1, &copied);
+    glBindBuffer(GL_COPY_WRITE_BUFFER, copied);
+    glBufferData(GL_COPY_WRITE_BUFFER, 1 << 20, nullptr, GL_DYNAMIC_READ);
+    tap.reset();
+    for (std::uint64_t frame = 0; frame < kFrames; ++frame) {
+      tap.calls.push_back({kFrame});
+      PointTextures& textures = host.texturesOf(frame);
+      host.drawOpaque(textures);
+      host.begin(frame, {});
+      host.drawPoints(textures, points);
+      tap.calls.push_back({kHostCollects});
+      if (frame == kFrames - 2) continue;
+      host.collected();
+      if (desc.copyLayers != 0) copy(host.target(), copied);
+      host.resolve(textures, frame % PointHost::kFramesTogether);
+      if (hostBarriers) tap.calls.push_back({kHostOrdersPicture});
+      tap.calls.push_back({kHostUsesPicture});
+      host.end();
+    }
+    for (const LogLine& line : backend().takeLog()) {
+      EXPECT_NE(line.text.find("not ended"), std::string::npos) << line.text;
+    }
+    glDeleteBuffers(1, &copied);
+    return tap.calls;
+  }
+
+  static void copy(VitrailGlTarget target, GLuint buffer) {
+    VitrailGlCopyInfo info{};
+    info.area = {0, 0, 4, 4};
+    info.buffer = buffer;
+    info.size = vitrailGlCopySize(target, 4, 4);
+    vitrailGlCopyLists(target, &info);
+  }
+
+  // None is missing, and each of the last frame is needed, but for some that another one follows at once.
+  static void expectEachIsNeeded(const std::vector<TappedCall>& calls, std::size_t spare) {
+    for (const std::string& missing : missingBarriers(calls)) ADD_FAILURE() << missing;
+    std::uint64_t frame = 0;
+    std::size_t tried = 0;
+    std::string notNeeded;
+    std::size_t notNeededCount = 0;
+    for (std::size_t i = 0; i < calls.size(); ++i) {
+      if (calls[i].name == kFrame) ++frame;
+      if (calls[i].name != "MemoryBarrier" || frame != kFrames) continue;
+      std::vector<TappedCall> fewer = calls;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+      ++tried;
+      if (!missingBarriers(fewer).empty()) continue;
+      ++notNeededCount;
+      notNeeded += " number " + std::to_string(tried) + " with the bits " + std::to_string(calls[i].first);
+    }
+    EXPECT_EQ(notNeededCount, spare) << "barriers that are not needed:" << notNeeded;
+    EXPECT_GE(tried, 5U);
+  }
+
+ private:
+  VitrailGlContext context_ = nullptr;
+  VitrailGlContext usual_ = nullptr;
+};
+
+TEST_F(RecordTest, EveryBarrierIsThereAndNeeded) {
+  std::vector<std::uint32_t> counts = sampleCounts(backend().features());
+  if (counts.size() > 2) counts = {1, 4};
+  for (const std::uint32_t samples : counts) {
+    for (const Way& way : everyWay(backend().features(), samples)) {
+      for (const bool copies : {false, true}) {
+        for (const bool hostBarriers : {false, true}) {
+          SCOPED_TRACE(std::to_string(samples) + " samples, " + way.name + (copies ? ", copied" : "") +
+                       (hostBarriers ? ", by the host" : ""));
+          HostDesc desc;
+          desc.samples = samples;
+          desc.copyLayers = copies ? 2000 : 0;
+          apply(way, desc);
+          const std::vector<Point> points = randomLists(desc, {0, 1, 5, 17, 33, 70, 300}, 4);
+          desc.capacity = static_cast<std::uint32_t>(points.size());
+          // A copy has barriers before and behind it, where there is one of the resolve's (or one of the host's).
+          const std::size_t spare = copies ? (hostBarriers ? 2 : 1) : 0;
+          expectEachIsNeeded(record(desc, points, hostBarriers), spare);
+        }
+      }
+    }
+  }
+}
+
+// The negative control of the above: a fault that is there to be seen.
+TEST_F(RecordTest, ADriverThatPutsDrawsOffShowsAMissingBarrier) {
+  const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  if (renderer.find("llvmpipe") == std::string::npos) GTEST_SKIP() << renderer << " may run draws at once";
+  const Framed framed(backend().context());
+  ASSERT_EQ(framed.result, VITRAIL_SUCCESS);
+  tap.reset();
+  framed.expectFrame();
+  const std::size_t count = tap.barriers;
+  std::vector<std::size_t> seen;
+  for (std::size_t i = 0; i < count; ++i) {
+    tap.reset();
+    tap.leftOutBarrier = i;
+    framed.draw();
+    glFinish();
+    if (!framed.pictureIsRight()) seen.push_back(i);
+  }
+  EXPECT_EQ(seen, std::vector<std::size_t>{2}); // the third: the host's draws -> vitrailGlCollected()
+  tap.reset();
+  framed.expectFrame();
+  vitrailGlDestroyTarget(framed.target);
+}
 
 // Every one is of what shaders wrote before: the bits say how it is used behind it.
 TEST_F(BarriersTest, NameWhatIsReadOrWrittenNext) {

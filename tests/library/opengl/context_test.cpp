@@ -1,5 +1,5 @@
-// Contexts: several that share objects, on several threads, and those that lack something. Not tested: a context that
-// is lost (EGL cannot lose one at will), where the library makes the calls that it always makes.
+// Contexts: several that share objects, on several threads, and those that lack something. lost_test.cpp has those that
+// are lost.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -10,6 +10,7 @@
 
 #include "../expected.h"
 #include "backend.h"
+#include "framed.h"
 #include "point_host.h"
 
 namespace vitrail::tests::opengl {
@@ -47,42 +48,6 @@ void* poorLoader(const char* name, void*) {
   if (std::strcmp(name, "glGetStringi") == 0) return reinterpret_cast<void*>(poorStrings);
   return reinterpret_cast<void*>(eglGetProcAddress(name));
 }
-
-// ---- Frames
-
-// A target of 8x8 pixels and a texture for it.
-class Framed {
- public:
-  explicit Framed(VitrailGlContext context) : textures_(HostDesc{}) {
-    VitrailGlTargetDesc desc{};
-    desc.width = 8;
-    desc.height = 8;
-    desc.nodeCapacity = 10;
-    desc.colorFormat = GL_RGBA32F;
-    desc.textures.count = 1;
-    desc.textures.color = &textures_.color;
-    result = vitrailGlCreateTarget(context, &desc, &target);
-  }
-
-  // An empty frame; whether its statistics say so.
-  void expectFrame() const {
-    vitrailGlBegin(target, nullptr);
-    vitrailGlCollected(target);
-    vitrailGlResolve(target, nullptr);
-    vitrailGlEnd(target);
-    glFinish();
-    VitrailStats stats{};
-    EXPECT_EQ(vitrailGlReadStats(target, 0, &stats), VITRAIL_SUCCESS);
-    EXPECT_EQ(stats.complete, 1U);
-    EXPECT_EQ(stats.fragmentsRequested, 0U);
-  }
-
-  VitrailGlTarget target = nullptr;
-  VitrailResult result = VITRAIL_SUCCESS;
-
- private:
-  PointTextures textures_;
-};
 
 class ContextTest : public OpenGlTest {
  protected:
@@ -165,6 +130,33 @@ TEST_F(ContextTest, FramesGoOnInAnotherThread) {
   }).join();
   backend().egl().makeCurrent();
   expectPicture(host, 3);
+}
+
+// Of two contexts the one goes in which the target was made and drawn, with a frame that nobody has looked at yet.
+TEST_F(ContextTest, ATargetLivesOnInTheContextThatIsLeft) {
+  std::unique_ptr<Framed> framed;
+  VitrailGlContext context = nullptr;
+  {
+    const EglContext gone(&backend().egl());
+    backend().listen();
+    const VitrailGlContextDesc desc = backend().contextDesc();
+    ASSERT_EQ(vitrailGlCreateContext(&desc, &context), VITRAIL_SUCCESS);
+    framed = std::make_unique<Framed>(context);
+    ASSERT_EQ(framed->result, VITRAIL_SUCCESS);
+    framed->expectFrame();
+    framed->draw();
+    glFinish(); // what the other context sees is what this one has done
+  }
+  backend().egl().makeCurrent();
+  framed->expectResult();
+  for (int i = 0; i < 4; ++i) framed->expectFrame();
+  const Framed later(context); // with the programs that the other context compiled
+  ASSERT_EQ(later.result, VITRAIL_SUCCESS);
+  later.expectFrame();
+  vitrailGlDestroyTarget(later.target);
+  vitrailGlDestroyTarget(framed->target);
+  vitrailGlDestroyContext(context);
+  EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
 }
 
 // The context goes with the last of its targets, which draw until then, and in what is left of the OpenGL contexts.

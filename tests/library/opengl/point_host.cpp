@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "tapped.h"
+
 namespace vitrail::tests::opengl {
 
 namespace {
@@ -342,7 +344,9 @@ GLuint OpenGlHost::programFor(VitrailGlTargetDesc target, bool specialized) {
 void OpenGlHost::barrier(VitrailGlBarrierPoint point) const {
   if (!hostBarriers_) return;
   const GLbitfield bits = vitrailGlBarriers(target_, point);
-  if (bits != 0) glMemoryBarrier(bits);
+  if (bits == 0) return;
+  glMemoryBarrier(bits);
+  tap.calls.push_back({"MemoryBarrier", bits});
 }
 
 void OpenGlHost::drawOpaque(PointTextures& textures) {
