@@ -44,3 +44,23 @@ inline constexpr std::uint32_t @symbol@[] = {
     target_include_directories(${target} PRIVATE ${folder})
   endforeach()
 endfunction()
+
+# embed_shader_text(TARGET target NAME name SOURCE file NAMESPACE ns [INCLUDES dir...] [DEFINES def...]): the same shader as
+# text for OpenGL, preprocessed with VITRAIL_OPENGL: `#include "files/<name>.h"`, as embed_file() makes it. Its #version
+# is that of the source.
+function(embed_shader_text)
+  cmake_parse_arguments(arg "" "TARGET;NAME;SOURCE;NAMESPACE" "INCLUDES;DEFINES" ${ARGN})
+  set(text ${CMAKE_CURRENT_BINARY_DIR}/generated/text/${arg_NAME})
+  get_filename_component(source ${arg_SOURCE} ABSOLUTE)
+  list(TRANSFORM arg_INCLUDES PREPEND -I)
+  list(TRANSFORM arg_DEFINES PREPEND -D)
+  file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/generated/text)
+  add_custom_command(
+    OUTPUT ${text}
+    COMMAND ${VITRAIL_GLSLC} -E -DVITRAIL_OPENGL -MD -MF ${text}.d -MT ${text} ${arg_INCLUDES} ${arg_DEFINES} -o ${text} ${source}
+    DEPENDS ${source}
+    DEPFILE ${text}.d
+    COMMENT "Preprocessing ${arg_NAME}"
+    VERBATIM)
+  embed_file(TARGET ${arg_TARGET} NAME ${arg_NAME} SOURCE ${text} NAMESPACE ${arg_NAMESPACE})
+endfunction()

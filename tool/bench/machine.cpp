@@ -20,13 +20,21 @@ constexpr std::uint32_t kCpuWarmups = 1;
 Machine machineOf(const Device& device) {
   Machine machine;
   machine.processor = processorDevice();
+  const Gl* gl = device.gl();
+  if (device.gpu() == nullptr && gl != nullptr) {
+    machine.device = gl->name();
+    machine.driver = gl->driver();
+    machine.api = gl->api();
+    machine.isCpu = gl->isCpu();
+    return machine;
+  }
   if (device.gpu() == nullptr) {
     machine.device = machine.processor;
     machine.driver =
         fmt::format("Vitrail {}.{}.{}", VITRAIL_VERSION_MAJOR, VITRAIL_VERSION_MINOR, VITRAIL_VERSION_PATCH);
     machine.api = "CPU";
     machine.isCpu = true;
-    machine.hasVulkan = false;
+    machine.hasDevice = false;
     return machine;
   }
   const Gpu& gpu = *device.gpu();
@@ -39,6 +47,7 @@ Machine machineOf(const Device& device) {
   machine.device = gpu.properties().deviceName;
   machine.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
   machine.api = "Vulkan 1.3";
+  if (gl != nullptr) machine.api += fmt::format(" and {} ({}, {})", gl->api(), gl->name(), gl->driver());
   machine.isCpu = gpu.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   return machine;
 }

@@ -15,7 +15,7 @@ struct Machine {
   std::string api;
   bool isCpu = false;      // only ratios mean anything
   std::string processor{}; // what draws the method `cpu`
-  bool hasVulkan = true;   // false: the processor is all there is, and nothing has a ratio
+  bool hasDevice = true;   // false: the processor is all there is, and nothing has a ratio
 };
 
 Machine machineOf(const Device& device);

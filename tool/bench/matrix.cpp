@@ -50,9 +50,11 @@ void expand(std::vector<MethodOptions>& all, MethodOption option, Value MethodOp
 }
 
 // Adds what a method has at a sample count.
-void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t samples, const BenchMatrix& matrix) {
+void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t samples, Api api,
+               const BenchMatrix& matrix) {
   MethodOptions options;
   options.name = method;
+  options.api = api;
   options.samples = samples;
   std::vector<MethodOptions> all{withLimits(options, matrix.limits)};
   expand(all, kTakesNodes, &MethodOptions::nodes, matrix.nodes);
@@ -64,6 +66,14 @@ void addMethod(BenchSettings& settings, std::string_view method, std::uint32_t s
   expand(all, kTakesMemoryBudget, &MethodOptions::memoryBudget, matrix.memoryBudgets);
   if (!matrix.layers.empty()) expand(all, kTakesLayers, &MethodOptions::maxLayers, matrix.layers);
   for (const MethodOptions& each : all) addSetting(settings, each);
+}
+
+// The processor draws once, beside the first API; of OpenGL's methods those that are not there are left out where all
+// are meant.
+bool isMeasuredWith(std::string_view method, Api api, const BenchMatrix& matrix) {
+  const MethodTraits& traits = traitsOf(method);
+  if (traits.onProcessor) return api == matrix.apis.front();
+  return api == Api::Vulkan || traits.makeGl != nullptr || !matrix.methods.empty();
 }
 
 } // namespace
@@ -100,14 +110,23 @@ BenchSettings configurationsOf(const BenchMatrix& matrix) {
   if (methods.empty()) methods.assign(methodNames().begin(), methodNames().end());
   BenchSettings settings;
   for (const std::uint32_t samples : matrix.samples) {
-    addMethod(settings, kBaselineMethod, samples, matrix);
-    for (const std::string_view method : methods) addMethod(settings, method, samples, matrix);
+    for (const Api api : matrix.apis) {
+      addMethod(settings, kBaselineMethod, samples, api, matrix);
+      for (const std::string_view method : methods) {
+        if (isMeasuredWith(method, api, matrix)) addMethod(settings, method, samples, api, matrix);
+      }
+    }
   }
   return settings;
 }
 
+std::string labelOf(const MethodOptions& options) {
+  const bool isUsual = options.api == Api::Vulkan || traitsOf(options.name).onProcessor;
+  return isUsual ? options.name : options.name + ", OpenGL";
+}
+
 std::string describe(const MethodOptions& options) {
-  std::string text = options.name;
+  std::string text = labelOf(options);
   if (hasChoices(options.name)) text.append(", ").append(nameOf(options.nodes));
   if (options.samples > 1) text.append(", ").append(std::to_string(options.samples)).append(" samples");
   if (hasChoices(options.name) && options.resolve != VITRAIL_RESOLVE_DEFAULT) {

@@ -30,7 +30,8 @@ std::string describe(const MethodLimits& limits);
 
 // The choices of each kind, every one of which is measured with every one of the others.
 struct BenchMatrix {
-  std::vector<std::string> methods; // none: all of methodNames()
+  std::vector<std::string> methods;      // none: all of methodNames()
+  std::vector<Api> apis = {Api::Vulkan}; // with the methods that each has, where none are named
   std::vector<VitrailNodeFormat> nodes = {VITRAIL_NODE_HDR};
   std::vector<std::uint32_t> samples = {1};
   std::vector<VitrailResolve> resolves = {VITRAIL_RESOLVE_DEFAULT};
@@ -54,7 +55,7 @@ struct BenchSettings {
   std::vector<SkippedSetting> skipped;
 };
 
-// The settings that the choices stand for, by sample count, the baseline of each count first, whether or not it was
+// The settings that the choices stand for, by sample count and API, the baseline of each first, whether or not it was
 // chosen. Choices that a method does not have (MethodTraits) it is not listed with.
 // What checkMethodOptions() refuses, such as several samples of a method that has one, is skipped. Nothing is listed
 // twice.
@@ -62,6 +63,9 @@ BenchSettings configurationsOf(const BenchMatrix& matrix);
 
 // A setting in words, for people: "linked-list, compact, 4 samples, compute, list build compute", "loop, 16 layers".
 std::string describe(const MethodOptions& options);
+
+// The name of a method, with the API that is not the usual one: "linked-list, OpenGL".
+std::string labelOf(const MethodOptions& options);
 
 // The same beside its sample count: "linked-list, compact, compute".
 std::string describeWithoutSamples(MethodOptions options);

@@ -83,7 +83,8 @@ Measurement summarize(const MethodOptions& options, const FrameReport& report, c
 void compare(std::vector<Measurement>& measurements, double bytesPerSecond) {
   for (Measurement& measured : measurements) {
     const auto baseline = std::ranges::find_if(measurements, [&](const Measurement& each) {
-      return each.options.name == kBaselineMethod && sameSamples(each, measured);
+      return each.options.name == kBaselineMethod && sameSamples(each, measured) &&
+             each.options.api == measured.options.api;
     });
     if (baseline != measurements.end()) {
       measured.costRatio = ratioOfMedians(measured.costMs, baseline->costMs);

@@ -23,8 +23,8 @@ struct Measurement {
   std::vector<std::pair<std::string, Spread>> passes; // milliseconds, in order
   Spread costMs;  // of what transparency costs in a frame: all passes but the opaque one
   Spread frameMs; // of all passes
-  // Over the baseline's in the same scene with as many samples, from medians. NaN where there is none, or it took no
-  // time.
+  // Over the baseline's in the same scene with as many samples and the same API, from medians. NaN where there is none,
+  // or it took no time.
   double costRatio = std::numeric_limits<double>::quiet_NaN();
   double frameRatio = std::numeric_limits<double>::quiet_NaN();
   // Transparent fragments over the median cost; of the baseline, which counts none, those of another method. None where
@@ -66,8 +66,8 @@ struct BenchReport : Machine {
 // by compare().
 Measurement summarize(const MethodOptions& options, const FrameReport& report, const std::vector<PassTimes>& frames);
 
-// Fills in ratios, rates and floors of all measurements of a scene. Each sample count has its baseline. Without a
-// bandwidth, 0, there are no floors.
+// Fills in ratios, rates and floors of all measurements of a scene. Each sample count of an API has its baseline.
+// Without a bandwidth, 0, there are no floors.
 void compare(std::vector<Measurement>& measurements, double bytesPerSecond);
 
 } // namespace vitrail::tool

@@ -49,8 +49,7 @@ Contender prepare(Device& device, const Scene& scene, const BenchRun& run, const
 
 // The transparent fragments of a picture, by a method that counts them.
 std::uint64_t countFragments(Device& device, const Scene& scene, const BenchRun& run, std::uint32_t samples) {
-  MethodOptions options;
-  options.name = device.exactMethod();
+  MethodOptions options = device.exactMethod();
   options.nodes = VITRAIL_NODE_HDR; // which rounds no surface away
   options.samples = samples;
   return device.makeRenderer(scene, run.opacity, DrawOrder::Forward, options)->measure(run.picture).fragmentsRequested;
@@ -75,7 +74,8 @@ std::vector<Contender> prepareAll(Device& device, const Scene& scene, const Benc
   std::vector<Contender> contenders;
   for (const MethodOptions& options : run.settings) {
     const auto refused = std::ranges::find_if(skipped, [&](const SkippedSetting& each) {
-      return each.options.name == kBaselineMethod && each.options.samples == options.samples;
+      return each.options.name == kBaselineMethod && each.options.samples == options.samples &&
+             each.options.api == options.api;
     });
     if (refused != skipped.end() && !traitsOf(options.name).onProcessor) {
       skipped.push_back({options, refused->reason});

@@ -159,7 +159,7 @@ BenchReport measure(const BenchArguments& arguments) {
   }
   reportWarnings(warnings, arguments);
 
-  Device device({arguments.device, false, wishFor(arguments.matrix.methods)});
+  Device device(deviceFor(arguments.device, false, arguments.matrix.methods, arguments.matrix.apis));
   BenchReport report = describeRun(arguments, device);
   report.warnings = std::move(warnings);
   if (device.gpu() != nullptr) report.bytesPerSecond = measureBandwidth(*device.gpu());

@@ -81,6 +81,7 @@ Where to:
                         that the file has, or shows nothing
 
 Which device:
+@api@
 @device@
 
 Examples:
@@ -175,7 +176,7 @@ void checkSweeps(const CLI::App& command, BenchArguments& arguments) {
 
 } // namespace
 
-std::string benchHelp() { return withDeviceHelp(withText(kBenchHelp, "@load@", kLoadHelp)); }
+std::string benchHelp() { return withApiHelp(withDeviceHelp(withText(kBenchHelp, "@load@", kLoadHelp)), true); }
 
 void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
   command.add_option("MODEL", arguments.model);
@@ -197,6 +198,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
   addList<std::uint32_t>(command, "--count", arguments.counts, "a whole number from 0",
                          [](const std::string& text) { return numberOf<std::uint32_t>(text); });
   addMethods(command, matrix.methods);
+  addApis(command, matrix.apis);
   addList<VitrailNodeFormat>(command, "--nodes", matrix.nodes, "a node format: standard, compact or hdr",
                              nodeFormatNamed);
   addList<std::uint32_t>(command, "--samples", matrix.samples, "1, 2, 4 or 8", sampleCount);

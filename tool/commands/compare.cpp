@@ -36,10 +36,11 @@ Comparison measure(const CompareArguments& arguments) {
   std::vector<std::string> warnings = scene.warnings;
   const bool isUnseen = warnIfUnseen(scene, seenOf(picture, arguments.opacity), warnings);
   reportWarnings(warnings, arguments);
-  Device device({arguments.device, arguments.validate, wishFor(arguments.methods)});
+  Device device(deviceFor(arguments.device, arguments.validate, arguments.methods, arguments.apis));
   const Machine machine = machineOf(device);
   ComparisonRun run;
   run.methods = arguments.methods;
+  run.apis = arguments.apis;
   run.samples = arguments.samples;
   run.limits = arguments.limits;
   run.picture = picture;
@@ -60,17 +61,23 @@ Comparison measure(const CompareArguments& arguments) {
   return comparison;
 }
 
-std::string pictureName(std::string_view method) { return fmt::format("{}.png", method); }
-std::string errorName(std::string_view method) { return fmt::format("{}-error.png", method); }
+// The names of a method's files.
+std::string stemOf(std::string_view method, Api api) {
+  return std::string(method) + (api == Api::OpenGl && !traitsOf(method).onProcessor ? "-opengl" : "");
+}
+std::string pictureName(std::string_view stem) { return fmt::format("{}.png", stem); }
+std::string errorName(std::string_view stem) { return fmt::format("{}-error.png", stem); }
 
 // The files of a folder: those of some methods, or with none named of whatever methods.
-std::vector<std::string> namesInFolder(std::vector<std::string> methods) {
+std::vector<std::string> namesInFolder(std::vector<std::string> methods, const std::vector<Api>& apis) {
   if (methods.empty()) methods.assign(methodNames().begin(), methodNames().end());
   methods.emplace_back(kBaselineMethod);
   std::vector<std::string> names{"report.json", "index.html", "exact.png", "layers.png"};
   for (const std::string& method : methods) {
-    names.push_back(pictureName(method));
-    names.push_back(errorName(method));
+    for (const Api api : apis) {
+      names.push_back(pictureName(stemOf(method, api)));
+      names.push_back(errorName(stemOf(method, api)));
+    }
   }
   return names;
 }
@@ -80,9 +87,10 @@ void writeFolder(OutputFolder& folder, const Comparison& comparison, const std::
   folder.write("exact.png", pictures.exact);
   folder.write("layers.png", pictures.layers);
   for (std::size_t i = 0; i < pictures.methods.size(); ++i) {
-    const std::string& name = comparison.methods[i].measurement.options.name;
-    folder.write(pictureName(name), pictures.methods[i].picture);
-    folder.write(errorName(name), pictures.methods[i].error);
+    const MethodOptions& options = comparison.methods[i].measurement.options;
+    const std::string stem = stemOf(options.name, options.api);
+    folder.write(pictureName(stem), pictures.methods[i].picture);
+    folder.write(errorName(stem), pictures.methods[i].error);
   }
   folder.write("report.json", std::as_bytes(std::span(json)));
   const std::string page = toPage(comparison, pictures, json);
@@ -95,8 +103,8 @@ void compareOnDevice(const CompareArguments& arguments) {
   if (!arguments.json.empty()) report.emplace(arguments.json);
   if (report) checkNotRead(*report, arguments.models);
   if (!arguments.folder.empty()) folder.emplace(arguments.folder);
-  if (folder) folder->check(namesInFolder(arguments.methods));
-  if (folder && report) checkApart(*folder, namesInFolder({}), "--json", *report);
+  if (folder) folder->check(namesInFolder(arguments.methods, arguments.apis));
+  if (folder && report) checkApart(*folder, namesInFolder({}, arguments.apis), "--json", *report);
 
   const Comparison comparison = measure(arguments);
 
@@ -124,7 +132,7 @@ void runCompare(const CLI::App& command, CompareArguments arguments) {
 
 void addCompareCommand(CLI::App& app, std::function<void()>& run) {
   CLI::App* command = app.add_subcommand("compare");
-  setHelpPage(*command, withDeviceHelp(withSceneHelp(kCompareHelp)));
+  setHelpPage(*command, withApiHelp(withDeviceHelp(withSceneHelp(kCompareHelp)), true));
   const auto arguments = std::make_shared<CompareArguments>();
   addCompareOptions(*command, *arguments);
   command->callback([command, arguments, &run] { run = [command, arguments] { runCompare(*command, *arguments); }; });

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "device_options.h"
 #include "errors.h"
 #include "option_values.h"
 
@@ -23,7 +24,8 @@ Usage:
 
 Of each method: how far its picture is from the exact one (PSNR, SSIM, FLIP, the worst pixel, the
 share of pixels that are off by more than 2/255), what it costs against plain blending in no order
-(unsorted), and its memory. The exact picture is that of linked-list with hdr nodes.
+(unsorted), and its memory. The exact picture is that of linked-list with hdr nodes, by Vulkan where
+that is among the APIs.
 
 @scene@
 
@@ -48,8 +50,10 @@ Where to:
                         that the file has, or shows nothing
 
 Which device:
+@api@
 @device@
-  --validate            run under the Vulkan validation layer and fail on any error
+  --validate            run under the Vulkan validation layer, or with OpenGL's debug output, and fail
+                        on any error
 
 Examples:
   vitrail compare --scene interlocked -o comparison
@@ -81,10 +85,10 @@ void takeModels(CompareArguments& arguments) {
 // Refuses options that only drawing has.
 void checkFileOptions(const CLI::App& command) {
   for (const char* name :
-       {"--scene",    "--count",   "--seed",      "--size",       "--up",        "--camera",     "--orbit",
-        "--eye",      "--look-at", "--fov",       "--clip-plane", "--opacity",   "--background", "--methods",
-        "--samples",  "--layers",  "--passes",    "--repeat",     "--warmup",    "--output",     "--device",
-        "--validate", "--time",    "--animation", "--variant",    "--point-size"}) {
+       {"--scene",    "--count",   "--seed",      "--size",       "--up",         "--camera",     "--orbit",
+        "--eye",      "--look-at", "--fov",       "--clip-plane", "--opacity",    "--background", "--methods",
+        "--samples",  "--layers",  "--passes",    "--repeat",     "--warmup",     "--output",     "--device",
+        "--validate", "--time",    "--animation", "--variant",    "--point-size", "--api"}) {
     if (command.count(name) > 0) {
       throw UsageError(fmt::format("{} is for comparing methods: two pictures are compared as they are", name));
     }
@@ -99,6 +103,7 @@ void addCompareOptions(CLI::App& command, CompareArguments& arguments) {
   command.add_option("FILES", arguments.files);
   addSceneOptions(command, arguments);
   addMethods(command, arguments.methods);
+  addApis(command, arguments.apis);
   addPositive(command, "--samples", arguments.samples);
   addLimits(command, arguments.limits);
   addFrames(command, "--repeat", arguments.repeats);

@@ -16,6 +16,7 @@ namespace vitrail::tool {
 struct CompareArguments : SceneArguments {
   std::vector<std::string> files;   // two pictures, models, or none: a built-in scene
   std::vector<std::string> methods; // none: all
+  std::vector<Api> apis = {Api::Vulkan};
   std::uint32_t samples = 1;
   MethodLimits limits;
   std::optional<std::uint32_t> repeats; // default: by the kind of device
@@ -35,7 +36,7 @@ void addCompareOptions(CLI::App& command, CompareArguments& arguments);
 // Checks what one option alone does not show, and takes the models from the files. Throws UsageError.
 void checkCompareArguments(const CLI::App& command, CompareArguments& arguments);
 
-// Has the mark of withSceneHelp().
+// Has the marks of withSceneHelp(), withDeviceHelp() and withApiHelp().
 extern const char* const kCompareHelp;
 
 } // namespace vitrail::tool

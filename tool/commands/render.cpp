@@ -68,13 +68,14 @@ Device openDevice(const Job& job) {
   if (wish == Wish::Fastest && job.scene.clipPlanes.empty() && Solids(job.scene, false).any()) {
     wish = Wish::VulkanIfThere;
   }
-  return Device({arguments.device, arguments.validate, wish});
+  const bool openGl = arguments.method.api == Api::OpenGl;
+  return Device({arguments.device, arguments.validate, wish, !openGl, openGl});
 }
 
 // Where neither a method nor a device was asked for, the device has its own exact one.
 std::unique_ptr<Renderer> makeRenderer(const Device& device, Job& job) {
   MethodOptions method = job.arguments.method;
-  if (job.arguments.wish == Wish::Fastest) method.name = device.exactMethod();
+  if (job.arguments.wish == Wish::Fastest) method.name = device.exactMethod().name;
   return device.makeRenderer(std::move(job.scene), job.arguments.opacity, method);
 }
 

@@ -54,8 +54,10 @@ Where to:
                         that the file has, or shows nothing
 
 Which device:
+@api@
 @device@
-  --validate            run under the Vulkan validation layer; its errors fail the command
+  --validate            run under the Vulkan validation layer, or with OpenGL's debug output; errors
+                        fail the command
 
 Examples:
   vitrail render engine.glb -o engine.png --opacity 0.25
@@ -69,6 +71,7 @@ Examples:
 void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   MethodOptions& method = arguments.method;
   command.add_option("--method", arguments.methodName);
+  addApi(command, method.api);
   addPositive(command, "--samples", method.samples);
   addPositive(command, "--layers", method.maxLayers);
   addPositive(command, "--passes", method.passes);
@@ -94,6 +97,10 @@ std::string vulkanOption(const RenderArguments& arguments) {
 }
 
 void chooseDevice(RenderArguments& arguments) {
+  if (arguments.method.api == Api::OpenGl) { // which has a device of its own
+    arguments.wish = Wish::Vulkan;
+    return;
+  }
   const bool isCpuMethod = arguments.methodName == kCpuMethod;
   const bool isCpuDevice = isProcessor(arguments.device);
   if (isCpuMethod && arguments.validate) throw UsageError("the method cpu is without Vulkan: leave --validate out");
@@ -125,8 +132,9 @@ void checkMethod(const RenderArguments& arguments) {
 } // namespace
 
 std::string renderHelp() {
-  return withDeviceHelp(
-      withText(withText(withSceneHelp(kRenderHelp), "@methods@", methodsHelp()), "@output@", kOutputHelp));
+  return withApiHelp(withDeviceHelp(withText(withText(withSceneHelp(kRenderHelp), "@methods@", methodsHelp()),
+                                             "@output@", kOutputHelp)),
+                     false);
 }
 
 void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
@@ -144,6 +152,7 @@ void checkRenderArguments(RenderArguments& arguments) {
   checkSceneArguments(arguments, "render");
   arguments.method.name = arguments.methodName.value_or(arguments.method.name);
   checkMethod(arguments);
+  static_cast<void>(deviceFor(arguments.device, false, {arguments.method.name}, {arguments.method.api}));
   chooseDevice(arguments);
   static_cast<void>(outputFormatOf(arguments));
 }

@@ -17,8 +17,7 @@ void tell(const ComparisonRun& run, const std::string& step) {
 }
 
 RenderResult drawExact(Device& device, const Scene& scene, const ComparisonRun& run) {
-  MethodOptions options;
-  options.name = device.exactMethod();
+  MethodOptions options = device.exactMethod();
   options.nodes = VITRAIL_NODE_HDR;
   options.samples = run.samples;
   return device.makeRenderer(scene, run.opacity, DrawOrder::Forward, options)->render(run.picture);
@@ -36,29 +35,16 @@ void countLayers(Device& device, const Scene& scene, const ComparisonRun& run, C
 
 // The baseline and the methods that were asked for, each once, less those that the options do not allow.
 std::vector<MethodOptions> settingsOf(const ComparisonRun& run, std::vector<RefusedMethod>& refused) {
-  std::vector<std::string> names{std::string(kBaselineMethod)};
-  const auto add = [&](const std::string& name) {
-    if (std::ranges::count(names, name) == 0) names.push_back(name);
-  };
-  if (run.methods.empty()) {
-    for (const std::string_view name : methodNames()) add(std::string(name));
+  BenchMatrix matrix;
+  matrix.methods = run.methods;
+  matrix.apis = run.apis;
+  matrix.samples = {run.samples};
+  matrix.limits = run.limits;
+  BenchSettings settings = configurationsOf(matrix);
+  for (const SkippedSetting& skipped : settings.skipped) {
+    refused.push_back({labelOf(skipped.options), skipped.reason});
   }
-  for (const std::string& name : run.methods) add(name);
-
-  std::vector<MethodOptions> settings;
-  for (const std::string& name : names) {
-    MethodOptions options;
-    options.name = name;
-    options.samples = run.samples;
-    options = withLimits(options, run.limits);
-    try {
-      checkMethodOptions(options);
-      settings.push_back(options);
-    } catch (const std::invalid_argument& error) {
-      refused.push_back({name, error.what()});
-    }
-  }
-  return settings;
+  return std::move(settings.measured);
 }
 
 BenchRun benchOf(const ComparisonRun& run, std::vector<MethodOptions> settings) {
@@ -95,17 +81,17 @@ Comparison compareMethods(Device& device, const Scene& scene, const ComparisonRu
   BenchRun bench = benchOf(run, settingsOf(run, result.refused));
   std::vector<Picture> pictures; // in the order of the measurements
   bench.takePicture = [&](const MethodOptions& options, RenderResult drawn) {
-    tell(run, "picture of " + options.name);
+    tell(run, "picture of " + labelOf(options));
     pictures.push_back(std::move(drawn.picture));
   };
   SceneMeasurement measured = measureScene(device, scene, bench);
   result.triangles = measured.triangles;
   for (const SkippedSetting& skipped : measured.skipped)
-    result.refused.push_back({skipped.options.name, skipped.reason});
+    result.refused.push_back({labelOf(skipped.options), skipped.reason});
 
   const ComparedPicture reference(result.exact);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
-    tell(run, "difference of " + measured.measurements[i].options.name);
+    tell(run, "difference of " + labelOf(measured.measurements[i].options));
     Difference difference = reference.differenceTo(pictures[i]);
     result.methods.push_back({std::move(measured.measurements[i]), std::move(pictures[i]), std::move(difference)});
   }

@@ -23,7 +23,7 @@ struct ComparedMethod {
 
 // A method that the device or the options do not allow, and why.
 struct RefusedMethod {
-  std::string name;
+  std::string name; // as labelOf() has it
   std::string reason;
 };
 
@@ -44,12 +44,13 @@ struct Comparison : Machine {
   // The fragments of each pixel at its centre, whatever the samples, and the most that a pixel has.
   Plane layers;
   std::uint32_t layersMax = 0;
-  std::vector<ComparedMethod> methods; // the baseline, then as asked for
+  std::vector<ComparedMethod> methods; // of each API the baseline, then as asked for
   std::vector<RefusedMethod> refused;
 };
 
 struct ComparisonRun {
   std::vector<std::string> methods; // of methodNames(); none: all of them
+  std::vector<Api> apis = {Api::Vulkan};
   std::uint32_t samples = 1;
   MethodLimits limits;
   RenderOptions picture;

@@ -4,14 +4,6 @@
 
 namespace vitrail::tool {
 
-namespace {
-
-std::uint32_t pixelGroups(std::uint32_t pixels) {
-  return (pixels + shaders::PIXEL_GROUP_SIDE - 1) / shaders::PIXEL_GROUP_SIDE;
-}
-
-} // namespace
-
 PixelPass::PixelPass(Gpu& gpu, const SingleSet& set, const PixelPassInfo& info)
     : set_(set.set()),
       constantBytes_(info.constantBytes),
@@ -24,7 +16,7 @@ void PixelPass::cmdRun(VkCommandBuffer commands, VkExtent2D extent, const void* 
   if (constantBytes_ > 0) {
     vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, constantBytes_, constants);
   }
-  vkCmdDispatch(commands, pixelGroups(extent.width), pixelGroups(extent.height), 1);
+  vkCmdDispatch(commands, shaders::pixelGroups(extent.width), shaders::pixelGroups(extent.height), 1);
 }
 
 } // namespace vitrail::tool

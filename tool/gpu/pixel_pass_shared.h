@@ -8,6 +8,11 @@ VITRAIL_SHARED_BEGIN
 
 const uint PIXEL_GROUP_SIDE = 8u; // of a work group, in pixels
 
+#ifdef __cplusplus
+// The work groups along a side of so many pixels.
+constexpr uint pixelGroups(uint pixels) { return (pixels + PIXEL_GROUP_SIDE - 1) / PIXEL_GROUP_SIDE; }
+#endif
+
 VITRAIL_SHARED_END
 
 #endif

@@ -1,5 +1,7 @@
 // One triangle over the whole viewport, at the far plane: for shaders that run once a pixel.
 #version 460
+#extension GL_GOOGLE_include_directive : require
+#include "gpu/glsl.h"
 
 void main() {
   vec2 corner = vec2((gl_VertexIndex << 1) & 2, gl_VertexIndex & 2);

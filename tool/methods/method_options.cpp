@@ -22,6 +22,8 @@ constexpr Names<VitrailMsaaResolve, 2> kMsaaResolves{
 constexpr Names<StencilMark, 2> kStencilMarks{{{StencilMark::On, "on"}, {StencilMark::Off, "off"}}};
 constexpr Names<Overflow, 2> kOverflows{{{Overflow::Grow, "grow"}, {Overflow::Approximate, "approximate"}}};
 
+constexpr Names<Api, 2> kApis{{{Api::Vulkan, "vulkan"}, {Api::OpenGl, "opengl"}}};
+
 template <typename Table, typename Choice>
 std::string_view nameIn(const Table& table, Choice choice) {
   const auto found = std::ranges::find(table, choice, [](const auto& entry) { return entry.first; });
@@ -42,12 +44,14 @@ std::string_view nameOf(VitrailResolve resolve) { return nameIn(kResolves, resol
 std::string_view nameOf(VitrailListBuild listBuild) { return nameIn(kListBuilds, listBuild); }
 std::string_view nameOf(VitrailMsaaResolve msaaResolve) { return nameIn(kMsaaResolves, msaaResolve); }
 std::string_view nameOf(StencilMark mark) { return nameIn(kStencilMarks, mark); }
+std::string_view nameOf(Api api) { return nameIn(kApis, api); }
 
 std::optional<VitrailNodeFormat> nodeFormatNamed(std::string_view name) { return choiceIn(kNodeFormats, name); }
 std::optional<VitrailResolve> resolveNamed(std::string_view name) { return choiceIn(kResolves, name); }
 std::optional<VitrailListBuild> listBuildNamed(std::string_view name) { return choiceIn(kListBuilds, name); }
 std::optional<VitrailMsaaResolve> msaaResolveNamed(std::string_view name) { return choiceIn(kMsaaResolves, name); }
 std::optional<StencilMark> stencilMarkNamed(std::string_view name) { return choiceIn(kStencilMarks, name); }
+std::optional<Api> apiNamed(std::string_view name) { return choiceIn(kApis, name); }
 std::optional<Overflow> overflowNamed(std::string_view name) { return choiceIn(kOverflows, name); }
 
 } // namespace vitrail::tool

@@ -15,6 +15,9 @@ namespace vitrail::tool {
 // Whether a drawn resolve skips pixels without fragments by the stencil that collecting left (VitrailVkScope).
 enum class StencilMark { On, Off };
 
+// What draws.
+enum class Api { Vulkan, OpenGl };
+
 // What becomes of a picture that has more fragments than its memory.
 enum class Overflow {
   Grow,       // it is drawn again, with more memory or in tiles
@@ -23,6 +26,7 @@ enum class Overflow {
 
 struct MethodOptions {
   std::string name = "linked-list";
+  Api api = Api::Vulkan;     // but of the method cpu, which needs none
   std::uint32_t samples = 1; // 1, 2, 4, 8
   // Of methods that have a choice of them (MethodTraits):
   VitrailNodeFormat nodes = VITRAIL_NODE_HDR; // the one that keeps pictures within 1/255
@@ -45,6 +49,7 @@ std::string_view nameOf(VitrailResolve resolve);
 std::string_view nameOf(VitrailListBuild listBuild);
 std::string_view nameOf(VitrailMsaaResolve msaaResolve);
 std::string_view nameOf(StencilMark mark);
+std::string_view nameOf(Api api); // "vulkan", "opengl"
 
 // The choice of that name; nothing for another text.
 std::optional<VitrailNodeFormat> nodeFormatNamed(std::string_view name);
@@ -52,6 +57,7 @@ std::optional<VitrailResolve> resolveNamed(std::string_view name);
 std::optional<VitrailListBuild> listBuildNamed(std::string_view name);
 std::optional<VitrailMsaaResolve> msaaResolveNamed(std::string_view name);
 std::optional<StencilMark> stencilMarkNamed(std::string_view name);
+std::optional<Api> apiNamed(std::string_view name);
 std::optional<Overflow> overflowNamed(std::string_view name); // "grow", "approximate"
 
 } // namespace vitrail::tool

@@ -11,6 +11,7 @@
 
 #include "../scene/message.h"
 #include "../scene/volume.h"
+#include "gl_method.h"
 #include "method.h"
 
 namespace vitrail::tool {
@@ -24,6 +25,7 @@ constexpr std::array kMethods{
     MethodTraits{.name = kListMethod,
                  .help = "per-pixel linked lists of any length",
                  .make = makeLinkedList,
+                 .makeGl = makeGlLinkedList,
                  .options = kTakesSamples | kTakesNodes | kTakesResolve | kTakesListBuild | kTakesMsaaResolve |
                             kTakesLayers | kTakesMemoryBudget | kTakesStencilMark | kTakesOverflow,
                  .lists = true,
@@ -36,11 +38,13 @@ constexpr std::array kMethods{
     MethodTraits{.name = "unsorted",
                  .help = "plain blending in the order of the file",
                  .make = makeUnsorted,
+                 .makeGl = makeGlUnsorted,
                  .options = kTakesSamples,
                  .wrong = "surfaces are blended in the order in which they are drawn"},
     MethodTraits{.name = "sorted",
                  .help = "objects back to front",
                  .make = makeSorted,
+                 .makeGl = makeGlSorted,
                  .options = kTakesSamples,
                  .sortsOnHost = true,
                  .wrong = "objects that cross, nest or overlap in a cycle, and surfaces of one object, are blended in "
@@ -54,6 +58,7 @@ constexpr std::array kMethods{
     MethodTraits{.name = "depth-peeling",
                  .help = "front to back, a layer a pass",
                  .make = makeDepthPeeling,
+                 .makeGl = makeGlDepthPeeling,
                  .options = kTakesLayers,
                  .orderIndependent = true},
     MethodTraits{.name = "reverse-depth-peeling",
@@ -142,6 +147,18 @@ void refuse(std::string_view option, MethodOption bit, std::string_view method) 
   throw std::invalid_argument(fmt::format("{} is of {}: {} has no choice, leave it out", option, whose, method));
 }
 
+// Refuses a method that is not there with an API.
+void checkApi(const MethodOptions& options) {
+  const MethodTraits& traits = traitsOf(options.name);
+  if (options.api != Api::OpenGl || traits.makeGl != nullptr || traits.onProcessor) return;
+  std::vector<std::string_view> there;
+  for (const MethodTraits& each : kMethods) {
+    if (each.makeGl != nullptr) there.push_back(each.name);
+  }
+  throw std::invalid_argument(
+      fmt::format("--api opengl has the methods {}, not {}", fmt::join(there, ", "), options.name));
+}
+
 void checkTaken(const MethodOptions& options) {
   const MethodOptions defaults;
   const MethodTraits& traits = traitsOf(options.name);
@@ -200,6 +217,10 @@ std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& 
   return traitsOf(options.name).make(host, options);
 }
 
+std::unique_ptr<GlMethod> makeGlMethod(const GlMethodHost& host, const MethodOptions& options) {
+  return traitsOf(options.name).makeGl(host, options);
+}
+
 void checkMethodOptions(const MethodOptions& options) {
   if (std::ranges::find(kNames, options.name) == kNames.end()) {
     throw std::invalid_argument(
@@ -208,6 +229,7 @@ void checkMethodOptions(const MethodOptions& options) {
   if (options.samples != 1 && options.samples != 2 && options.samples != 4 && options.samples != 8) {
     throw std::invalid_argument(fmt::format("a pixel has 1, 2, 4 or 8 samples, not {}", options.samples));
   }
+  checkApi(options);
   checkTaken(options);
   checkStored(options);
 }

@@ -19,6 +19,8 @@ namespace vitrail::tool {
 struct Scene; // scene/scene.h
 class Method; // method.h
 struct MethodHost;
+class GlMethod; // gl_method.h
+struct GlMethodHost;
 
 // The options of MethodOptions that only some methods have. What a method has not is refused, never ignored.
 enum MethodOption : std::uint32_t {
@@ -39,6 +41,7 @@ struct MethodTraits {
   std::string_view name; // what --method takes
   std::string_view help; // how it draws: a line of at most 65 characters
   std::unique_ptr<Method> (*make)(const MethodHost& host, const MethodOptions& options) = nullptr;
+  std::unique_ptr<GlMethod> (*makeGl)(const GlMethodHost& host, const MethodOptions& options) = nullptr; // or not there
   std::uint32_t options = 0; // of MethodOption
   bool lists = false;        // its fragments are nodes of lists
   bool sortsOnHost = false;  // it reads the geometry that MethodHost::scene has
@@ -61,6 +64,9 @@ const MethodTraits& traitsOf(std::string_view name);
 // Makes a method that is not drawn on the processor. The options have passed checkMethodOptions(), or are
 // kLayerCount's. Throws GpuError where the device does not offer them.
 std::unique_ptr<Method> makeMethod(const MethodHost& host, const MethodOptions& options);
+
+// The same with OpenGL, for a method that is there with it.
+std::unique_ptr<GlMethod> makeGlMethod(const GlMethodHost& host, const MethodOptions& options);
 
 // Throws std::invalid_argument with a one-line reason for a name that is not listed, for options that the method does
 // not have, or for options that exclude each other.
@@ -97,5 +103,9 @@ std::unique_ptr<Method> makeStencilRouted(const MethodHost& host, const MethodOp
 std::unique_ptr<Method> makeStochastic(const MethodHost& host, const MethodOptions& options);
 std::unique_ptr<Method> makeUnsorted(const MethodHost& host, const MethodOptions& options);
 std::unique_ptr<Method> makeWeighted(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<GlMethod> makeGlDepthPeeling(const GlMethodHost& host, const MethodOptions& options);
+std::unique_ptr<GlMethod> makeGlLinkedList(const GlMethodHost& host, const MethodOptions& options);
+std::unique_ptr<GlMethod> makeGlSorted(const GlMethodHost& host, const MethodOptions& options);
+std::unique_ptr<GlMethod> makeGlUnsorted(const GlMethodHost& host, const MethodOptions& options);
 
 } // namespace vitrail::tool

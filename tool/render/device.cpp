@@ -7,6 +7,7 @@
 #include "../gpu/presence.h"
 #include "../methods/methods.h"
 #include "cpu_still.h"
+#include "gl_still.h"
 #include "still.h"
 
 namespace vitrail::tool {
@@ -16,6 +17,11 @@ bool isProcessor(std::string_view device) {
 }
 
 Device::Device(const DeviceOptions& options) {
+  if (options.openGl) gl_ = std::make_unique<Gl>(GlOptions{options.name, options.validate});
+  if (!options.vulkan) {
+    reason_ = "add vulkan to --api";
+    return;
+  }
   if (isProcessor(options.name) || (options.name.empty() && options.wish == Wish::Processor)) {
     reason_ = options.name.empty() ? "name one with --device" : "leave --device cpu out";
     return;
@@ -33,7 +39,17 @@ Device::Device(const DeviceOptions& options) {
   }
 }
 
-std::string_view Device::exactMethod() const { return gpu_ ? std::string_view(kListMethod) : kCpuMethod; }
+MethodOptions Device::exactMethod() const {
+  MethodOptions exact;
+  exact.name = gpu_ || gl_ ? kListMethod : kCpuMethod;
+  exact.api = !gpu_ && gl_ ? Api::OpenGl : Api::Vulkan;
+  return exact;
+}
+
+Gl& Device::openGl() const {
+  if (gl_) return *gl_;
+  throw GpuError("there is no OpenGL device: add --api opengl");
+}
 
 Gpu& Device::vulkan() const {
   if (gpu_) return *gpu_;
@@ -47,12 +63,14 @@ bool Device::onProcessor(const MethodOptions& method) const {
 std::unique_ptr<Renderer> Device::makeRenderer(const Scene& scene, std::optional<float> opacity, DrawOrder order,
                                                const MethodOptions& method) const {
   if (onProcessor(method)) return std::make_unique<CpuStillRenderer>(scene, opacity, order, method);
+  if (method.api == Api::OpenGl) return std::make_unique<GlStillRenderer>(openGl(), scene, opacity, order, method);
   return std::make_unique<StillRenderer>(vulkan(), scene, opacity, order, method);
 }
 
 std::unique_ptr<Renderer> Device::makeRenderer(Scene&& scene, std::optional<float> opacity,
                                                const MethodOptions& method) const {
   if (onProcessor(method)) return std::make_unique<CpuStillRenderer>(std::move(scene), opacity, method);
+  if (method.api == Api::OpenGl) return std::make_unique<GlStillRenderer>(openGl(), std::move(scene), opacity, method);
   return std::make_unique<StillRenderer>(vulkan(), std::move(scene), opacity, method);
 }
 

@@ -1,4 +1,4 @@
-// What pictures are drawn on: a Vulkan device, the processor by Vitrail's own rasteriser, or both.
+// What pictures are drawn on: a Vulkan device, an OpenGL device, the processor by Vitrail's own rasteriser.
 #pragma once
 
 #include <memory>
@@ -8,6 +8,7 @@
 
 #include "../gpu/device.h"
 #include "../methods/method_options.h"
+#include "../opengl/gl.h"
 #include "../stage/draw_order.h"
 #include "renderer.h"
 
@@ -26,13 +27,15 @@ enum class Wish {
 };
 
 struct DeviceOptions {
-  std::string name; // as --device has it: kProcessor, or a Vulkan device as GpuOptions has it; empty: by `wish`
+  std::string name; // as --device has it: kProcessor, or a device as GpuOptions has it; empty: by `wish`
   bool validate = false;
   Wish wish = Wish::Fastest;
+  bool vulkan = true;  // false: no Vulkan device, whatever is wished
+  bool openGl = false; // an OpenGL device beside it
 };
 
-// The processor is always there and takes the method `cpu`; the Vulkan device takes all others. Where there is none the
-// processor counts layers too (kLayerCount).
+// The processor is always there and takes the method `cpu`; the Vulkan device takes all others, and the OpenGL device
+// those with Api::OpenGl. Where there is no Vulkan device the processor counts layers too (kLayerCount).
 class Device {
  public:
   // Loads Vulkan only where a Vulkan device is named or wished for, or where there may be a GPU (gpu/presence.h).
@@ -41,8 +44,9 @@ class Device {
 
   // Null: there is none.
   [[nodiscard]] Gpu* gpu() const { return gpu_.get(); }
-  // The exact method of choice.
-  [[nodiscard]] std::string_view exactMethod() const;
+  [[nodiscard]] Gl* gl() const { return gl_.get(); } // the same of OpenGL
+  // The exact method of choice, with its API: Vulkan where there is a device.
+  [[nodiscard]] MethodOptions exactMethod() const;
 
   // Throws GpuError, also where a method needs a Vulkan device and there is none.
   std::unique_ptr<Renderer> makeRenderer(const Scene& scene, std::optional<float> opacity, DrawOrder order,
@@ -55,7 +59,10 @@ class Device {
   bool onProcessor(const MethodOptions& method) const;
   Gpu& vulkan() const;
 
+  Gl& openGl() const;
+
   std::unique_ptr<Gpu> gpu_;
+  std::unique_ptr<Gl> gl_;
   std::string reason_; // why there is no Vulkan device
 };
 

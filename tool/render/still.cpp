@@ -1,25 +1,15 @@
 #include "still.h"
 
-#include <algorithm>
-
-#include <fmt/format.h>
-
 #include "../gpu/submit.h"
 #include "../gpu/timers.h"
 #include "../methods/method.h"
 #include "../methods/methods.h"
 #include "../stage/frame.h"
 #include "../stage/stage.h"
+#include "attempts.h"
 #include "encode_pass.h"
 
 namespace vitrail::tool {
-
-namespace {
-
-// The first frame counts, the second one fits: more are never needed unless a device counts wrong.
-constexpr int kMaxAttempts = 3;
-
-} // namespace
 
 struct StillRenderer::Impl {
   MethodOptions options;
@@ -35,7 +25,6 @@ struct StillRenderer::Impl {
   bool draw(const Background& background, bool encoded);
   FrameReport drawUntilComplete(const RenderOptions& picture, bool encoded);
   bool isBackgroundAlone(const RenderOptions& picture, const RenderResult& drawn);
-  FrameReport report(const RenderOptions& picture, const FrameStats& stats);
 };
 
 StillRenderer::Impl::Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, const MethodOptions& chosen)
@@ -47,13 +36,7 @@ StillRenderer::Impl::Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, c
       encode(gpu),
       timers(gpu, Frame::kMostPasses) {
   stage.setNeeds(method->needs());
-  const bool hasPoints = std::ranges::any_of(
-      scene.draws, [&scene](const Draw& draw) { return scene.meshes[draw.mesh].primitive == Primitive::Points; });
-  const float drawn = stage.surfaces().pointSize();
-  if (hasPoints && drawn != scene.pointSize) {
-    warnings.push_back(fmt::format("points of {} pixels are drawn with {}, the nearest that {} offers", scene.pointSize,
-                                   drawn, gpu.properties().deviceName));
-  }
+  warnOfPoints(scene, stage.surfaces().pointSize(), gpu.properties().deviceName, warnings);
 }
 
 void StillRenderer::Impl::prepare(const RenderOptions& picture) {
@@ -93,36 +76,22 @@ bool StillRenderer::Impl::draw(const Background& background, bool encoded) {
   return method->finish();
 }
 
-// Draws until the method has room for every fragment.
 FrameReport StillRenderer::Impl::drawUntilComplete(const RenderOptions& picture, bool encoded) {
   prepare(picture);
   const std::string device = stage.gpu().properties().deviceName;
-  for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
-    const bool complete = draw(picture.background, encoded);
-    const FrameStats stats = method->stats();
-    if (stats.fragmentsMissing == 0 && stats.cutPixels > 0) {
-      throw GpuError(
-          fmt::format("{} pixels have more surfaces, up to {}, than the driver of {} lets a shader sort: use a GPU",
-                      stats.cutPixels, stats.layersMax, device));
-    }
-    if (complete) return report(picture, stats);
-  }
-  throw GpuError(
-      fmt::format("{} counts the picture's fragments differently in each of {} frames", device, kMaxAttempts));
+  const FrameStats stats = tool::drawUntilComplete(
+      device, [&] { return draw(picture.background, encoded); }, [&] { return method->stats(); });
+  FrameReport report = reportOf(stats, picture, options, timers.milliseconds());
+  report.device = device;
+  report.api = "Vulkan 1.3";
+  report.warnings = warnings;
+  report.peakBytes = stage.gpu().peakMemory();
+  return report;
 }
 
 // Whether the background, drawn in the same way without the scene, is the same picture.
 bool StillRenderer::Impl::isBackgroundAlone(const RenderOptions& picture, const RenderResult& drawn) {
-  // A background without a gradient: most pictures show at once that there is more.
-  const auto isPlain = [](const auto& rgba) {
-    for (std::size_t i = 4; i < rgba.size(); ++i) {
-      if (rgba[i] != rgba[i - 4]) return false;
-    }
-    return true;
-  };
-  const bool mayBe =
-      picture.background.kind == Background::Kind::Sky || (isPlain(drawn.picture.rgba) && isPlain(drawn.deep.rgba));
-  if (!mayBe) return false;
+  if (!mayBeBackground(picture, drawn)) return false;
   Frame frame(submitter, timers, stage.images(), stage.surfaces());
   stage.drawBackground(frame, picture.background);
   stage.images().cmdToEncode(frame.commands());
@@ -131,23 +100,6 @@ bool StillRenderer::Impl::isBackgroundAlone(const RenderOptions& picture, const 
   frame.finish();
   return picture.encoding == Encoding::Srgb8 ? encode.pixels() == drawn.picture.rgba
                                              : encode.deepPixels() == drawn.deep.rgba;
-}
-
-FrameReport StillRenderer::Impl::report(const RenderOptions& picture, const FrameStats& stats) {
-  FrameReport report;
-  static_cast<FrameStats&>(report) = stats;
-  report.device = stage.gpu().properties().deviceName;
-  report.api = "Vulkan 1.3";
-  report.method = options.name;
-  report.warnings = warnings;
-  report.width = picture.width;
-  report.height = picture.height;
-  report.samples = options.samples;
-  if (!report.resolve.empty() && options.samples > 1) report.msaaResolve = nameOf(options.msaaResolve);
-  report.peakBytes = stage.gpu().peakMemory();
-  report.passesMs = timers.milliseconds();
-  for (const auto& [name, milliseconds] : report.passesMs) report.frameMs += milliseconds;
-  return report;
 }
 
 StillRenderer::StillRenderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order,

@@ -58,6 +58,7 @@ constexpr CsvColumn kCsvColumns[] = {
     {names::kHeight, [](const CsvRow& row) { return cell(row.scene.height); }},
     {names::kTriangles, [](const CsvRow& row) { return cell(row.scene.triangles); }},
     {names::kMethod, [](const CsvRow& row) { return row.measured.options.name; }},
+    {names::kApi, [](const CsvRow& row) { return std::string(nameOf(row.measured.options.api)); }},
     {names::kNodes, [](const CsvRow& row) { return row.frame.nodes; }},
     {names::kResolve, [](const CsvRow& row) { return row.frame.resolve; }},
     {names::kSamples, [](const CsvRow& row) { return cell(row.frame.samples); }},

@@ -210,11 +210,11 @@ std::string sweepTable(const BenchReport& report, SweepKind kind) {
     }
   }
   std::string table = sweepTitle(*steps.front(), kind);
-  if (report.hasVulkan) {
+  if (report.hasDevice) {
     table += gridOf(steps, settings, "cost, times unsorted",
                     [](const Measurement& measured) { return ratio(measured.costRatio); });
   }
-  if (!report.isCpu || !report.hasVulkan) {
+  if (!report.isCpu || !report.hasDevice) {
     table += gridOf(steps, settings, "cost, ms",
                     [](const Measurement& measured) { return milliseconds(measured.costMs.median); });
   }
@@ -235,7 +235,8 @@ std::string sweepTable(const BenchReport& report, SweepKind kind) {
 std::string toTable(const BenchReport& report) {
   std::string table = fmt::format(
       "{} ({}), {}\nrounds: {}, warm-up frames: {}{}\n", report.device, report.driver, report.api, report.repeats,
-      report.warmups, report.hasVulkan ? fmt::format("; a copy moves {:.1f} GB/s", report.bytesPerSecond * 1e-9) : "");
+      report.warmups,
+      report.bytesPerSecond > 0.0 ? fmt::format("; a copy moves {:.1f} GB/s", report.bytesPerSecond * 1e-9) : "");
   table += describe(report.limits);
   const auto isCpuMethod = [](const Measurement& each) { return each.options.name == kCpuMethod; };
   table += notesOn(report, std::ranges::any_of(report.scenes, [&](const SceneMeasurement& scene) {

@@ -8,10 +8,10 @@ namespace vitrail::tool {
 
 std::string notesOn(const Machine& machine, bool hasCpuMethod) {
   std::string notes;
-  if (machine.isCpu && machine.hasVulkan)
+  if (machine.isCpu && machine.hasDevice)
     notes = "This device is a CPU: only the ratios say something, its times are the machine's.\n";
   if (!hasCpuMethod) return notes;
-  return notes + (machine.hasVulkan ? fmt::format("The method cpu is drawn by {}.\nIts times are by the clock, and its "
+  return notes + (machine.hasDevice ? fmt::format("The method cpu is drawn by {}.\nIts times are by the clock, and its "
                                                   "cost is that of the whole frame.\n",
                                                   machine.processor)
                                     : "Times are by the clock, and the cost is that of the whole frame.\n");

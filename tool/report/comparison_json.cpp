@@ -12,6 +12,7 @@ namespace {
 Json toJson(const ComparedMethod& method) {
   const Measurement& measured = method.measurement;
   Json json = {{names::kMethod, measured.options.name},
+               {names::kApi, nameOf(measured.options.api)},
                {names::kMaxLayers, limitOrNull(measured.options.maxLayers)},
                {names::kPasses, limitOrNull(measured.options.passes)},
                {names::kExact, isExact(measured.report)},

@@ -48,7 +48,7 @@ std::string dataOf(const Comparison& comparison, const ComparisonPictures& pictu
   std::string methods;
   for (std::size_t i = 0; i < pictures.methods.size(); ++i) {
     methods += fmt::format("{}{{\"name\":\"{}\",\"picture\":{},\"error\":{}}}", i == 0 ? "" : ",",
-                           comparison.methods[i].measurement.options.name, pngUri(pictures.methods[i].picture),
+                           labelOf(comparison.methods[i].measurement.options), pngUri(pictures.methods[i].picture),
                            pngUri(pictures.methods[i].error));
   }
   return fmt::format(R"({{"report":{},"exact":{},"layers":{},"error_colors":{},"layers_colors":{},"methods":[{}]}})",

@@ -29,7 +29,7 @@ std::string worstText(const Metrics& metrics) {
 std::string rowOf(const ComparedMethod& method) {
   const Metrics& metrics = method.difference.metrics;
   const Measurement& measured = method.measurement;
-  return fmt::format(kComparisonRow, measured.options.name, psnrText(metrics.psnr), ssimText(metrics.ssim),
+  return fmt::format(kComparisonRow, labelOf(measured.options), psnrText(metrics.psnr), ssimText(metrics.ssim),
                      flipText(metrics.flip), worstText(metrics), shareText(metrics.offShare),
                      milliseconds(measured.costMs.median), ratio(measured.costRatio),
                      milliseconds(measured.frameMs.median), mebibytes(measured.report.totalBytes));
@@ -55,7 +55,7 @@ std::string toTable(const Comparison& comparison) {
   for (const ComparedMethod& method : comparison.methods) table += rowOf(method);
   table += "\n passes, ms\n";
   for (const ComparedMethod& method : comparison.methods) {
-    table += passTimesOf(fmt::format(" {:<22}", method.measurement.options.name), method.measurement);
+    table += passTimesOf(fmt::format(" {:<22}", labelOf(method.measurement.options)), method.measurement);
   }
   for (const RefusedMethod& refused : comparison.refused) {
     table += fmt::format(" left out {}: {}\n", refused.name, refused.reason);

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "surface_shared.h"
 
-layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameData frame; };
+layout(BOUND(0, 0, 5), std140) uniform FrameBlock { FrameData frame; };
 
 layout(location = 0) out vec4 outColor;
 

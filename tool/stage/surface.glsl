@@ -4,27 +4,27 @@
 
 #include "surface_shared.h"
 
-layout(constant_id = 0) const uint kFeatures = 0u;
+CONSTANT(0, uint kFeatures, 0u)
 
-layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameData frame; };
-layout(set = 0, binding = 1, std140) uniform MaterialBlock { MaterialData material; };
-layout(set = 0, binding = 2, std430) readonly buffer LightBlock { LightData lights[]; };
-layout(set = 1, binding = 0) uniform sampler2D baseColorTexture;
-layout(set = 1, binding = 1) uniform sampler2D metallicRoughnessTexture;
-layout(set = 1, binding = 2) uniform sampler2D normalTexture;
-layout(set = 1, binding = 3) uniform sampler2D occlusionTexture;
-layout(set = 1, binding = 4) uniform sampler2D emissiveTexture;
-layout(set = 1, binding = 5) uniform sampler2D transmissionTexture;
-layout(set = 1, binding = 6) uniform sampler2D specularTexture;
-layout(set = 1, binding = 7) uniform sampler2D specularColorTexture;
-layout(set = 1, binding = 8) uniform sampler2D clearcoatTexture;
-layout(set = 1, binding = 9) uniform sampler2D clearcoatRoughnessTexture;
-layout(set = 1, binding = 10) uniform sampler2D thicknessTexture;
-layout(set = 1, binding = 11) uniform sampler2D sheenColorTexture;
-layout(set = 1, binding = 12) uniform sampler2D sheenRoughnessTexture;
-layout(set = 1, binding = 13) uniform sampler2D anisotropyTexture;
-layout(set = 1, binding = 14) uniform sampler2D iridescenceTexture;
-layout(set = 1, binding = 15) uniform sampler2D iridescenceThicknessTexture;
+layout(BOUND(0, 0, 5), std140) uniform FrameBlock { FrameData frame; };
+layout(BOUND(0, 1, 6), std140) uniform MaterialBlock { MaterialData material; };
+layout(BOUND(0, 2, 7), std430) readonly buffer LightBlock { LightData lights[]; };
+layout(BOUND(1, 0, 0)) uniform sampler2D baseColorTexture;
+layout(BOUND(1, 1, 1)) uniform sampler2D metallicRoughnessTexture;
+layout(BOUND(1, 2, 2)) uniform sampler2D normalTexture;
+layout(BOUND(1, 3, 3)) uniform sampler2D occlusionTexture;
+layout(BOUND(1, 4, 4)) uniform sampler2D emissiveTexture;
+layout(BOUND(1, 5, 5)) uniform sampler2D transmissionTexture;
+layout(BOUND(1, 6, 6)) uniform sampler2D specularTexture;
+layout(BOUND(1, 7, 7)) uniform sampler2D specularColorTexture;
+layout(BOUND(1, 8, 8)) uniform sampler2D clearcoatTexture;
+layout(BOUND(1, 9, 9)) uniform sampler2D clearcoatRoughnessTexture;
+layout(BOUND(1, 10, 10)) uniform sampler2D thicknessTexture;
+layout(BOUND(1, 11, 11)) uniform sampler2D sheenColorTexture;
+layout(BOUND(1, 12, 12)) uniform sampler2D sheenRoughnessTexture;
+layout(BOUND(1, 13, 13)) uniform sampler2D anisotropyTexture;
+layout(BOUND(1, 14, 14)) uniform sampler2D iridescenceTexture;
+layout(BOUND(1, 15, 15)) uniform sampler2D iridescenceThicknessTexture;
 
 // Where the surface is shaded: at the middle of the pixel, unless the including shader says otherwise.
 #ifndef SURFACE_IN

@@ -3,11 +3,11 @@
 #extension GL_GOOGLE_include_directive : require
 #include "surface_shared.h"
 
-layout(constant_id = 0) const uint kFeatures = 0u;
-layout(constant_id = 63) const float kPointSize = 1.0; // POINT_SIZE_CONSTANT
+CONSTANT(0, uint kFeatures, 0u)
+CONSTANT(63, float kPointSize, 1.0) // POINT_SIZE_CONSTANT
 
-layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameData frame; };
-layout(set = 0, binding = 1, std140) uniform MaterialBlock { MaterialData material; };
+layout(BOUND(0, 0, 5), std140) uniform FrameBlock { FrameData frame; };
+layout(BOUND(0, 1, 6), std140) uniform MaterialBlock { MaterialData material; };
 
 layout(location = 0) in vec3 inPosition;
 layout(location = 1) in vec2 inNormal;   // octahedral (tool/scene/scene.h)
@@ -27,6 +27,12 @@ layout(location = 3) out vec4 outColor;
 layout(location = 4) out vec4 outTexCoords[SLOT_PAIRS];
 #ifdef SURFACE_OBJECT
 layout(location = 15) flat out uint outObject; // the number of the instance
+#ifdef VITRAIL_OPENGL // which counts from the first of a draw
+layout(location = 0) uniform uint firstInstance;
+uint instanceNumber() { return firstInstance + uint(gl_InstanceID); }
+#else
+uint instanceNumber() { return uint(gl_InstanceIndex); }
+#endif
 #endif
 
 // Both passes must give one vertex the same bits, or transparent decals on opaque surfaces would flicker.
@@ -86,7 +92,7 @@ void main() {
   if ((kFeatures & FEATURE_VOLUME) != 0u) outTangent.w *= size * pow(abs(dot(rows[0], cofactors[0])), 1.0 / 3.0);
   outColor = inColor;
 #ifdef SURFACE_OBJECT
-  outObject = uint(gl_InstanceIndex);
+  outObject = instanceNumber();
 #endif
   for (uint pair = 0u; pair < SLOT_PAIRS; ++pair) {
     outTexCoords[pair] = vec4(slotCoordinates(2u * pair), slotCoordinates(2u * pair + 1u));

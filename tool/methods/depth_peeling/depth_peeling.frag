@@ -5,10 +5,10 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "methods/shared/layer.glsl"
 
-layout(set = 2, binding = 0) uniform texture2D opaqueDepth;
-layout(set = 2, binding = 1, rg32ui) uniform readonly uimage2D takenImage; // by the last pass: depth and number
+layout(BOUND(2, 0, 16)) uniform TEXTURE_2D opaqueDepth;
+layout(BOUND(2, 1, 5), rg32ui) uniform readonly uimage2D takenImage; // by the last pass: depth and number
 
-layout(push_constant) uniform DrawBlock { uint firstTriangle; }; // of the draw, in the order of submission
+PUSHED DrawBlock { uint firstTriangle; }; // of the draw, in the order of submission
 
 layout(location = 0) out vec4 outColor;
 layout(location = 1) out vec4 outOpacity;

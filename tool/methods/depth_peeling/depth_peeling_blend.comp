@@ -7,15 +7,15 @@
 
 layout(local_size_x = PIXEL_GROUP_SIDE, local_size_y = PIXEL_GROUP_SIDE) in;
 
-layout(set = 0, binding = 0, rgba16f) uniform readonly image2D layerColor;
-layout(set = 0, binding = 1, rgba16f) uniform readonly image2D layerOpacity;
-layout(set = 0, binding = 2, rg32ui) uniform readonly uimage2D layerTaken;
-layout(set = 0, binding = 3, rgba32f) uniform image2D frontColor;
-layout(set = 0, binding = 4, rgba32f) uniform image2D frontThrough;
-layout(set = 0, binding = 5, rg32ui) uniform writeonly uimage2D takenImage;
-layout(set = 0, binding = 6, rgba16f) uniform image2D pictureImage;
+layout(BOUND(0, 0, 0), rgba16f) uniform readonly image2D layerColor;
+layout(BOUND(0, 1, 1), rgba16f) uniform readonly image2D layerOpacity;
+layout(BOUND(0, 2, 2), rg32ui) uniform readonly uimage2D layerTaken;
+layout(BOUND(0, 3, 3), rgba32f) uniform image2D frontColor;
+layout(BOUND(0, 4, 4), rgba32f) uniform image2D frontThrough;
+layout(BOUND(0, 5, 5), rg32ui) uniform writeonly uimage2D takenImage;
+layout(BOUND(0, 6, 6), rgba16f) uniform image2D pictureImage;
 
-layout(push_constant) uniform StepBlock { uint step; }; // PEELING_NEXT; after the last layer PEELING_LAST
+PUSHED StepBlock { uint step; }; // PEELING_NEXT; after the last layer PEELING_LAST
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

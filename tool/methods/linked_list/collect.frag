@@ -1,11 +1,13 @@
 // Transparent surfaces: each fragment goes on its pixel's list.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifndef VITRAIL_OPENGL // where the host's text has the library's before this one
 #define VITRAIL_SET 2
 #ifndef VITRAIL_BUFFER_REFERENCE // only a CPU driver is not given it (gpu/features.cpp)
 #define VITRAIL_CPU_DRIVER
 #endif
 #include "vitrail/collect.glsl"
+#endif
 
 #ifdef COLLECT_MEDIA // the resolve follows light through objects
 #define SURFACE_TRUE_PATH
@@ -15,7 +17,7 @@ layout(location = 15) flat in uint inObject;
 #include "stage/surface.glsl"
 
 // Whether depths follow from gl_FragCoord.w: with a perspective camera.
-layout(constant_id = 1) const bool kDepthFromW = false;
+CONSTANT(1, bool kDepthFromW, false)
 
 void collect(vec4 color, uint blend, uint word) {
   float depth = kDepthFromW ? fma(gl_FragCoord.w, frame.depth.y, frame.depth.x) : gl_FragCoord.z;

@@ -1,26 +1,18 @@
-// Per-pixel linked lists: exact transparency through libvitrail, as any host embeds it.
-//
-// A picture is drawn whole where that fits, into a pool that grows until it does: with a memory budget as the library
-// lets it grow, within the budget. A picture that does not fit into it, or by default into what the device can hold, is
-// drawn in tiles.
-#include <algorithm>
-#include <limits>
+// Per-pixel linked lists: exact transparency through libvitrail, as any host embeds it. Whether a picture is drawn
+// whole or in tiles is list_picture.h's.
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
-#include <vitrail/vitrail.hpp>
-
 #include "../../gpu/device.h"
 #include "../../gpu/vk.h"
 #include "../../stage/picture_images.h"
-#include "../../stage/tile_runs.h"
 #include "../method.h"
 #include "../methods.h"
+#include "list_picture.h"
 #include "media.h"
 #include "shaders/collect.frag.h"
 #include "shaders/collect_address.frag.h"
@@ -36,16 +28,7 @@ namespace vitrail::tool {
 
 namespace {
 
-// The first guess: most models that are looked at have fewer fragments than this a pixel
-// of the whole picture.
-constexpr std::uint64_t kNodesPerPixel = 4;
-constexpr std::uint64_t kLargestGuess = std::uint64_t{1} << 24U;
-
 constexpr std::uint32_t kDepthFromW = 1; // the constant of collect.frag
-
-void remember(VitrailLogSeverity severity, const char* message, void* reason) {
-  if (severity == VITRAIL_LOG_ERROR) *static_cast<std::string*>(reason) = message;
-}
 
 std::uint32_t libraryFeatures(const GpuFeatures& features) {
   std::uint32_t bits = 0;
@@ -55,13 +38,11 @@ std::uint32_t libraryFeatures(const GpuFeatures& features) {
   return bits;
 }
 
-// Plans of tiles know no Vulkan.
-VkResult resultOf(VitrailResult result) {
-  if (result == VITRAIL_SUCCESS) return VK_SUCCESS;
-  return result == VITRAIL_ERROR_OUT_OF_MEMORY ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_ERROR_INITIALIZATION_FAILED;
+VitrailResult resultOf(VkResult result) {
+  if (result == VK_SUCCESS) return VITRAIL_SUCCESS;
+  if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) return VITRAIL_ERROR_OUT_OF_MEMORY;
+  return VITRAIL_ERROR_INVALID;
 }
-
-std::uint64_t pixelsOf(VkExtent2D extent) { return std::uint64_t{extent.width} * extent.height; }
 
 std::span<const std::uint32_t> collectCode(bool media, bool coverage, bool address) {
   if (media && coverage && address) return shaders::collect_media_coverage_address_frag;
@@ -79,7 +60,7 @@ bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
          a.opaque == b.opaque && a.depth == b.depth && a.memoryBudget == b.memoryBudget && a.surfaces == b.surfaces;
 }
 
-class LinkedList final : public Method {
+class LinkedList final : public Method, private ListPicture {
  public:
   LinkedList(const MethodHost& host, const MethodOptions& options);
   ~LinkedList() override;
@@ -88,29 +69,28 @@ class LinkedList final : public Method {
   void setTarget(const MethodTarget& target) override;
   void releaseTarget() override;
   void draw(Frame& frame) override;
-  bool finish() override;
+  bool finish() override { return finishPicture(); }
   FrameStats stats() const override;
 
  private:
+  bool makeTarget(const ListPool& pool) override;
+  VitrailResult updateTarget() override;
+  std::optional<VitrailMemory> memory() const override;
+  std::uint64_t mostNodes() const override;
+  VitrailTileLimits tileLimits() const override;
+  void drawArea(const VitrailRect& area, std::span<const SurfaceRun> runs) override;
+  void wait() override { drawn_->submitAndWait(); }
+  VitrailStats readStats() const override;
+
   void makeContext();
   void chooseResolve();
   void makeSurfaces();
   VitrailVkTargetDesc targetDesc() const;
-  bool createTarget(const VitrailVkTargetDesc& desc);
-  void makeFixedTarget(bool buildsAll);
-  bool createWholeTarget(std::uint64_t nodeCapacity);
   void countMemory();
-  std::uint64_t wordsOf(std::uint64_t bytes) const;
   // Whether the resolve makes the picture out of several samples.
   bool writesEveryPixel() const { return options_.samples > 1 && !needs_.perSample; }
-  void planTiles(std::span<const VitrailBounds> bounds);
-  void drawTiles(Frame& frame);
-  void drawCollecting(Frame& frame, std::span<const SurfaceRun> runs);
-  void drawArea(Frame& frame, const VkRect2D& area, std::span<const SurfaceRun> runs);
-  VitrailStats readStats() const;
-  bool grow(std::uint64_t fragments);
-  void add(const VitrailStats& stats);
-  void check(VkResult result, const char* call) const;
+  void drawCollecting(std::span<const SurfaceRun> runs);
+  void check(VkResult result, const char* call) const { ListPicture::check(resultOf(result), call); }
 
   // What pipelines differ in beside the options.
   struct PipelineKind {
@@ -123,29 +103,21 @@ class LinkedList final : public Method {
   const Surfaces& source_;
   MethodOptions options_;
   ImageNeeds needs_;
-  std::string reason_; // what the library last logged
   vulkan::Context context_;
   std::optional<Media> media_; // where objects absorb light: what resolves the lists then
   PipelineKind pipelines_;     // of surfaces_
   std::optional<SurfacePipelines> surfaces_;
   std::optional<SurfacePipelines> untested_; // the same without a depth test, where media_ asks for them
   vulkan::Target target_;
-  std::uint64_t frame_ = 0;    // of the target: rises with every area
-  TilePlan plan_;              // where inTiles_
-  VitrailVkTargetDesc made_{}; // what target_ was made for; its pointers are not kept
+  std::uint64_t frame_ = 0; // of the target: rises with every area
+  ListPool made_;           // what target_ was made for
   MethodTarget wanted_;
-  std::uint64_t budget_ = 0;   // bytes for a tile
-  bool nothing_ = false;       // there is nothing transparent, and nothing that a resolve has to write
-  bool inTiles_ = false;       // the next picture is
-  bool wasInTiles_ = false;    // the present picture is
-  std::uint64_t expected_ = 0; // the fragments of the last picture, 0 where that is not known
-  std::uint64_t counted_ = 0;  // the target's bytes, as the Gpu counts them
-  FrameStats stats_;           // of the present picture's areas so far
-  std::uint64_t coveredPixels_ = 0;
+  Frame* drawn_ = nullptr;    // the frame at hand
+  std::uint64_t counted_ = 0; // the target's bytes, as the Gpu counts them
 };
 
 LinkedList::LinkedList(const MethodHost& host, const MethodOptions& options)
-    : gpu_(host.gpu), source_(host.surfaces), options_(options) {
+    : ListPicture(host.surfaces.list(), options_), gpu_(host.gpu), source_(host.surfaces), options_(options) {
   makeContext();
   // With a bound on the layers only the nearest are drawn as they are: then objects are as thick as their files say.
   if (source_.scene().solids().any() && options_.maxLayers == 0) {
@@ -163,19 +135,15 @@ void LinkedList::makeContext() {
   desc.device = gpu_.device();
   desc.getInstanceProcAddr = vkGetInstanceProcAddr;
   desc.features = libraryFeatures(gpu_.features());
-  desc.log = remember;
-  desc.logUser = &reason_;
+  desc.log = rememberError;
+  desc.logUser = &reason();
   check(vulkan::Context::create(desc, context_), "vitrailVkCreateContext");
 }
 
 void LinkedList::chooseResolve() {
   const GpuFeatures& features = gpu_.features();
-  if (media_ && (options_.nodeCapacity > 0 || options_.stencilMark == StencilMark::Off)) {
-    throw GpuError(
-        "objects of this scene absorb light, which is resolved by walking complete lists: leave --overflow "
-        "and --stencil-mark out");
-  }
   if (media_) { // which resolves by compute, a pixel at a time, whatever was asked for: there is no other way
+    requireWalk(options_);
     options_.resolve = VITRAIL_RESOLVE_COMPUTE;
     options_.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
     needs_.depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
@@ -193,11 +161,7 @@ void LinkedList::chooseResolve() {
     options_.resolve = context_.defaultResolve(target);
   }
   const bool drawn = options_.resolve == VITRAIL_RESOLVE_FRAGMENT;
-  if (!drawn && options_.stencilMark == StencilMark::Off) {
-    throw GpuError(
-        "--stencil-mark off is of resolves that are drawn, which is not this device's choice: use --resolve "
-        "fragment");
-  }
+  requireMark(options_, drawn);
   needs_.stencil = drawn && (options_.samples == 1 || needs_.perSample) && features.stencil &&
                    options_.stencilMark == StencilMark::On;
   if (options_.samples > 1 && !features.postDepthCoverage) needs_.depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
@@ -270,66 +234,64 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
 void LinkedList::setTarget(const MethodTarget& target) {
   if (media_) media_->setView(source_.view());
   if (wanted_.color != VK_NULL_HANDLE && sameTarget(target, wanted_)) {
-    wanted_.onTile = target.onTile;
+    setOnTile(target.onTile);
     return makeSurfaces();
   }
   releaseTarget();
   wanted_ = target;
   if (media_) media_->setTarget(target);
   makeSurfaces();
-  nothing_ = !target.surfaces && !writesEveryPixel();
-  if (nothing_) return; // what a target would take, its kernels too, is spared
-  expected_ = 0;
-  budget_ = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
-  const bool buildsAll = pipelines_.listBuild == VITRAIL_LIST_BUILD_FRAGMENT ||
-                         pixelsOf(target.extent) <= VITRAIL_LIST_BUILD_COMPUTE_MAX_PIXELS;
-  const std::uint64_t largest = context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
-  const std::uint64_t guess = std::min({kNodesPerPixel * pixelsOf(target.extent), kLargestGuess, largest});
-  if (options_.nodeCapacity > 0) return makeFixedTarget(buildsAll);
-  inTiles_ = !buildsAll || !createWholeTarget(target.surfaces ? guess : 0); // drawTiles() knows how large tiles are
+  start({.width = target.extent.width,
+         .height = target.extent.height,
+         .memoryBudget = target.memoryBudget,
+         .surfaces = target.surfaces,
+         .writesEveryPixel = writesEveryPixel(),
+         .words = media_.has_value(),
+         .listBuild = pipelines_.listBuild,
+         .onTile = target.onTile});
 }
 
-// A target that is neither enlarged nor drawn in tiles.
-void LinkedList::makeFixedTarget(bool buildsAll) {
-  if (!buildsAll) {
-    throw GpuError(
-        "--list-build compute draws so large a picture in tiles, and --overflow approximate draws it whole: "
-        "use --list-build fragment, or a smaller --size");
-  }
-  inTiles_ = false;
-  if (!createWholeTarget(options_.nodeCapacity)) check(VK_ERROR_OUT_OF_DEVICE_MEMORY, "vitrailVkCreateTarget");
-}
-
-// A target for the whole picture, whose pool begins with so many nodes; with a budget it follows what pictures need.
-// False where there is no memory for it.
-bool LinkedList::createWholeTarget(std::uint64_t nodeCapacity) {
-  VitrailVkTargetDesc desc = targetDesc();
-  desc.nodeCapacity = static_cast<std::uint32_t>(std::max<std::uint64_t>(nodeCapacity, 1)); // 0: the library's guess
-  if (wanted_.memoryBudget) desc.memoryBudget = *wanted_.memoryBudget;
-  return createTarget(desc);
-}
-
-// False where the device has no memory for it.
-bool LinkedList::createTarget(const VitrailVkTargetDesc& desc) {
-  const bool same = made_.nodeCapacity == desc.nodeCapacity && made_.areaPixels == desc.areaPixels &&
-                    made_.memoryBudget == desc.memoryBudget;
-  if (target_ && same) return true; // the images are the same until releaseTarget()
-  target_ = vulkan::Target();       // first: the old pool and the new one need not fit together
+bool LinkedList::makeTarget(const ListPool& pool) {
+  if (target_ && made_ == pool) return true; // the images are the same until releaseTarget()
+  target_ = vulkan::Target();                // first: the old pool and the new one need not fit together
   gpu_.memoryFreed(std::exchange(counted_, 0));
-  VitrailVkTargetDesc full = desc;
+  VitrailVkTargetDesc desc = targetDesc();
+  desc.nodeCapacity = pool.nodeCapacity;
+  desc.memoryBudget = pool.memoryBudget;
+  desc.areaPixels = pool.areaPixels;
   if (!media_) {
-    full.views.count = 1;
-    full.views.color = &wanted_.color;
-    if (options_.samples > 1 && !needs_.perSample) full.views.opaque = &wanted_.opaque;
-    if (needs_.depthUsage != 0) full.views.depth = &wanted_.depth;
+    desc.views.count = 1;
+    desc.views.color = &wanted_.color;
+    if (options_.samples > 1 && !needs_.perSample) desc.views.opaque = &wanted_.opaque;
+    if (needs_.depthUsage != 0) desc.views.depth = &wanted_.depth;
   }
-  const VkResult result = vulkan::Target::create(context_, full, target_);
+  const VkResult result = vulkan::Target::create(context_, desc, target_);
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) return false; // the reason stays, in case that it ends the program
   check(result, "vitrailVkCreateTarget");
-  reason_.clear();
-  made_ = desc;
+  reason().clear();
+  made_ = pool;
   countMemory();
   return true;
+}
+
+VitrailResult LinkedList::updateTarget() {
+  const VkResult result = target_.update(frame_ + 1);
+  countMemory();
+  return resultOf(result);
+}
+
+std::optional<VitrailMemory> LinkedList::memory() const {
+  return target_ ? std::optional(target_.memory()) : std::nullopt;
+}
+
+std::uint64_t LinkedList::mostNodes() const {
+  return context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
+}
+
+VitrailTileLimits LinkedList::tileLimits() const {
+  VitrailTileLimits limits{};
+  check(context_.tileLimits(options_.nodes, flagOf(options_.samples), limits), "vitrailVkTileLimits");
+  return limits;
 }
 
 // What the target holds now, a pool that was replaced included.
@@ -340,59 +302,32 @@ void LinkedList::countMemory() {
 
 void LinkedList::releaseTarget() {
   target_ = vulkan::Target();
-  plan_ = TilePlan();
   wanted_ = {};
   gpu_.memoryFreed(std::exchange(counted_, 0));
 }
 
 void LinkedList::draw(Frame& frame) {
-  stats_ = {};
-  stats_.tiles = 0;
-  stats_.complete = true;
-  coveredPixels_ = 0;
-  if (nothing_) stats_.tiles = 1;
-  wasInTiles_ = inTiles_ || nothing_; // what there was to count has been counted
-  if (nothing_) return;
-  if (inTiles_) return drawTiles(frame);
-  if (wanted_.memoryBudget) {
-    check(target_.update(frame_ + 1), "vitrailVkUpdateTarget"); // frees the pool that grow() replaced
-    countMemory();
-  }
-  drawArea(frame, {{0, 0}, wanted_.extent}, source_.transparentRuns());
+  drawn_ = &frame;
+  drawPicture();
 }
 
-// Every tile is waited for: what it reports decides whether its parts come next.
-void LinkedList::drawTiles(Frame& frame) {
-  frame.submitAndWait(); // the opaque scene
-  planTiles(clipBoxesOf(source_.list()));
-  const TileRuns runs(source_.list(), wanted_.extent.width, wanted_.extent.height);
-  VitrailRect tile{};
-  while (plan_ && plan_.next(tile)) {
-    const VkRect2D area{{static_cast<std::int32_t>(tile.x), static_cast<std::int32_t>(tile.y)},
-                        {tile.width, tile.height}};
-    drawArea(frame, area, runs.touching(tile));
-    frame.submitAndWait();
-    const VitrailStats stats = readStats();
-    check(resultOf(plan_.finish(stats)), "vitrailFinishTile");
-    if (stats.fragmentsMissing == 0) add(stats); // else its parts come next
-    expected_ = stats_.fragmentsRequested;
-    if (wanted_.onTile) wanted_.onTile(stats_.tiles);
-  }
-}
-
-void LinkedList::drawCollecting(Frame& frame, std::span<const SurfaceRun> runs) {
+void LinkedList::drawCollecting(std::span<const SurfaceRun> runs) {
+  Frame& frame = *drawn_;
   if (!media_ || !media_->objects().anyNear()) return frame.drawSurfaces(*surfaces_, target_.descriptorSet(), runs);
   frame.drawSurfaces(*surfaces_, target_.descriptorSet(), media_->objects().part(runs, false));
   frame.drawSurfaces(*untested_, target_.descriptorSet(), media_->objects().part(runs, true));
 }
 
-void LinkedList::drawArea(Frame& frame, const VkRect2D& area, std::span<const SurfaceRun> runs) {
+void LinkedList::drawArea(const VitrailRect& part, std::span<const SurfaceRun> runs) {
+  Frame& frame = *drawn_;
+  const VkRect2D area{{static_cast<std::int32_t>(part.x), static_cast<std::int32_t>(part.y)},
+                      {part.width, part.height}};
   VkCommandBuffer commands = frame.commands();
   PictureImages& images = frame.images();
   target_.begin(commands, {nullptr, ++frame_, area});
   frame.endPass("clear");
   cmdBeginScope(commands, images.transparentScope(area));
-  drawCollecting(frame, runs);
+  drawCollecting(runs);
   vkCmdEndRendering(commands);
   if (pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE) frame.endPass("collect");
   target_.collected(commands);
@@ -411,104 +346,20 @@ void LinkedList::drawArea(Frame& frame, const VkRect2D& area, std::span<const Su
   frame.endPass("statistics");
 }
 
-// What words take at most of so many bytes of nodes with words: plans of tiles know nodes alone.
-std::uint64_t LinkedList::wordsOf(std::uint64_t bytes) const {
-  constexpr std::uint64_t kNodes = 1024;
-  const std::uint64_t word = kNodes * sizeof(std::uint32_t);
-  return bytes / (vitrailNodePoolSize(options_.nodes, kNodes) + word) * word;
-}
-
-void LinkedList::planTiles(std::span<const VitrailBounds> bounds) {
-  plan_ = TilePlan();
-  const bool everyPixel = writesEveryPixel() || std::ranges::any_of(source_.scene().transparentDraws(), drawsPoints);
-  if (bounds.empty() && !everyPixel) return; // nothing to draw
-  VitrailTilePlanDesc desc{};
-  desc.width = wanted_.extent.width;
-  desc.height = wanted_.extent.height;
-  desc.samples = options_.samples;
-  desc.nodeFormat = options_.nodes;
-  check(context_.tileLimits(options_.nodes, flagOf(options_.samples), desc.limits), "vitrailVkTileLimits");
-  desc.log = remember;
-  desc.logUser = &reason_;
-  desc.boundsCount = everyPixel ? 0 : static_cast<std::uint32_t>(bounds.size());
-  desc.bounds = bounds.data();
-  desc.expectedFragments = expected_;
-  // The device may have less memory left than it says that it can give: then less is tried.
-  for (;;) {
-    desc.memoryBudget = media_ ? budget_ - wordsOf(budget_) : budget_;
-    check(resultOf(TilePlan::create(desc, plan_)), "vitrailCreateTilePlan");
-    VitrailVkTargetDesc target = targetDesc();
-    vitrailVkTilePlanTarget(plan_.handle(), &target);
-    if (createTarget(target)) return;
-    budget_ = vitrailNodePoolSize(options_.nodes, target.nodeCapacity) / 2;
-  }
-}
-
 VitrailStats LinkedList::readStats() const {
   VitrailStats stats{};
   check(target_.readStats(frame_, stats), "vitrailVkReadStats");
   return stats;
 }
 
-bool LinkedList::finish() {
-  if (wasInTiles_) return true;
-  const VitrailStats stats = readStats();
-  add(stats);
-  if (stats.fragmentsMissing == 0 || options_.nodeCapacity > 0) return true;
-  inTiles_ = !grow(stats.fragmentsRequested);
-  expected_ = stats.fragmentsRequested;
-  return false;
-}
-
-// Makes room for a picture of so many fragments, which is what the last one turned out to have. False where the budget,
-// or the device, has no pool that large.
-bool LinkedList::grow(std::uint64_t fragments) {
-  if (!wanted_.memoryBudget) {
-    const bool canBe = fragments <= context_.maxNodeCapacity(options_.nodes, flagOf(options_.samples));
-    return canBe && createWholeTarget(fragments);
-  }
-  const VkResult result = target_.update(frame_ + 1);
-  if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY) check(result, "vitrailVkUpdateTarget");
-  countMemory();
-  return target_.memory().nodeCapacity >= fragments;
-}
-
-void LinkedList::add(const VitrailStats& stats) {
-  ++stats_.tiles;
-  stats_.complete = stats_.complete && stats.complete != 0;
-  stats_.fragmentsRequested += stats.fragmentsRequested;
-  stats_.fragmentsStored += stats.fragmentsStored;
-  stats_.fragmentsMissing += stats.fragmentsMissing;
-  stats_.approximatePixels += stats.approximatePixels;
-  stats_.cutPixels += stats.cutPixels;
-  stats_.layersMax = std::max(stats_.layersMax, stats.layersMax);
-  coveredPixels_ += stats.coveredPixels;
-}
-
 FrameStats LinkedList::stats() const {
-  FrameStats result = stats_;
-  result.nodes = nameOf(options_.nodes);
+  FrameStats result = totals();
   result.resolve = nameOf(options_.resolve);
   result.listBuild = nameOf(pipelines_.listBuild);
   if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT && (options_.samples == 1 || needs_.perSample)) {
     result.stencilMark = needs_.stencil ? "on" : "off";
   }
-  result.counted = true;
-  result.errorBound = vitrailNodeErrorBound(options_.nodes, options_.samples, stats_.layersMax);
-  result.layersMean = meanLayers(stats_.fragmentsStored, coveredPixels_);
-  if (!target_) return result; // nothing was drawn
-  const VitrailMemory memory = target_.memory();
-  result.nodesBytes = memory.nodeBytes;
-  result.headsBytes = memory.headBytes;
-  result.totalBytes = memory.totalBytes;
   return result;
-}
-
-void LinkedList::check(VkResult result, const char* call) const {
-  if (result == VK_SUCCESS) return;
-  const std::string reason = reason_.empty() ? fmt::format("{} failed: {}", call, resultName(result)) : reason_;
-  if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY) throw GpuError(reason);
-  throw GpuError(reason + (wanted_.memoryBudget ? ": use a larger --memory-budget" : ": use a smaller --size"));
 }
 
 } // namespace

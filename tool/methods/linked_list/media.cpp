@@ -61,15 +61,12 @@ void Media::setView(const shaders::FrameData& view) {
 
 void Media::cmdResolve(VkCommandBuffer commands, VkDescriptorSet lists, VkExtent2D area) const {
   const std::array<VkDescriptorSet, 2> sets{lists, set_.set()};
-  const auto groups = [](std::uint32_t pixels) {
-    return (pixels + shaders::PIXEL_GROUP_SIDE - 1) / shaders::PIXEL_GROUP_SIDE;
-  };
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipelines_.at(list_.anyNear() ? 1 : 0).get());
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0,
                           static_cast<std::uint32_t>(sets.size()), sets.data(), 0, nullptr);
   vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(shaders::MediaView),
                      &list_.view());
-  vkCmdDispatch(commands, groups(area.width), groups(area.height), 1);
+  vkCmdDispatch(commands, shaders::pixelGroups(area.width), shaders::pixelGroups(area.height), 1);
 }
 
 } // namespace vitrail::tool

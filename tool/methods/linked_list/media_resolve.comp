@@ -6,9 +6,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#ifndef VITRAIL_OPENGL // where the host's text has the library's before this one
 #define VITRAIL_SET 0
 #define VITRAIL_SORTED_LISTS
 #include "vitrail/list.glsl"
+#endif
 
 #include "gpu/pixel_pass_shared.h"
 #include "media_shared.h"
@@ -19,19 +21,19 @@
 
 layout(local_size_x = PIXEL_GROUP_SIDE, local_size_y = PIXEL_GROUP_SIDE) in;
 
-layout(constant_id = 0) const uint kSamples = 1u;
-layout(constant_id = 1) const bool kTestDepth = false; // coverage has not passed the depth test
-layout(constant_id = 2) const bool kAnyNear = false;   // some object has MEDIA_NEAR
+CONSTANT(0, uint kSamples, 1u)
+CONSTANT(1, bool kTestDepth, false) // coverage has not passed the depth test
+CONSTANT(2, bool kAnyNear, false)   // some object has MEDIA_NEAR
 
-layout(set = 1, binding = 0, std430) readonly buffer ObjectsBlock { MediaObject objects[]; };
-layout(set = 1, binding = 1, rgba16f) uniform image2D colorImage;
+layout(BOUND(1, 0, 5), std430) readonly buffer ObjectsBlock { MediaObject objects[]; };
+layout(BOUND(1, 1, 0), rgba16f) uniform image2D colorImage;
 #if MEDIA_SAMPLES == 1
-layout(set = 1, binding = 2) uniform texture2D depthImage;
+layout(BOUND(1, 2, 16)) uniform TEXTURE_2D depthImage;
 #else
-layout(set = 1, binding = 2) uniform texture2DMS depthImage;
-layout(set = 1, binding = 3) uniform texture2DMS opaqueImage;
+layout(BOUND(1, 2, 16)) uniform TEXTURE_2D_MS depthImage;
+layout(BOUND(1, 3, 17)) uniform TEXTURE_2D_MS opaqueImage;
 #endif
-layout(push_constant) uniform ViewBlock { MediaView view; };
+PUSHED ViewBlock { MediaView view; };
 
 // What comes along the ray of one sample.
 struct Light {

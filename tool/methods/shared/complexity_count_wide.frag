@@ -5,7 +5,7 @@
 
 layout(early_fragment_tests) in;
 
-layout(set = 2, binding = 0, r32ui) uniform uimage2D counts;
+layout(BOUND(2, 0, 0), r32ui) uniform uimage2D counts;
 
 void main() {
   if (has(FEATURE_MASK)) shadeSurface();

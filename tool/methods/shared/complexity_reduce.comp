@@ -6,11 +6,13 @@
 
 layout(local_size_x = COMPLEXITY_GROUP) in;
 
+#ifndef VITRAIL_OPENGL // which counts in the image alone
 layout(set = 0, binding = 0) uniform utexture2D stencil;
-layout(set = 0, binding = 1, r32ui) uniform readonly uimage2D counts;
-layout(set = 0, binding = 2, std430) buffer PartsBlock { Complexity parts[]; };
+#endif
+layout(BOUND(0, 1, 0), r32ui) uniform readonly uimage2D counts;
+layout(BOUND(0, 2, 5), std430) buffer PartsBlock { Complexity parts[]; };
 
-layout(push_constant) uniform ReductionBlock { ComplexityReduction reduction; };
+PUSHED ReductionBlock { ComplexityReduction reduction; };
 
 shared Complexity items[COMPLEXITY_GROUP];
 
@@ -23,7 +25,10 @@ Complexity load(uint i) {
   if (i >= reduction.count) return ofPixel(0u);
   if (reduction.source == COMPLEXITY_PARTS) return parts[reduction.from + i];
   ivec2 pixel = ivec2(i % reduction.width, i / reduction.width);
-  return ofPixel(reduction.source == COMPLEXITY_STENCIL ? texelFetch(stencil, pixel, 0).r : imageLoad(counts, pixel).r);
+#ifndef VITRAIL_OPENGL
+  if (reduction.source == COMPLEXITY_STENCIL) return ofPixel(texelFetch(stencil, pixel, 0).r);
+#endif
+  return ofPixel(imageLoad(counts, pixel).r);
 }
 
 Complexity both(Complexity a, Complexity b) {

@@ -1,10 +1,9 @@
 #include "depth_complexity.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "../../gpu/accesses.h"
+#include "complexity_steps.h"
 #include "shaders/complexity_count.frag.h"
 #include "shaders/complexity_count_wide.frag.h"
 #include "shaders/complexity_reduce.comp.h"
@@ -12,17 +11,6 @@
 namespace vitrail::tool {
 
 namespace {
-
-constexpr std::uint32_t kItemsPerGroup = 2 * shaders::COMPLEXITY_GROUP;
-
-std::uint32_t groupsOf(std::uint32_t items) { return (items + kItemsPerGroup - 1) / kItemsPerGroup; }
-
-// The results of all steps over so many pixels.
-std::uint64_t partsOf(std::uint32_t pixels) {
-  std::uint64_t parts = 1;
-  for (std::uint32_t groups = groupsOf(pixels); groups > 1; groups = groupsOf(groups)) parts += groups;
-  return parts;
-}
 
 Gpu& withStencil(Gpu& gpu, const std::string& method) {
   if (gpu.features().stencil) return gpu;
@@ -72,7 +60,7 @@ DepthComplexity::DepthComplexity(const MethodHost& host, const std::string& meth
 
 void DepthComplexity::setTarget(const MethodTarget& target) {
   extent_ = target.extent;
-  const std::uint64_t bytes = partsOf(extent_.width * extent_.height) * sizeof(shaders::Complexity);
+  const std::uint64_t bytes = complexityParts(extent_.width * extent_.height) * sizeof(shaders::Complexity);
   if (parts_.buffer().size() != bytes) parts_ = Counters(gpu_, bytes, "depth complexity");
   if (counts_.get().get() == VK_NULL_HANDLE) makeCounts({1, 1});
   reduceSet_.writeImage(0, target.stencil, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
@@ -131,26 +119,12 @@ void DepthComplexity::reduce(Frame& frame, std::uint32_t source, std::uint32_t n
   const VkDescriptorSet set = reduceSet_.set();
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 0, nullptr);
-  shaders::ComplexityReduction step{.source = source,
-                                    .count = extent_.width * extent_.height,
-                                    .width = extent_.width,
-                                    .from = 0,
-                                    .to = 1,
-                                    .nearest = nearest > 0 ? nearest : UINT32_MAX};
-  for (bool last = false; !last;) {
-    const std::uint32_t groups = groupsOf(step.count);
-    last = groups == 1;
-    const std::uint32_t next = step.to;
-    if (last) step.to = 0;
-    vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(step), &step);
-    const std::uint32_t row = std::min(groups, shaders::COMPLEXITY_ROW);
-    vkCmdDispatch(commands, row, (groups + row - 1) / row, 1);
+  for (const ComplexityStep& step : complexitySteps(extent_.width, extent_.height, source, nearest)) {
+    vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(step.constants),
+                       &step.constants);
+    vkCmdDispatch(commands, step.columns, step.rows, 1);
     // A step wrote parts -> the next one reads them.
     cmdMemoryBarrier(commands, kComputeWrite, kComputeReadWrite);
-    step.source = shaders::COMPLEXITY_PARTS;
-    step.count = groups;
-    step.from = next;
-    step.to = next + groups;
   }
   parts_.cmdRead(commands, kComputeWrite);
   frame.endPass("count");
@@ -159,16 +133,7 @@ void DepthComplexity::reduce(Frame& frame, std::uint32_t source, std::uint32_t n
 }
 
 FrameStats DepthComplexity::stats() const {
-  const auto wide = [](std::uint32_t low, std::uint32_t high) { return std::uint64_t{high} << 32 | low; };
-  FrameStats stats;
-  stats.counted = true;
-  stats.fragmentsRequested = wide(measured_.surfacesLow, measured_.surfacesHigh);
-  stats.fragmentsStored = wide(measured_.keptLow, measured_.keptHigh);
-  stats.fragmentsMissing = stats.fragmentsRequested - stats.fragmentsStored;
-  stats.complete = stats.fragmentsMissing == 0;
-  stats.approximatePixels = measured_.deeperPixels;
-  stats.layersMax = measured_.deepest;
-  stats.layersMean = meanLayers(stats.fragmentsStored, measured_.coveredPixels);
+  FrameStats stats = complexityStats(measured_);
   const VkExtent2D counts = counts_.get().info().extent;
   stats.totalBytes = parts_.bytes() + std::uint64_t{counts.width} * counts.height * sizeof(std::uint32_t);
   return stats;

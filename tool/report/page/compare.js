@@ -11,6 +11,7 @@
   // Of the processor alone, times are by the clock and there is no baseline.
   const onProcessor = report.api === "CPU";
   const hasTimes = !report.cpu || onProcessor;
+  const labelOf = (method) => method.method + (method.api === "opengl" && method.method !== "cpu" ? ", OpenGL" : "");
   const worst = (w) => (w.difference === 0 ? "0" : `${w.difference} at ${w.x},${w.y}`);
 
   // What --layers and --passes said of the methods that have them.
@@ -46,7 +47,7 @@
     for (const method of report.methods) {
       const m = method.metrics;
       const row = add(body, "tr");
-      add(row, "td", method.method);
+      add(row, "td", labelOf(method));
       add(row, "td", psnr(m.psnr_db), m.psnr_db === null ? { class: "equal" } : {});
       const texts = [ssim(m.ssim), flip(m.flip), worst(m.worst), share(m.off_share), ratio(method.cost_ratio),
         ratio(method.frame_ratio)];
@@ -146,7 +147,7 @@
 
   function drawChart(id, datasets, stacked, unit) {
     const { ink, line } = chartColors();
-    const names = report.methods.map((method) => method.method);
+    const names = report.methods.map(labelOf);
     byId(id).parentElement.style.height = `${5 + 1.9 * names.length}rem`;
     charts.push(new Chart(byId(id), {
       type: "bar",
