@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../gpu/device.h"
+#include "../opengl/gl.h"
 #include "../render/cpu_still.h"
 #include "../render/device.h"
 #include "../report/model_info.h"
@@ -23,8 +24,8 @@ namespace vitrail::tool {
 namespace {
 
 constexpr const char* kInfoHelp =
-    R"(Tells what is in model files; without one, lists what this machine can draw with: the processor and
-Vulkan devices.
+    R"(Tells what is in model files; without one, lists what this machine can draw with: the processor,
+Vulkan and OpenGL devices.
 
 Usage:
   vitrail info MODEL... [--json]
@@ -37,8 +38,7 @@ it lacks.
   --json                the same as JSON, on standard output
 
 Of each device: its driver, the limits that bound a picture, and what it can and cannot do for
-Vitrail. What stands in front of a device, or a part of a Vulkan device's name, is what --device
-takes. The processor, cpu, draws by Vitrail's own rasteriser, without Vulkan; it stands first where
+Vitrail. What stands in front of a device, or a part of its name, is what --device takes. The processor, cpu, draws by Vitrail's own rasteriser, without Vulkan; it stands first where
 there is no GPU, and is the default there.
 
 Examples:
@@ -96,6 +96,33 @@ void printProcessor() {
   line("pass times", "yes, by the clock");
 }
 
+void printDevice(const GlDeviceSummary& device) {
+  fmt::print("  {:<3}{} ({})\n", device.index, device.name.empty() ? "a device" : device.name,
+             device.isCpu ? "CPU" : "GPU");
+  if (!device.missing.empty()) {
+    line("renders", fmt::format("no, it lacks {}", device.missing));
+    return;
+  }
+  line("driver", device.driver);
+  line("OpenGL", device.version);
+  line("renders", "yes, exactly, with --api opengl");
+  line("samples", fmt::format("{} a pixel{}", sampleCountsText(device.sampleCounts),
+                              device.postDepthCoverage ? "" : ", without post-depth coverage"));
+  line("picture", fmt::format("at most {0}x{0}", device.maxPictureSide));
+}
+
+void printOpenGl() {
+  std::vector<GlDeviceSummary> devices;
+  try {
+    devices = listGlDevices();
+  } catch (const GpuError& error) {
+    fmt::print("\nOpenGL devices\n  none: {}\n", error.what());
+    return;
+  }
+  fmt::print("\nOpenGL devices\n");
+  for (const GlDeviceSummary& device : devices) printDevice(device);
+}
+
 void runDevices() {
   std::vector<DeviceSummary> devices;
   std::string reason; // why there is none
@@ -110,6 +137,7 @@ void runDevices() {
   for (const DeviceSummary& device : devices) printDevice(device);
   if (hasGpu) printProcessor();
   if (devices.empty()) fmt::print("  no Vulkan device: {}\n", reason);
+  printOpenGl();
 }
 
 // Of formats whose readers leave it to the name: OBJ.

@@ -119,6 +119,19 @@ GlContext::~GlContext() {
 
 namespace {
 
+// The sum of the sample counts that a format has, of 2, 4 and 8.
+std::uint32_t sampleCountsOf(GLenum format) {
+  GLint count = 0;
+  glGetInternalformativ(GL_TEXTURE_2D_MULTISAMPLE, format, GL_NUM_SAMPLE_COUNTS, 1, &count);
+  std::vector<GLint> counts(static_cast<std::size_t>(std::max(count, 0)));
+  glGetInternalformativ(GL_TEXTURE_2D_MULTISAMPLE, format, GL_SAMPLES, count, counts.data());
+  std::uint32_t sum = 0;
+  for (const GLint each : counts) {
+    if (each == 2 || each == 4 || each == 8) sum |= static_cast<std::uint32_t>(each);
+  }
+  return sum;
+}
+
 GlLimits readLimits() {
   GlLimits limits;
   std::array<GLint, 2> viewport{};
@@ -127,8 +140,8 @@ GlLimits readLimits() {
   GLint64 vertices = 0;
   glGetInteger64v(GL_MAX_ELEMENT_INDEX, &vertices);
   limits.vertices = static_cast<std::uint32_t>(std::clamp<GLint64>(vertices, 0, UINT32_MAX));
-  limits.samples = static_cast<std::uint32_t>(
-      std::min({integerOf(GL_MAX_COLOR_TEXTURE_SAMPLES), integerOf(GL_MAX_DEPTH_TEXTURE_SAMPLES), 8}));
+  limits.sampleCounts =
+      1 | (sampleCountsOf(GL_RGBA16F) & sampleCountsOf(GL_DEPTH_COMPONENT32F) & sampleCountsOf(GL_DEPTH32F_STENCIL8));
   glGetFloatv(GL_POINT_SIZE_RANGE, limits.pointSizes);
   limits.postDepthCoverage = epoxy_has_gl_extension("GL_ARB_post_depth_coverage");
   return limits;
@@ -140,7 +153,7 @@ void describe(GlDeviceSummary& summary, const GlLimits& limits) {
   summary.version = fmt::format("{}.{}", integerOf(GL_MAJOR_VERSION), integerOf(GL_MINOR_VERSION));
   summary.driver = fmt::format("{} {}", textOf(GL_VENDOR), textOf(GL_VERSION));
   summary.isCpu = contains(summary.name, "llvmpipe") || contains(summary.name, "softpipe");
-  summary.samples = limits.samples;
+  summary.sampleCounts = limits.sampleCounts;
   summary.maxPictureSide = limits.textureSide;
   summary.postDepthCoverage = limits.postDepthCoverage;
 }

@@ -19,8 +19,8 @@ struct GlDeviceSummary {
   std::string driver;      // GL_VENDOR, and the version as the driver words it
   std::string version;     // "4.5"
   bool isCpu = false;
-  std::string missing; // empty: the tool can render on it; else why not, in words
-  std::uint32_t samples = 1;
+  std::string missing;              // empty: the tool can render on it; else why not, in words
+  std::uint32_t sampleCounts = 1;   // as GlLimits has them
   std::uint32_t maxPictureSide = 0; // pixels
   bool postDepthCoverage = false;
 };
@@ -37,7 +37,7 @@ struct GlOptions {
 struct GlLimits {
   std::uint32_t textureSide = 0;  // the largest, of framebuffers too
   std::uint32_t vertices = 0;     // of a mesh
-  std::uint32_t samples = 1;      // the most of a pixel
+  std::uint32_t sampleCounts = 1; // of a pixel: the sum of those that it draws
   float pointSizes[2] = {1, 1};   // the least and the largest
   bool postDepthCoverage = false; // GL_ARB_post_depth_coverage
 };

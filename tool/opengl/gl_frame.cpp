@@ -1,6 +1,7 @@
 #include "gl_frame.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "bindings.h"
 
@@ -19,6 +20,13 @@ void GlTimers::startSubmission() {
 }
 
 void GlTimers::stamp() {
+  if (waits_) {
+    glFinish();
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    clock_.resize(++stamps_);
+    clock_.back() = static_cast<std::uint64_t>(std::chrono::nanoseconds(now).count());
+    return;
+  }
   if (stamps_ == queries_.size()) glCreateQueries(GL_TIMESTAMP, 1, &queries_.emplace_back());
   glQueryCounter(queries_[stamps_++], GL_TIMESTAMP);
 }
@@ -28,11 +36,17 @@ void GlTimers::endPass(const std::string& name) {
   stamp();
 }
 
+std::uint64_t GlTimers::nanosecondsAt(std::size_t stamp) const {
+  if (waits_) return clock_[stamp];
+  GLuint64 time = 0;
+  glGetQueryObjectui64v(queries_[stamp], GL_QUERY_RESULT, &time);
+  return time;
+}
+
 void GlTimers::addSubmission() {
-  GLuint64 before = 0;
+  std::uint64_t before = 0;
   for (std::size_t i = 0; i < stamps_; ++i) {
-    GLuint64 now = 0;
-    glGetQueryObjectui64v(queries_[i], GL_QUERY_RESULT, &now);
+    const std::uint64_t now = nanosecondsAt(i);
     if (i > 0) add(names_[i - 1], static_cast<double>(now - before) * 1e-6);
     before = now;
   }

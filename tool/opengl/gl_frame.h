@@ -12,10 +12,11 @@
 
 namespace vitrail::tool {
 
-// The time that the device takes between the passes of a frame (GL_TIMESTAMP).
+// The time that the device takes between the passes of a frame: GL_TIMESTAMP. Drivers on CPUs put draws off until
+// somebody waits for them, whatever is stamped: there every pass is waited for, and the clock read.
 class GlTimers {
  public:
-  GlTimers() = default;
+  explicit GlTimers(const Gl& gl) : waits_(gl.isCpu()) {}
   ~GlTimers();
   GlTimers(const GlTimers&) = delete;
   GlTimers& operator=(const GlTimers&) = delete;
@@ -32,9 +33,12 @@ class GlTimers {
 
  private:
   void stamp();
+  std::uint64_t nanosecondsAt(std::size_t stamp) const;
   void add(const std::string& name, double milliseconds);
 
-  std::vector<GLuint> queries_;
+  bool waits_;
+  std::vector<GLuint> queries_;      // of stamps, or
+  std::vector<std::uint64_t> clock_; // what the clock said
   std::size_t stamps_ = 0;
   std::vector<std::string> names_; // of the submission's passes
   std::vector<std::pair<std::string, double>> frame_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "../gpu/features.h"
 #include "../scene/srgb.h"
 #include "../stage/frame_data.h"
 #include "files/gl_opaque.frag.h"
@@ -25,9 +26,10 @@ GlObject makeVertexArray() {
 }
 
 void requireSamples(const Gl& gl, std::uint32_t samples) {
-  if (samples <= gl.limits().samples) return;
-  throw GpuError(fmt::format("{} draws at most {} samples a pixel, not {}: choose fewer with --samples", gl.name(),
-                             gl.limits().samples, samples));
+  const std::uint32_t offered = gl.limits().sampleCounts;
+  if ((offered & samples) != 0) return;
+  throw GpuError(fmt::format("{} draws {} samples a pixel, not {}: choose one of these with --samples", gl.name(),
+                             sampleCountsText(offered), samples));
 }
 
 } // namespace

@@ -65,6 +65,7 @@ GlStillRenderer::Impl::Impl(Gl& gl, const Scene& scene, std::optional<float> opa
                             const MethodOptions& chosen, Scene* released)
     : options(chosen),
       warnings(methodWarnings(scene, chosen)),
+      timers(gl),
       stage(gl, scene, opacity, order, chosen.samples, released),
       method(makeGlMethod({gl, stage.surfaces(), scene}, chosen)) {
   stage.setNeeds(method->needs());
