@@ -8,6 +8,7 @@
 
 #include "../../tool/methods/methods.h"
 #include "../../tool/render/cpu_still.h"
+#include "../../tool/render/gl_still.h"
 
 namespace vitrail::tool::test {
 
@@ -18,9 +19,17 @@ std::unique_ptr<Gpu>& sharedGpu() {
   return gpu;
 }
 
+std::unique_ptr<Gl>& sharedGl() {
+  static std::unique_ptr<Gl> gl;
+  return gl;
+}
+
 class GpuEnvironment : public ::testing::Environment {
  public:
-  void TearDown() override { sharedGpu().reset(); }
+  void TearDown() override {
+    sharedGl().reset();
+    sharedGpu().reset();
+  }
 };
 
 const ::testing::Environment* const environment = ::testing::AddGlobalTestEnvironment(new GpuEnvironment);
@@ -37,14 +46,26 @@ Gpu& GpuTest::gpu() {
   return *gpu;
 }
 
+Gl& GpuTest::gl() {
+  std::unique_ptr<Gl>& gl = sharedGl();
+  if (!gl) gl = std::make_unique<Gl>(GlOptions{{}, true});
+  return *gl;
+}
+
 void GpuTest::TearDown() {
-  if (!sharedGpu()) return;
-  for (const std::string& error : sharedGpu()->validationErrors()) ADD_FAILURE() << error;
+  std::vector<std::string> errors;
+  if (sharedGpu()) errors = sharedGpu()->validationErrors();
+  for (const std::string& error : errors) ADD_FAILURE() << error;
+  if (sharedGl()) errors = sharedGl()->validationErrors();
+  for (const std::string& error : errors) ADD_FAILURE() << error;
 }
 
 std::unique_ptr<Renderer> rendererOf(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order,
                                      const MethodOptions& method) {
   if (traitsOf(method.name).onProcessor) return std::make_unique<CpuStillRenderer>(scene, opacity, order, method);
+  if (method.api == Api::OpenGl) {
+    return std::make_unique<GlStillRenderer>(GpuTest::gl(), scene, opacity, order, method);
+  }
   return std::make_unique<StillRenderer>(gpu, scene, opacity, order, method);
 }
 

@@ -1,4 +1,5 @@
-// What the GPU tests share: one device under the validation layer, and the rule that a validation error fails a test.
+// What the GPU tests share: one device under the validation layer, one OpenGL context with debug output, and the rule
+// that an error of either fails a test.
 #pragma once
 
 #include <memory>
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "../../tool/gpu/device.h"
+#include "../../tool/opengl/gl.h"
 #include "../../tool/render/still.h"
 
 namespace vitrail::tool::test {
@@ -16,15 +18,20 @@ namespace vitrail::tool::test {
 // A test on the GPU. It runs under the Khronos validation layer with synchronization validation; where that layer is
 // missing the test fails.
 class GpuTest : public ::testing::Test {
+ public:
+  // The process's one OpenGL context, made by the first call.
+  static Gl& gl();
+
  protected:
   // The process's one device, made by the first call.
   static Gpu& gpu();
 
-  // Fails the test for every error that the validation layer has reported so far.
+  // Fails the test for every error that the validation layer or OpenGL has reported so far.
   void TearDown() override;
 };
 
-// A renderer of a scene: on the processor for the method that is drawn there.
+// A renderer of a scene: on the processor for the method that is drawn there, by the tests' OpenGL context for
+// Api::OpenGl.
 std::unique_ptr<Renderer> rendererOf(Gpu& gpu, const Scene& scene, std::optional<float> opacity = {},
                                      DrawOrder order = DrawOrder::Forward, const MethodOptions& method = {});
 

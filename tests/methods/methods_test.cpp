@@ -17,6 +17,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "../../tool/methods/methods.h"
 #include "../../tool/scene/builtin/builtin.h"
 #include "../reference/compare.h"
 #include "../reference/test_scenes.h"
@@ -42,6 +43,7 @@ enum class Exact {
 
 struct MethodRow {
   std::string name;
+  Api api = Api::Vulkan;
   Exact exact = Exact::OneLayer;
   bool orderFree = false;           // the order of submission does not change a bit
   bool orderRounds = false;         // it changes how sums are rounded, by 2/255 at most
@@ -57,7 +59,7 @@ struct MethodRow {
   bool wrongWhereSurfacesCross = false; // visibly so in `interlocked`
 };
 
-void PrintTo(const MethodRow& row, std::ostream* out) { *out << row.name; }
+void PrintTo(const MethodRow& row, std::ostream* out) { *out << nameOf(row.api) << " " << row.name; }
 
 // Methods that keep the nearest layers exactly: as many as all scenes below have.
 MethodRow nearestLayers(const std::string& name) {
@@ -71,7 +73,7 @@ MethodRow nearestLayers(const std::string& name) {
           .nodes = VITRAIL_NODE_STANDARD};
 }
 
-const std::vector<MethodRow>& rows() {
+const std::vector<MethodRow>& vulkanRows() {
   static const std::vector<MethodRow> kRows = {
       {.name = "linked-list",
        .exact = Exact::Everywhere,
@@ -125,6 +127,20 @@ const std::vector<MethodRow>& rows() {
        .severalSamples = false,
        .options = {"--layers"}},
   };
+  return kRows;
+}
+
+// The rows, and after them those that are there with OpenGL as well: the same promises.
+const std::vector<MethodRow>& rows() {
+  static const std::vector<MethodRow> kRows = [] {
+    std::vector<MethodRow> rows = vulkanRows();
+    for (MethodRow row : vulkanRows()) {
+      if (traitsOf(row.name).makeGl == nullptr) continue;
+      row.api = Api::OpenGl;
+      rows.push_back(std::move(row));
+    }
+    return rows;
+  }();
   return kRows;
 }
 
@@ -327,6 +343,7 @@ class MethodsTest : public GpuTest, public ::testing::WithParamInterface<MethodR
   static MethodOptions options(std::uint32_t samples = 1) {
     MethodOptions result;
     result.name = GetParam().name;
+    result.api = GetParam().api;
     result.samples = samples;
     result.maxLayers = GetParam().layers;
     result.passes = GetParam().passes;
@@ -506,6 +523,7 @@ TEST_P(MethodsTest, SeveralSamplesAreRightOrRefused) {
   for (const std::uint32_t samples : {2U, 4U, 8U}) {
     if (GetParam().severalSamples) {
       if ((gpu().features().sampleCounts & samples) == 0) continue;
+      if (GetParam().api == Api::OpenGl && (gl().limits().sampleCounts & samples) == 0) continue;
       expectRight(onePane(), samples);
       if (GetParam().exact >= Exact::ParallelPanes) expectRight(occludedStack(), samples);
       continue;
@@ -571,7 +589,7 @@ std::vector<MethodRow> rowsThat(const std::function<bool(const MethodRow&)>& pro
 }
 
 std::string nameOfRow(const ::testing::TestParamInfo<MethodRow>& row) {
-  std::string name = row.param.name;
+  std::string name = (row.param.api == Api::OpenGl ? "opengl-" : "") + row.param.name;
   std::ranges::replace(name, '-', '_');
   return name;
 }

@@ -7,6 +7,7 @@
 #include "../image/encode.h"
 #include "../methods/gl_method.h"
 #include "../methods/methods.h"
+#include "../methods/shared/host_clock.h"
 #include "../opengl/gl_stage.h"
 #include "../scene/threads.h"
 #include "attempts.h"
@@ -149,7 +150,10 @@ GlStillRenderer::~GlStillRenderer() = default;
 RenderResult GlStillRenderer::render(const RenderOptions& options) {
   RenderResult result;
   result.report = impl_->drawUntilComplete(options);
+  const HostClock clock;
   impl_->read(options, result);
+  result.report.passesMs.emplace_back("encode", clock.milliseconds()); // on the host
+  result.report.frameMs += result.report.passesMs.back().second;
   result.isEmpty = impl_->isBackgroundAlone(options, result);
   return result;
 }

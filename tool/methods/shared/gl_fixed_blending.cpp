@@ -30,6 +30,7 @@ void GlBlendedSurfaces::draw(GlFrame& frame, std::span<const SurfaceRun> runs) c
     }
   });
   glDisable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ZERO); // Mesa refuses factors of a second source beside several draw buffers, blended or not
 }
 
 } // namespace vitrail::tool
