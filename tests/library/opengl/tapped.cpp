@@ -20,10 +20,11 @@ void Tap::reset() {
 
 namespace {
 
-#define VITRAIL_ALL_FUNCTIONS(X)           \
-  VITRAIL_GL_FUNCTIONS(X)                  \
-  X(PFNGLBUFFERSTORAGEPROC, BufferStorage) \
-  X(PFNGLMAPBUFFERRANGEPROC, MapBufferRange)
+#define VITRAIL_ALL_FUNCTIONS(X)             \
+  VITRAIL_GL_FUNCTIONS(X)                    \
+  X(PFNGLBUFFERSTORAGEPROC, BufferStorage)   \
+  X(PFNGLMAPBUFFERRANGEPROC, MapBufferRange) \
+  X(PFNGLMAXSHADERCOMPILERTHREADSKHRPROC, MaxShaderCompilerThreadsKHR)
 
 enum class Function : std::size_t {
 #define VITRAIL_NAME(type, name) name,
@@ -65,6 +66,15 @@ bool hasEffect(Function function) {
   return fence && tap.fence == LostFence::AsEver;
 }
 
+// Another text for the shader that is about to be compiled.
+void spoil(Function function, GLuint shader) {
+  if (function != Function::CompileShader || tap.shaders++ != tap.spoiledShader) return;
+  const GLchar* text = "#version 430 core\nthis is no GLSL\n";
+  const auto set =
+      reinterpret_cast<PFNGLSHADERSOURCEPROC>(realFunctions[static_cast<std::size_t>(Function::ShaderSource)]);
+  set(shader, 1, &text, nullptr);
+}
+
 bool isLeftOut(Function function) {
   return function == Function::MemoryBarrier && tap.barriers++ == tap.leftOutBarrier;
 }
@@ -78,6 +88,7 @@ struct Tapped<Result(APIENTRYP)(Arguments...)> {
     constexpr auto kIndex = static_cast<std::size_t>(kFunction);
     tap.calls.push_back({kNames[kIndex], firstOf(arguments...)});
     if (!hasEffect(kFunction) || isLeftOut(kFunction)) return lostResult<Result>(kFunction);
+    spoil(kFunction, firstOf(arguments...));
     return reinterpret_cast<Result(APIENTRYP)(Arguments...)>(realFunctions[kIndex])(arguments...);
   }
 };
