@@ -152,7 +152,7 @@ std::string finish(const GlFunctions& gl, const Build& build) {
   gl.GetProgramiv(build.program, GL_LINK_STATUS, &linked);
   if (linked != GL_FALSE) return {};
   for (const GLuint shader : build.shaders) {
-    const std::string reason = shader != 0 ? compileError(gl, shader) : std::string();
+    std::string reason = shader != 0 ? compileError(gl, shader) : std::string();
     if (!reason.empty()) return reason;
   }
   std::array<GLchar, 256> said{};
