@@ -55,7 +55,7 @@ Result lostResult(Function function) {
 std::uint32_t firstOf() { return 0; }
 template <typename First, typename... Rest>
 std::uint32_t firstOf(First first, Rest... /*rest*/) {
-  if constexpr (std::integral<First> && sizeof(First) == 4) return static_cast<std::uint32_t>(first);
+  if constexpr (std::same_as<First, GLuint> || std::same_as<First, GLint>) return static_cast<std::uint32_t>(first);
   return 0;
 }
 
