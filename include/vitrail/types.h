@@ -22,7 +22,7 @@ extern "C" {
 #endif
 
 #define VITRAIL_VERSION_MAJOR 0
-#define VITRAIL_VERSION_MINOR 5
+#define VITRAIL_VERSION_MINOR 6
 #define VITRAIL_VERSION_PATCH 0
 /* Versions as numbers that grow: major << 22 | minor << 12 | patch. */
 #define VITRAIL_MAKE_VERSION(major, minor, patch) \

@@ -119,6 +119,11 @@ VitrailResult checkVersion(const VitrailGlContext_T& context) {
   return VITRAIL_SUCCESS;
 }
 
+const char* compilerThreadsName(const GlFunctions& gl) {
+  if (hasExtension(gl, "GL_KHR_parallel_shader_compile")) return "glMaxShaderCompilerThreadsKHR";
+  return hasExtension(gl, "GL_ARB_parallel_shader_compile") ? "glMaxShaderCompilerThreadsARB" : nullptr;
+}
+
 std::string sourceFor(const char* name) { return kSourcePrefix + flattened(name) + "#line 1\n"; }
 
 } // namespace
@@ -185,6 +190,10 @@ extern "C" VitrailResult vitrailGlCreateContext(const VitrailGlContextDesc* desc
   if (version >= 44 || hasExtension(made->gl, "GL_ARB_buffer_storage")) {
     made->gl.BufferStorage =
         reinterpret_cast<PFNGLBUFFERSTORAGEPROC>(desc->getProcAddress("glBufferStorage", desc->loaderUser));
+  }
+  if (const char* name = compilerThreadsName(made->gl)) {
+    made->gl.MaxShaderCompilerThreads =
+        reinterpret_cast<PFNGLMAXSHADERCOMPILERTHREADSKHRPROC>(desc->getProcAddress(name, desc->loaderUser));
   }
   readLimits(*made);
   made->collectSource = sourceFor("vitrail/collect.glsl");

@@ -80,6 +80,8 @@ struct GlFunctions {
   // Null before OpenGL 4.4 without GL_ARB_buffer_storage.
   PFNGLBUFFERSTORAGEPROC BufferStorage = nullptr;
   PFNGLMAPBUFFERRANGEPROC MapBufferRange = nullptr;
+  // Null without GL_KHR_parallel_shader_compile or the extension of ARB.
+  PFNGLMAXSHADERCOMPILERTHREADSKHRPROC MaxShaderCompilerThreads = nullptr;
 
   // Fills the table. Returns the name of a function that is missing, or null where all are there.
   const char* load(VitrailGlGetProcAddress getProcAddress, void* user);

@@ -1,8 +1,11 @@
 #include "programs.h"
 
 #include <array>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "context.h"
 #include "source.h"
@@ -72,64 +75,132 @@ std::string definesOf(const Row& row, const ProgramKey& key) {
   return text;
 }
 
-// The first line of what a driver says, for a log of lines.
-std::string firstLine(std::string text) { return text.substr(0, text.find_first_of("\r\n")); }
+// ---- Programs that are being made
 
-// Adds a row's shader to the program. Empty, or what the driver says against it.
-std::string addShader(const GlFunctions& gl, GLuint program, GLenum stage, const Row& row, const ProgramKey& key) {
+// Sets how many threads the driver compiles on, and puts back what it found.
+class CompilerThreads {
+ public:
+  explicit CompilerThreads(const GlFunctions& gl) : gl_(gl) {
+    if (gl.MaxShaderCompilerThreads == nullptr) return;
+    gl.GetIntegerv(GL_MAX_SHADER_COMPILER_THREADS_KHR, &before_);
+    gl.MaxShaderCompilerThreads(kAsManyAsThereAre);
+  }
+  ~CompilerThreads() {
+    if (gl_.MaxShaderCompilerThreads != nullptr) gl_.MaxShaderCompilerThreads(static_cast<GLuint>(before_));
+  }
+  CompilerThreads(const CompilerThreads&) = delete;
+  CompilerThreads& operator=(const CompilerThreads&) = delete;
+
+ private:
+  static constexpr GLuint kAsManyAsThereAre = 0xffffffffU;
+  const GlFunctions& gl_;
+  GLint before_ = 0;
+};
+
+struct Build {
+  ProgramKey key;
+  GLuint program = 0;
+  std::array<GLuint, 2> shaders{}; // 0 where there is none
+
+  [[nodiscard]] const char* name() const {
+    return key.draws ? "fragment resolve" : kernelName(static_cast<Kernel>(key.kernel));
+  }
+};
+
+// Hands a row's shader to the driver, and does not wait for it.
+GLuint startShader(const GlFunctions& gl, GLenum stage, const Row& row, const ProgramKey& key) {
   const std::string defines = definesOf(row, key);
   const std::string source = flattened(row.file);
   const std::array<const GLchar*, 3> parts = {"#version 430 core\n", defines.c_str(), source.c_str()};
   const GLuint shader = gl.CreateShader(stage);
   gl.ShaderSource(shader, static_cast<GLsizei>(parts.size()), parts.data(), nullptr);
   gl.CompileShader(shader);
+  return shader;
+}
+
+// Nothing that is asked of a shader or program until all are linked: the answer would be waited for.
+Build start(const GlFunctions& gl, const ProgramKey& key) {
+  Build build{key, gl.CreateProgram(), {}};
+  if (const Row* row = findRow(key.draws ? Stage::frag : Stage::comp, key.kernel, key)) {
+    build.shaders[0] = startShader(gl, key.draws ? GL_FRAGMENT_SHADER : GL_COMPUTE_SHADER, *row, key);
+  }
+  if (key.draws) build.shaders[1] = startShader(gl, GL_VERTEX_SHADER, *findRow(Stage::vert, 0, key), key);
+  for (const GLuint shader : build.shaders) {
+    if (shader != 0) gl.AttachShader(build.program, shader);
+  }
+  return build;
+}
+
+// The first line of what a driver says, for a log of lines.
+std::string firstLine(std::string text) { return text.substr(0, text.find_first_of("\r\n")); }
+
+// Empty, or what the driver says against a shader.
+std::string compileError(const GlFunctions& gl, GLuint shader) {
   GLint compiled = GL_FALSE;
   gl.GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
-  std::array<GLchar, 256> said{};
-  if (compiled == GL_FALSE) gl.GetShaderInfoLog(shader, static_cast<GLsizei>(said.size()), nullptr, said.data());
-  gl.AttachShader(program, shader);
-  gl.DeleteShader(shader); // goes with the program
   if (compiled != GL_FALSE) return {};
+  std::array<GLchar, 256> said{};
+  gl.GetShaderInfoLog(shader, static_cast<GLsizei>(said.size()), nullptr, said.data());
   const std::string reason = firstLine(said.data());
   return reason.empty() ? "no reason given" : reason;
 }
 
-std::string build(const GlFunctions& gl, GLuint program, const ProgramKey& key) {
-  const Row* row = findRow(key.draws ? Stage::frag : Stage::comp, key.kernel, key);
-  if (row == nullptr) return "no such variant";
-  std::string reason = addShader(gl, program, key.draws ? GL_FRAGMENT_SHADER : GL_COMPUTE_SHADER, *row, key);
-  if (reason.empty() && key.draws) {
-    reason = addShader(gl, program, GL_VERTEX_SHADER, *findRow(Stage::vert, 0, key), key);
-  }
-  if (!reason.empty()) return reason;
-  gl.LinkProgram(program);
+// Waits for a program. Empty, or what the driver says against it.
+std::string finish(const GlFunctions& gl, const Build& build) {
+  if (build.shaders[0] == 0) return "no such variant";
   GLint linked = GL_FALSE;
-  gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
+  gl.GetProgramiv(build.program, GL_LINK_STATUS, &linked);
   if (linked != GL_FALSE) return {};
+  for (const GLuint shader : build.shaders) {
+    std::string reason = shader != 0 ? compileError(gl, shader) : std::string();
+    if (!reason.empty()) return reason;
+  }
   std::array<GLchar, 256> said{};
-  gl.GetProgramInfoLog(program, static_cast<GLsizei>(said.size()), nullptr, said.data());
+  gl.GetProgramInfoLog(build.program, static_cast<GLsizei>(said.size()), nullptr, said.data());
   return "it does not link: " + firstLine(said.data());
+}
+
+// Waits for the programs and keeps those that the driver takes. Of the others the first is logged.
+VitrailResult keep(VitrailGlContext_T& context, std::span<const Build> builds) {
+  const GlFunctions& gl = context.gl;
+  VitrailResult result = VITRAIL_SUCCESS;
+  for (const Build& build : builds) {
+    const std::string reason = finish(gl, build);
+    for (const GLuint shader : build.shaders) {
+      if (shader != 0) gl.DeleteShader(shader);
+    }
+    if (reason.empty()) {
+      context.label(GL_PROGRAM, build.program, "vitrail", build.name());
+      context.programs[build.key] = build.program;
+      continue;
+    }
+    gl.DeleteProgram(build.program);
+    if (result != VITRAIL_SUCCESS) continue;
+    result = takeErrors(gl).lost
+                 ? contextIsLost(context)
+                 : context.log.fail(VITRAIL_ERROR_UNSUPPORTED, "%s: the driver does not take its shader: %s",
+                                    build.name(), reason.c_str());
+  }
+  return result;
 }
 
 } // namespace
 
-VitrailResult findProgram(VitrailGlContext_T& context, const ProgramKey& key, GLuint* program) {
+VitrailResult findPrograms(VitrailGlContext_T& context, std::span<const ProgramKey> keys, std::span<GLuint> programs) {
+  const GlFunctions& gl = context.gl;
   const std::lock_guard lock(context.programsMutex);
-  GLuint& kept = context.programs[key];
-  if (kept == 0) {
-    const GLuint made = context.gl.CreateProgram();
-    const char* name = key.draws ? "fragment resolve" : kernelName(static_cast<Kernel>(key.kernel));
-    const std::string reason = build(context.gl, made, key);
-    if (!reason.empty()) {
-      context.gl.DeleteProgram(made);
-      if (takeErrors(context.gl).lost) return contextIsLost(context);
-      return context.log.fail(VITRAIL_ERROR_UNSUPPORTED, "%s: the driver does not take its shader: %s", name,
-                              reason.c_str());
-    }
-    context.label(GL_PROGRAM, made, "vitrail", name);
-    kept = made;
+  const std::set<ProgramKey> wanted(keys.begin(), keys.end());
+  std::vector<Build> builds;
+  std::optional<CompilerThreads> threads;
+  for (const ProgramKey& key : wanted) {
+    if (context.programs.contains(key)) continue;
+    if (!threads) threads.emplace(gl);
+    builds.push_back(start(gl, key));
   }
-  *program = kept;
+  for (const Build& build : builds) gl.LinkProgram(build.program);
+  const VitrailResult result = keep(context, builds);
+  if (result != VITRAIL_SUCCESS) return result;
+  for (std::size_t i = 0; i < keys.size(); ++i) programs[i] = context.programs[keys[i]];
   return VITRAIL_SUCCESS;
 }
 

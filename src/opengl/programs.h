@@ -3,6 +3,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <span>
 
 #include "functions.h"
 #include "kernels/kernels.h"
@@ -28,7 +29,8 @@ struct ProgramKey {
   auto operator<=>(const ProgramKey&) const = default;
 };
 
-// The program of a key, which the context keeps. Logs its errors.
-VitrailResult findProgram(VitrailGlContext_T& context, const ProgramKey& key, GLuint* program);
+// The programs of these keys, which the context keeps. Drivers that compile on several threads do so with all that are
+// not there yet. Logs its errors.
+VitrailResult findPrograms(VitrailGlContext_T& context, std::span<const ProgramKey> keys, std::span<GLuint> programs);
 
 } // namespace vitrail

@@ -200,10 +200,6 @@ void draw(const VitrailGlTarget_T& target, const Pass& pass) {
   gl.DrawArraysIndirect(GL_TRIANGLES, argumentsOf(target.storage, pass));
 }
 
-bool runsShaders(const Pass& pass) {
-  return pass.action == Action::Dispatch || pass.action == Action::Draw || pass.action == Action::DrawPlain;
-}
-
 void runShaders(const VitrailGlTarget_T& target, const Pass& pass, GLuint program, const GlCallInfo& info) {
   target.context->gl.UseProgram(program);
   if (pass.action == Action::Dispatch) {
@@ -246,6 +242,10 @@ void runPasses(VitrailGlTarget_T& target, std::size_t first, std::size_t end, co
 }
 
 } // namespace
+
+bool runsShaders(const Pass& pass) {
+  return pass.action == Action::Dispatch || pass.action == Action::Draw || pass.action == Action::DrawPlain;
+}
 
 void runCall(VitrailGlTarget_T& target, Call call, const GlCallInfo& info) {
   const std::vector<Pass>& passes = target.plan.passes();

@@ -121,13 +121,18 @@ ProgramKey programKey(const VitrailGlTarget_T& target, const Pass& pass) {
 }
 
 VitrailResult findPrograms(VitrailGlTarget_T& target) {
-  for (const Pass& pass : target.plan.passes()) {
-    GLuint program = 0;
-    if (pass.action == Action::Dispatch || pass.action == Action::Draw || pass.action == Action::DrawPlain) {
-      const VitrailResult result = findProgram(*target.context, programKey(target, pass), &program);
-      if (result != VITRAIL_SUCCESS) return result;
-    }
-    target.programs.push_back(program);
+  const std::vector<Pass>& passes = target.plan.passes();
+  std::vector<ProgramKey> keys;
+  for (const Pass& pass : passes) {
+    if (runsShaders(pass)) keys.push_back(programKey(target, pass));
+  }
+  std::vector<GLuint> found(keys.size());
+  const VitrailResult result = findPrograms(*target.context, keys, found);
+  if (result != VITRAIL_SUCCESS) return result;
+  target.programs.resize(passes.size());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    if (runsShaders(passes[i])) target.programs[i] = found[next++];
   }
   return VITRAIL_SUCCESS;
 }

@@ -73,6 +73,9 @@ struct GlCallInfo {
   std::uint64_t copyOffset = 0;
 };
 
+// Whether a pass has a program.
+bool runsShaders(const Pass& pass);
+
 // The passes of a call, with the barriers between them.
 void runCall(VitrailGlTarget_T& target, Call call, const GlCallInfo& info = {});
 

@@ -3,11 +3,11 @@
 
     check_docs.py --prefix PREFIX --cc CC --cxx CXX [--prelude HEADER] [--pkg-config FOLDER] FILE.md...
 
-```c and ```cpp: the body of a function, after docs/prelude.h or another header of that folder; or, where there is an
-`int main(`, a program for the rasteriser for CPUs, which pkg-config links and which must end with 0 and print what the
-```text block after it says. ```glsl: a whole fragment or compute shader, or the body of
-a fragment shader's main().
-```cmake: the end of a CMakeLists.txt with an executable `renderer`. ```sh is not run."""
+```c and ```cpp: the body of a function, after docs/prelude.h or another header of that folder, or docs/opengl.h where it
+calls OpenGL; or, where there is an `int main(`, a program for the rasteriser for CPUs, which pkg-config links and which
+must end with 0 and print what the ```text block after it says. ```glsl: a whole fragment or compute shader, or the body
+of a fragment shader's main(). ```cmake: the end of a CMakeLists.txt with an executable `renderer`. ```sh is not run. A
+block that does not say what it is nobody would compile: an error."""
 import argparse
 import os
 import re
@@ -35,6 +35,8 @@ def blocks_of(path):
         fence = re.match(r"```(\w*)\s*$", line)
         if fence and language is None:
             start, language, text = number + 1, fence.group(1), []
+            if not language:
+                sys.exit(f"check_docs: {path}:{number}: the block does not say which language it is in (`text`: none)")
         elif fence:
             found.append((start, language, "".join(text)))
             language = None
@@ -61,15 +63,21 @@ def build_program(options, folder, line, where, text):
             "-o", os.path.join(folder, "program")]
 
 
+def prelude_of(options, text):
+    return "opengl.h" if re.search(r"\b(vitrailGl[A-Z]|vitrail::opengl\b|gl[A-Z])", text) else options.prelude
+
+
 def compile_c(options, folder, line, where, text):
     if "int main(" in text:
         return build_program(options, folder, line, where, text)
-    source = f'#include "{options.prelude}"\nvoid guide(void);\nvoid guide(void) {{\n#line {line} "{where}"\n{text}\n}}\n'
+    prelude = prelude_of(options, text)
+    source = f'#include "{prelude}"\nvoid guide(void);\nvoid guide(void) {{\n#line {line} "{where}"\n{text}\n}}\n'
     return [options.cc, "-std=c11", write(folder, "block.c", source)] + c_flags(options)
 
 
 def compile_cpp(options, folder, line, where, text):
-    source = f'#include "{options.prelude}"\nvoid guide();\nvoid guide() {{\n#line {line} "{where}"\n{text}\n}}\n'
+    prelude = prelude_of(options, text)
+    source = f'#include "{prelude}"\nvoid guide();\nvoid guide() {{\n#line {line} "{where}"\n{text}\n}}\n'
     return [options.cxx, "-std=c++20", write(folder, "block.cpp", source)] + c_flags(options)
 
 

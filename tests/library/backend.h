@@ -35,6 +35,12 @@ struct Features {
   std::vector<std::uint32_t> multisampled; // which of 2, 4 and 8 samples it has
 };
 
+// A line of the library's log.
+struct LogLine {
+  VitrailLogSeverity severity = VITRAIL_LOG_ERROR;
+  std::string text;
+};
+
 // A graphics API and its one device in this process, which the first call that needs it makes.
 class Backend {
  public:
@@ -49,6 +55,10 @@ class Backend {
   virtual std::unique_ptr<PointHost> makeHost(const HostDesc& desc) = 0;
   // What the device can hold, for plans of tiles.
   virtual VitrailTileLimits tileLimits(VitrailNodeFormat format, std::uint32_t samples) = 0;
+  // What the names of the calls of a frame begin with.
+  [[nodiscard]] virtual std::string callPrefix() const = 0;
+  // The log's lines since the last call.
+  virtual std::vector<LogLine> takeLog() = 0;
   // What the API's validation has found wrong since the last call, one text each. Any is a failed test.
   virtual std::vector<std::string> takeErrors() = 0;
   // Gives the device back; what outlived it is among the errors. Hosts are gone by then.
@@ -56,6 +66,9 @@ class Backend {
 };
 
 std::vector<Backend*>& backends();
+
+// The library has logged one line since the last look, and the word is in it.
+void expectOneLine(Backend& backend, const std::string& word);
 
 // Registers a backend as long as the program runs.
 template <typename Made>
@@ -73,6 +86,7 @@ class BackendTest : public ::testing::TestWithParam<Backend*> {
   [[nodiscard]] static Backend& backend() { return *GetParam(); }
   [[nodiscard]] static const Features& features() { return backend().features(); }
   [[nodiscard]] static std::unique_ptr<PointHost> makeHost(const HostDesc& desc) { return backend().makeHost(desc); }
+  static void expectOneLine(const std::string& word) { tests::expectOneLine(backend(), word); }
   // One frame by a host of its own.
   [[nodiscard]] static PointResult draw(const HostDesc& desc, std::span<const Point> points) {
     return makeHost(desc)->draw(points);

@@ -78,7 +78,8 @@ struct HostDesc {
   // Strangers among the points are drawn by a shader that is specialized for a target that differs in this.
   std::optional<VitrailOverflow> strangersFor;
   ShaderKind shader = ShaderKind::Usual;
-  bool guarded = false; // the memory is this host's, between guard words
+  bool guarded = false;      // the memory is this host's, between guard words
+  bool numbersFrames = true; // else the library does
   // The fragments that are taken to have asked for a node before the first point. `guarded` only.
   std::uint32_t requestedBefore = 0;
 
@@ -95,6 +96,37 @@ FloatColor behindAt(const HostDesc& desc, std::uint32_t sample);
 struct PointResult {
   std::vector<FloatColor> pixels; // rows top to bottom; the mean of the samples
   VitrailStats stats{};
+};
+
+// A copy of lists that need not be right: to this host's buffer, which has room for the lists of 4x4 pixels.
+struct CopyAttempt {
+  VitrailRect area{};
+  bool hasBuffer = true;
+  std::uint64_t offset = 0;
+  std::optional<std::uint64_t> size = {}; // default: what the buffer has from the offset on
+};
+
+// The library's calls, for tests that make them in any order and ask for anything.
+class FrameCalls {
+ public:
+  FrameCalls() = default;
+  FrameCalls(const FrameCalls&) = delete;
+  FrameCalls& operator=(const FrameCalls&) = delete;
+  virtual ~FrameCalls() = default;
+
+  virtual void begin(const VitrailRect& area) = 0; // of the next frame; an extent of 0: everything
+  virtual void draw(std::span<const Point> points) = 0;
+  virtual void collected() = 0;
+  virtual void copyLists(const CopyAttempt& attempt) = 0;
+  virtual void resolve(std::optional<std::uint32_t> view) = 0; // default: the one whose picture is looked at
+  virtual void end() = 0;
+  virtual void resize() = 0; // to the size that the target has
+};
+
+struct CallsResult {
+  std::vector<FloatColor> pixels;
+  std::optional<VitrailStats> stats; // of the frame that was begun last, where there are any
+  bool copied = false;               // something was written to the buffer of copyLists()
 };
 
 // How a host reads lists: the library copies them out, or a shader of the host's walks them (vitrail/list.glsl).
@@ -146,6 +178,9 @@ class PointHost {
   virtual ListsRead drawAndRead(std::span<const Point> points, const VitrailRect& area, ReadBy by,
                                 bool afterResolve) = 0;
 
+  // Draws the opaque scene, makes the calls that `make` makes, and waits for them.
+  virtual CallsResult drawCalls(const std::function<void(FrameCalls&)>& make) = 0;
+
   // Records a frame and never submits it, as hosts do whose swapchain is out of date.
   virtual void drop(std::span<const Point> points) = 0;
 
@@ -156,6 +191,7 @@ class PointHost {
   [[nodiscard]] virtual std::vector<std::uint32_t> words(StoragePart StorageLayout::*part) = 0;
 
   [[nodiscard]] virtual VitrailMemory memory() const = 0;
+  [[nodiscard]] virtual std::uint64_t newestFrame() const = 0; // that the library knows of
 
   // Of a frame that has finished; nothing where they cannot be had any more, or yet.
   [[nodiscard]] virtual std::optional<VitrailStats> stats(std::uint64_t frame) const = 0;

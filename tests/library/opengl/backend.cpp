@@ -192,15 +192,6 @@ GLuint OpenGlBackend::program(const std::string& first, const std::string& fragm
 
 OpenGlBackend& backend() { return Registered<OpenGlBackend>::get(); }
 
-void expectOneLine(const std::string& word) {
-  const std::vector<LogLine> lines = backend().takeLog();
-  EXPECT_EQ(lines.size(), 1U) << "lines about " << word;
-  for (const LogLine& line : lines) {
-    EXPECT_NE(line.text.find(word), std::string::npos) << "the log says: " << line.text;
-    EXPECT_EQ(line.text.find('\n'), std::string::npos) << "the log says: " << line.text;
-  }
-}
-
 void OpenGlTest::SetUp() { backend().features(); }
 
 void OpenGlTest::TearDown() {

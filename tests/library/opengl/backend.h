@@ -33,15 +33,10 @@ class EglContext {
   EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-// A line of the library's log.
-struct LogLine {
-  VitrailLogSeverity severity = VITRAIL_LOG_ERROR;
-  std::string text;
-};
-
 class OpenGlBackend : public Backend {
  public:
   [[nodiscard]] std::string name() const override { return "opengl"; }
+  [[nodiscard]] std::string callPrefix() const override { return "vitrailGl"; }
   const Features& features() override;
   std::unique_ptr<PointHost> makeHost(const HostDesc& desc) override;
   VitrailTileLimits tileLimits(VitrailNodeFormat format, std::uint32_t samples) override;
@@ -54,7 +49,7 @@ class OpenGlBackend : public Backend {
   VitrailGlContext exchangeContext(VitrailGlContext context) { return std::exchange(context_, context); }
   VitrailGlContextDesc contextDesc();
   [[nodiscard]] const EglContext& egl() const { return *egl_; }
-  std::vector<LogLine> takeLog();
+  std::vector<LogLine> takeLog() override;
   // Has what KHR_debug says of the context that is current among the errors, too.
   void listen();
 
@@ -74,8 +69,7 @@ class OpenGlBackend : public Backend {
 
 OpenGlBackend& backend();
 
-// The library has logged one line since the last look, and the word is in it.
-void expectOneLine(const std::string& word);
+inline void expectOneLine(const std::string& word) { tests::expectOneLine(backend(), word); }
 
 // A test of what only OpenGL has. The backend's context is current.
 class OpenGlTest : public ::testing::Test {

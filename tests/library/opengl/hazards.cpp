@@ -56,9 +56,9 @@ class Memory {
 
   void hostOrdersPicture() { image_ = 0; }
   void hostUsesPicture() {
-    constexpr std::array kUses = {GL_TEXTURE_FETCH_BARRIER_BIT, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT,
-                                  GL_FRAMEBUFFER_BARRIER_BIT, GL_TEXTURE_UPDATE_BARRIER_BIT,
-                                  GL_PIXEL_BUFFER_BARRIER_BIT};
+    constexpr std::array<GLbitfield, 5> kUses = {GL_TEXTURE_FETCH_BARRIER_BIT, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT,
+                                                 GL_FRAMEBUFFER_BARRIER_BIT, GL_TEXTURE_UPDATE_BARRIER_BIT,
+                                                 GL_PIXEL_BUFFER_BARRIER_BIT};
     for (const GLbitfield bit : kUses) use(image_, bit, kHostUsesPicture);
   }
 

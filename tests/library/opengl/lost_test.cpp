@@ -57,8 +57,21 @@ class LostTest : public OpenGlTest {
     vitrailGlEnd(framed.target);
   }
 
-  // What no loss changes: calls that read fields.
-  static void expectFields(const Framed& framed) {
+  // What no loss changes: calls that read fields, of the context and of a target.
+  void expectFields(const Framed& framed) const {
+    EXPECT_EQ(vitrailGlDefaultResolve(context_, &framed.desc), VITRAIL_RESOLVE_COMPUTE);
+    EXPECT_NE(vitrailGlDefaultListBuild(context_, &framed.desc), VITRAIL_LIST_BUILD_DEFAULT);
+    EXPECT_GT(vitrailGlMaxNodeCapacity(context_, VITRAIL_NODE_STANDARD, 1), 0U);
+    EXPECT_STRNE(vitrailGlCollectSource(context_), "");
+    EXPECT_STRNE(vitrailGlListSource(context_), "");
+    VitrailTileLimits limits{};
+    EXPECT_EQ(vitrailGlTileLimits(context_, VITRAIL_NODE_STANDARD, 1, &limits), VITRAIL_SUCCESS);
+    VitrailGlRequirements needs{};
+    EXPECT_EQ(vitrailGlTargetRequirements(context_, &framed.desc, &needs), VITRAIL_SUCCESS);
+    VitrailGlSpecialization specialization{};
+    vitrailGlCollectSpecialization(context_, &framed.desc, &specialization);
+    EXPECT_STRNE(specialization.defines, "");
+    EXPECT_GT(vitrailGlCopySize(framed.target, 4, 4), 0U);
     EXPECT_EQ(vitrailGlTargetResolve(framed.target), VITRAIL_RESOLVE_COMPUTE);
     EXPECT_NE(vitrailGlTargetListBuild(framed.target), VITRAIL_LIST_BUILD_DEFAULT);
     EXPECT_NE(vitrailGlBarriers(framed.target, VITRAIL_GL_BARRIER_RESOLVE), 0U);

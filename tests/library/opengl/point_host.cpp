@@ -385,7 +385,7 @@ void OpenGlHost::drawOpaque(PointTextures& textures) {
 
 void OpenGlHost::begin(std::uint64_t frame, const VitrailRect& area) {
   VitrailGlBeginInfo info{};
-  info.frame = frame;
+  info.frame = desc_.numbersFrames ? frame : 0;
   info.area = area;
   barrier(VITRAIL_GL_BARRIER_BEGIN);
   vitrailGlBegin(target_, &info);
@@ -507,7 +507,8 @@ VitrailMemory OpenGlHost::memory() const {
 }
 
 void OpenGlHost::update(std::uint64_t frame) {
-  if (vitrailGlUpdateTarget(target_, frame) != VITRAIL_SUCCESS) throw HostError("vitrailGlUpdateTarget");
+  if (vitrailGlUpdateTarget(target_, desc_.numbersFrames ? frame : 0) != VITRAIL_SUCCESS)
+    throw HostError("vitrailGlUpdateTarget");
 }
 
 std::vector<PointResult> OpenGlHost::drawTogether(const std::vector<std::vector<Point>>& frames) {
@@ -549,6 +550,71 @@ std::array<PointResult, 2> OpenGlHost::drawAcrossResize(std::span<const Point> f
   PointResult earlier = read(old[frame % kFramesTogether], frame);
   desc_ = now;
   return {std::move(earlier), std::move(after)};
+}
+
+class OpenGlHost::Calls : public FrameCalls {
+ public:
+  Calls(OpenGlHost& host, PointTextures& textures) : host_(host), textures_(textures) {}
+  ~Calls() override { glDeleteBuffers(1, &copied_); }
+
+  void begin(const VitrailRect& area) override {
+    begun = host_.frame_++;
+    host_.begin(*begun, area);
+  }
+  void draw(std::span<const Point> points) override { host_.drawPoints(textures_, points); }
+  void collected() override { host_.collected(); }
+  void copyLists(const CopyAttempt& attempt) override {
+    if (copied_ == 0) {
+      bytes_ = vitrailGlCopySize(host_.target_, 4, 4);
+      copied_ = makeBuffer(bytes_);
+      glBindBuffer(GL_COPY_WRITE_BUFFER, copied_);
+      glClearBufferData(GL_COPY_WRITE_BUFFER, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, &kUntouched);
+    }
+    VitrailGlCopyInfo info{};
+    info.area = attempt.area;
+    if (attempt.hasBuffer) info.buffer = copied_;
+    info.offset = attempt.offset;
+    info.size = attempt.size.value_or(bytes_ - attempt.offset);
+    vitrailGlCopyLists(host_.target_, &info);
+  }
+  void resolve(std::optional<std::uint32_t> view) override {
+    const auto own = static_cast<std::uint64_t>(&textures_ - host_.textures_.data());
+    host_.resolve(textures_, view ? *view : own);
+  }
+  void end() override { host_.end(); }
+  void resize() override {
+    VitrailGlResizeInfo info{};
+    info.width = host_.desc_.width;
+    info.height = host_.desc_.height;
+    info.textures = host_.views();
+    if (vitrailGlResizeTarget(host_.target_, &info) != VITRAIL_SUCCESS) throw HostError("vitrailGlResizeTarget");
+  }
+
+  [[nodiscard]] bool hasCopied() const {
+    if (copied_ == 0) return false;
+    const std::vector<std::byte> bytes = readBuffer(copied_, 0, bytes_);
+    return std::any_of(bytes.begin(), bytes.end(), [](std::byte byte) { return byte != std::byte{kUntouched}; });
+  }
+
+  std::optional<std::uint64_t> begun;
+
+ private:
+  static constexpr std::uint8_t kUntouched = 0x5a;
+
+  OpenGlHost& host_;
+  PointTextures& textures_;
+  GLuint copied_ = 0;
+  std::uint64_t bytes_ = 0;
+};
+
+CallsResult OpenGlHost::drawCalls(const std::function<void(FrameCalls&)>& make) {
+  PointTextures& textures = texturesOf(frame_);
+  drawOpaque(textures);
+  Calls calls(*this, textures);
+  make(calls);
+  std::vector<FloatColor> picture = pixels(textures);
+  glFinish();
+  return {std::move(picture), calls.begun ? stats(*calls.begun) : std::nullopt, calls.hasCopied()};
 }
 
 PointResult OpenGlHost::drawAreas(std::span<const Point> points, const NextArea& next) {

@@ -43,10 +43,12 @@ class OpenGlHost : public PointHost {
   PointResult drawAreas(std::span<const Point> points, const NextArea& next) override;
   PointResult drawScattered(std::span<const Point> points) override;
   ListsRead drawAndRead(std::span<const Point> points, const VitrailRect& area, ReadBy by, bool afterResolve) override;
+  CallsResult drawCalls(const std::function<void(FrameCalls&)>& make) override;
   void drop(std::span<const Point> points) override; // what OpenGL was given it runs: nobody looks at the frame
   [[nodiscard]] bool guardsUntouched() override;
   [[nodiscard]] std::vector<std::uint32_t> words(StoragePart StorageLayout::*part) override;
   [[nodiscard]] VitrailMemory memory() const override;
+  [[nodiscard]] std::uint64_t newestFrame() const override { return vitrailGlTargetFrame(target_); }
   [[nodiscard]] std::optional<VitrailStats> stats(std::uint64_t frame) const override;
 
   [[nodiscard]] VitrailGlTarget target() const { return target_; }
@@ -62,6 +64,8 @@ class OpenGlHost : public PointHost {
   [[nodiscard]] PointResult read(const PointTextures& textures, std::uint64_t frame) const;
 
  private:
+  class Calls;
+
   void makeTextures();
   [[nodiscard]] VitrailGlTextures views();
   [[nodiscard]] VitrailGlTargetDesc targetDesc();

@@ -20,10 +20,11 @@ void Tap::reset() {
 
 namespace {
 
-#define VITRAIL_ALL_FUNCTIONS(X)           \
-  VITRAIL_GL_FUNCTIONS(X)                  \
-  X(PFNGLBUFFERSTORAGEPROC, BufferStorage) \
-  X(PFNGLMAPBUFFERRANGEPROC, MapBufferRange)
+#define VITRAIL_ALL_FUNCTIONS(X)             \
+  VITRAIL_GL_FUNCTIONS(X)                    \
+  X(PFNGLBUFFERSTORAGEPROC, BufferStorage)   \
+  X(PFNGLMAPBUFFERRANGEPROC, MapBufferRange) \
+  X(PFNGLMAXSHADERCOMPILERTHREADSKHRPROC, MaxShaderCompilerThreadsKHR)
 
 enum class Function : std::size_t {
 #define VITRAIL_NAME(type, name) name,
@@ -54,7 +55,7 @@ Result lostResult(Function function) {
 std::uint32_t firstOf() { return 0; }
 template <typename First, typename... Rest>
 std::uint32_t firstOf(First first, Rest... /*rest*/) {
-  if constexpr (std::integral<First> && sizeof(First) == 4) return static_cast<std::uint32_t>(first);
+  if constexpr (std::same_as<First, GLuint> || std::same_as<First, GLint>) return static_cast<std::uint32_t>(first);
   return 0;
 }
 
@@ -63,6 +64,15 @@ bool hasEffect(Function function) {
   const bool fence =
       function == Function::FenceSync || function == Function::ClientWaitSync || function == Function::DeleteSync;
   return fence && tap.fence == LostFence::AsEver;
+}
+
+// Another text for the shader that is about to be compiled.
+void spoil(Function function, GLuint shader) {
+  if (function != Function::CompileShader || tap.shaders++ != tap.spoiledShader) return;
+  const GLchar* text = "#version 430 core\nthis is no GLSL\n";
+  const auto set =
+      reinterpret_cast<PFNGLSHADERSOURCEPROC>(realFunctions[static_cast<std::size_t>(Function::ShaderSource)]);
+  set(shader, 1, &text, nullptr);
 }
 
 bool isLeftOut(Function function) {
@@ -78,6 +88,7 @@ struct Tapped<Result(APIENTRYP)(Arguments...)> {
     constexpr auto kIndex = static_cast<std::size_t>(kFunction);
     tap.calls.push_back({kNames[kIndex], firstOf(arguments...)});
     if (!hasEffect(kFunction) || isLeftOut(kFunction)) return lostResult<Result>(kFunction);
+    spoil(kFunction, firstOf(arguments...));
     return reinterpret_cast<Result(APIENTRYP)(Arguments...)>(realFunctions[kIndex])(arguments...);
   }
 };

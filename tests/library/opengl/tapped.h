@@ -33,6 +33,9 @@ struct Tap {
   // A call to glMemoryBarrier() that is left out; its number among those calls.
   std::size_t leftOutBarrier = std::numeric_limits<std::size_t>::max();
   std::size_t barriers = 0;
+  // A shader whose text is spoiled; its number among those that are compiled.
+  std::size_t spoiledShader = std::numeric_limits<std::size_t>::max();
+  std::size_t shaders = 0;
 
   [[nodiscard]] bool isLost() const { return calls.size() > lostFrom; }
   // Nothing written down, nothing lost, nothing left out.

@@ -85,15 +85,6 @@ ListWalker& VulkanBackend::walker(const Context& context, const WalkKind& kind) 
 
 VulkanBackend& backend() { return Registered<VulkanBackend>::get(); }
 
-void expectOneLine(const std::string& word) {
-  const std::vector<LogLine> lines = backend().takeLog();
-  EXPECT_EQ(lines.size(), 1U) << "lines about " << word;
-  for (const LogLine& line : lines) {
-    EXPECT_NE(line.text.find(word), std::string::npos) << "the log says: " << line.text;
-    EXPECT_EQ(line.text.find('\n'), std::string::npos) << "the log says: " << line.text;
-  }
-}
-
 void VulkanTest::TearDown() {
   for (const std::string& error : backend().takeErrors()) ADD_FAILURE() << error;
 }

@@ -20,15 +20,10 @@ namespace vitrail::tests::vulkan {
 using vitrail::vulkan::Context;
 using vitrail::vulkan::Target;
 
-// A line of the library's log.
-struct LogLine {
-  VitrailLogSeverity severity = VITRAIL_LOG_ERROR;
-  std::string text;
-};
-
 class VulkanBackend : public Backend {
  public:
   [[nodiscard]] std::string name() const override { return "vulkan"; }
+  [[nodiscard]] std::string callPrefix() const override { return "vitrailVkCmd"; }
   const Features& features() override { return device().features(); }
   std::unique_ptr<PointHost> makeHost(const HostDesc& desc) override;
   VitrailTileLimits tileLimits(VitrailNodeFormat format, std::uint32_t samples) override;
@@ -48,8 +43,7 @@ class VulkanBackend : public Backend {
 
   // What a context is made with: this device, and its log here.
   VitrailVkContextDesc contextDesc();
-  // The log's lines since the last call.
-  std::vector<LogLine> takeLog();
+  std::vector<LogLine> takeLog() override;
 
  private:
   std::unique_ptr<Device> device_;
@@ -62,8 +56,7 @@ class VulkanBackend : public Backend {
 
 VulkanBackend& backend();
 
-// The library has logged one line since the last look, and the word is in it.
-void expectOneLine(const std::string& word);
+inline void expectOneLine(const std::string& word) { tests::expectOneLine(backend(), word); }
 
 // A test of what only Vulkan has.
 class VulkanTest : public ::testing::Test {

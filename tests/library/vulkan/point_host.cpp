@@ -230,7 +230,7 @@ void VulkanHost::cmdHostBarrier(VkCommandBuffer commands, VitrailVkBarrierPoint 
 
 void VulkanHost::recordBegin(VkCommandBuffer commands, std::uint64_t frame, const VkRect2D& area) {
   VitrailVkBeginInfo info{};
-  info.frame = options_.numbersFrames ? frame : 0;
+  info.frame = desc_.numbersFrames ? frame : 0;
   info.area = area;
   cmdHostBarrier(commands, VITRAIL_VK_BARRIER_BEGIN);
   target_.begin(commands, info);
@@ -292,7 +292,7 @@ std::vector<PointResult> VulkanHost::drawTogether(const std::vector<std::vector<
 }
 
 void VulkanHost::update(std::uint64_t frame) {
-  if (options_.update) check(target_.update(options_.numbersFrames ? frame : 0), "vitrailVkUpdateTarget");
+  if (options_.update) check(target_.update(desc_.numbersFrames ? frame : 0), "vitrailVkUpdateTarget");
 }
 
 void VulkanHost::resize(Extent extent, std::uint32_t capacity) {
@@ -328,33 +328,74 @@ std::array<PointResult, 2> VulkanHost::drawAcrossResize(std::span<const Point> f
   return {read(old[frame % kFramesTogether], frame), read(imagesOf(frame + 1), frame + 1)};
 }
 
-VulkanHost::Outcome VulkanHost::drawSteps(std::span<const Point> points, std::span<const Step> steps) {
-  const Vertices vertices = upload(points);
+class VulkanHost::Calls : public FrameCalls {
+ public:
+  Calls(VulkanHost& host, PointImages& images, VkCommandBuffer commands)
+      : host_(host), images_(images), commands_(commands) {}
+
+  void begin(const VitrailRect& area) override {
+    begun = host_.frame_++;
+    host_.recordBegin(commands_, *begun, toVk(area));
+  }
+  void draw(std::span<const Point> points) override {
+    if (points.empty()) return;
+    vertices_.push_back(host_.upload(points));
+    host_.recordPoints(commands_, images_, vertices_.back());
+  }
+  void collected() override { host_.recordCollected(commands_); }
+  void copyLists(const CopyAttempt& attempt) override {
+    if (copied_.size() == 0) {
+      copied_ = Buffer(host_.device_, host_.target_.copySize(4, 4), VK_BUFFER_USAGE_TRANSFER_DST_BIT, Memory::Host);
+      std::memset(copied_.mapped(), kUntouched, copied_.size());
+    }
+    VitrailVkCopyInfo info{};
+    info.area = toVk(attempt.area);
+    if (attempt.hasBuffer) info.buffer = copied_.get();
+    info.offset = attempt.offset;
+    info.size = attempt.size.value_or(copied_.size() - attempt.offset);
+    host_.target_.copyLists(commands_, info);
+  }
+  void resolve(std::optional<std::uint32_t> view) override {
+    const auto own = static_cast<std::uint64_t>(&images_ - host_.images_.data());
+    host_.recordResolve(commands_, images_, view ? *view : own);
+  }
+  void end() override { host_.recordEnd(commands_); }
+  void resize() override {
+    VitrailVkResizeInfo info{};
+    info.extent = {host_.desc_.width, host_.desc_.height};
+    info.views = host_.views();
+    check(host_.target_.resize(info), "vitrailVkResizeTarget");
+  }
+
+  [[nodiscard]] bool hasCopied() const {
+    const auto* bytes = static_cast<const std::uint8_t*>(copied_.mapped());
+    return std::any_of(bytes, bytes + copied_.size(), [](std::uint8_t byte) { return byte != kUntouched; });
+  }
+
   std::optional<std::uint64_t> begun;
+
+ private:
+  static constexpr std::uint8_t kUntouched = 0x5a;
+  static VkRect2D toVk(const VitrailRect& area) {
+    return {{static_cast<std::int32_t>(area.x), static_cast<std::int32_t>(area.y)}, {area.width, area.height}};
+  }
+
+  VulkanHost& host_;
+  PointImages& images_;
+  VkCommandBuffer commands_;
+  std::vector<Vertices> vertices_;
+  Buffer copied_;
+};
+
+CallsResult VulkanHost::drawCalls(const std::function<void(FrameCalls&)>& make) {
   PointImages& images = imagesOf(frame_);
+  std::optional<Calls> calls;
   commands_.run([&](VkCommandBuffer commands) {
     images.cmdOpaque(commands, *pipelines_);
-    for (const Step step : steps) {
-      switch (step) {
-        case Step::Begin:
-          begun = frame_++;
-          recordBegin(commands, *begun, wholeArea());
-          recordPoints(commands, images, vertices);
-          break;
-        case Step::Collected:
-          recordCollected(commands);
-          break;
-        case Step::Resolve:
-          recordResolve(commands, images, static_cast<std::uint64_t>(&images - images_.data()));
-          break;
-        case Step::End:
-          recordEnd(commands);
-          break;
-      }
-    }
+    make(calls.emplace(*this, images, commands));
     images.cmdPicture(commands);
   });
-  return {images.pixels(), begun ? stats(*begun) : std::nullopt};
+  return {images.pixels(), calls->begun ? stats(*calls->begun) : std::nullopt, calls->hasCopied()};
 }
 
 double VulkanHost::seconds(std::span<const Point> points) {

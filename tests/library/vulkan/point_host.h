@@ -17,13 +17,9 @@
 
 namespace vitrail::tests::vulkan {
 
-// The calls of a frame. Points are drawn after Begin.
-enum class Step { Begin, Collected, Resolve, End };
-
 // What hosts of Vulkan may do in another way.
 struct VulkanOptions {
-  bool update = true;        // vitrailVkUpdateTarget() before each frame
-  bool numbersFrames = true; // else the library does
+  bool update = true; // vitrailVkUpdateTarget() before each frame
   std::uint32_t framesInFlight = 0;
   // The barriers between the calls are this host's. It makes all but this one.
   bool hostBarriers = false;
@@ -40,19 +36,13 @@ class VulkanHost : public PointHost {
   PointResult drawAreas(std::span<const Point> points, const NextArea& next) override;
   PointResult drawScattered(std::span<const Point> points) override;
   ListsRead drawAndRead(std::span<const Point> points, const VitrailRect& area, ReadBy by, bool afterResolve) override;
+  CallsResult drawCalls(const std::function<void(FrameCalls&)>& make) override;
   void drop(std::span<const Point> points) override;
   [[nodiscard]] bool guardsUntouched() override;
   [[nodiscard]] std::vector<std::uint32_t> words(StoragePart StorageLayout::*part) override;
   [[nodiscard]] VitrailMemory memory() const override { return target_.memory(); }
+  [[nodiscard]] std::uint64_t newestFrame() const override { return target_.frame(); }
   [[nodiscard]] std::optional<VitrailStats> stats(std::uint64_t frame) const override;
-
-  // Draws the points by these calls in this order. The statistics are those of the frame that was begun last, where
-  // there are any.
-  struct Outcome {
-    std::vector<FloatColor> pixels;
-    std::optional<VitrailStats> stats;
-  };
-  Outcome drawSteps(std::span<const Point> points, std::span<const Step> steps);
 
   // Gives the target another size. The frames before have finished.
   void resize(Extent extent, std::uint32_t capacity = 0);
@@ -65,6 +55,7 @@ class VulkanHost : public PointHost {
   [[nodiscard]] VitrailVkTargetDesc targetDesc(); // what the target is made with
 
  private:
+  class Calls;
   // Points in memory that the device reads.
   struct Vertices {
     std::span<const Point> points;
