@@ -135,7 +135,7 @@ typedef struct VitrailGlTargetDesc {
   uint32_t areaPixels;
   uint32_t copyLayers;
   /* Optional: the host's own buffer object, with immutable or other storage of at least bufferOffset + bufferSize bytes
-   * (vitrailGlTargetRequirements). With immutable storage it needs GL_DYNAMIC_STORAGE_BIT. */
+   * (vitrailGlTargetRequirements). No flag of glBufferStorage() is needed. */
   uint32_t buffer;
   uint64_t bufferOffset;
   uint64_t bufferSize;

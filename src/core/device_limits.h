@@ -13,6 +13,7 @@ struct DeviceLimits {
   std::uint32_t sampleCounts = 0; // that colour, depth and sampled images share: the sum of 1, 2, 4 and 8
   bool isCpu = false;             // a driver that runs on the CPU
   bool exchangesInGroups = false; // compute shaders exchange values within at least 8 invocations
+  bool fillsSlowly = false;       // a kernel fills buffers faster than the API does
   bool fewFragmentCores = false;  // a GPU that runs fragment shaders on a small part of its cores
   // Of what the host has enabled:
   bool poolByAddress = false; // the pool is reached by its address, whatever its size

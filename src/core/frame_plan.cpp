@@ -82,6 +82,7 @@ constexpr std::size_t kOverflowArguments = offsetof(layout::VitrailControl, over
 // Every pass that a frame may have, in order. A class of list lengths is a row of the resolve.
 constexpr std::array kRows = {
     action(Call::Begin, Action::Clear, kClearing),
+    dispatch(Call::Begin, Kernel::ClearHeads, Extent::Heads, 0, kCompute, kClearsByCompute),
     action(Call::Draws, Action::HostDraws, shaders(kStageFragment)),
 
     // One invocation also writes the arguments of all that is indirect: of the build's own, else of a pass for that.
@@ -173,6 +174,7 @@ std::uint32_t planFacts(const DeviceLimits& limits, const TargetInfo& info) {
   if (info.keepsSums()) facts |= kKeepsSums;
   if (info.perPixel()) facts |= kAveragesSamples;
   if (info.copyLayers != 0) facts |= kCopiesLists;
+  if (limits.fillsSlowly) facts |= kClearsByCompute;
   return facts;
 }
 

@@ -62,7 +62,7 @@ using Barriers = std::array<Barrier, kResources>; // by Resource
 // ---- Passes
 
 enum class Action : std::uint32_t {
-  Clear,           // parameters, counters, heads, the slot's tag and, where needed, sums
+  Clear,           // parameters, counters, heads unless a kernel does it, the slot's tag and, where needed, sums
   HostDraws,       // the host's draws that collect; nothing is recorded
   HostReads,       // shaders of the host that walk lists, or the host itself; nothing is recorded
   Dispatch,        // `kernel`
@@ -79,6 +79,7 @@ enum class Extent : std::uint32_t {
   None,
   One,
   Nodes,   // a thread a node of the pool, or several nodes
+  Heads,   // a thread a pixel of the area, or several pixels, in a row
   Copied,  // a thread a pixel of the copied area
   Indirect // as the counters say: `arguments` is their offset in VitrailControl
 };
@@ -103,7 +104,8 @@ enum PlanFact : std::uint32_t {
   kKeepsSums = 1U << 4U,
   kAveragesSamples = 1U << 5U, // several samples are resolved per pixel
   kCopiesLists = 1U << 6U,
-  kHostResolves = 1U << 7U // shaders of the host's walk the sorted lists, and the library draws nothing
+  kHostResolves = 1U << 7U,   // shaders of the host's walk the sorted lists, and the library draws nothing
+  kClearsByCompute = 1U << 8U // a kernel empties the lists
 };
 std::uint32_t planFacts(const DeviceLimits& limits, const TargetInfo& info);
 

@@ -36,7 +36,13 @@ using Spirv = std::span<const std::uint32_t>;
 
 // The local sizes that hosts of the kernels count with.
 constexpr std::uint32_t kGroupSide = 8;   // of kernels with one thread a pixel, in both directions
-constexpr std::uint32_t kGroupNodes = 64; // of kernels with one thread a node
+constexpr std::uint32_t kGroupNodes = 64; // of kernels with one thread a node, or several nodes
+
+// The work groups of such a kernel: more nodes than 2 million are several a thread.
+constexpr std::uint32_t nodeGroups(std::uint32_t nodes) {
+  constexpr std::uint32_t kMost = 32768;
+  return nodes / kGroupNodes < kMost ? nodes / kGroupNodes + 1 : kMost;
+}
 
 // `color` and `multisampled` (one invocation resolves all samples of a pixel) matter for the kernels that write
 // pictures. `byAddress`: the node pool is reached by its address, else through its binding. `networks`: it sorts by

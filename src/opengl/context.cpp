@@ -74,6 +74,7 @@ void readLimits(VitrailGlContext_T& context) {
   const auto* renderer = reinterpret_cast<const char*>(gl.GetString(GL_RENDERER));
   if (renderer == nullptr) renderer = "";
   limits.isCpu = contains(renderer, "llvmpipe") || contains(renderer, "softpipe") || contains(renderer, "SwiftShader");
+  limits.fillsSlowly = true; // NVIDIA: 31 GB/s (docs/notes/opengl.md)
   limits.networks = !limits.isCpu;
   // NVIDIA's GH100, as in src/vulkan/context.cpp.
   limits.fewFragmentCores = contains(renderer, "H100") || contains(renderer, "H200") || contains(renderer, "H800");

@@ -11,8 +11,6 @@ namespace vitrail {
 
 namespace {
 
-constexpr std::uint32_t kMostNodeGroups = 32768; // more nodes than that are several a thread
-
 // ---- Barriers
 
 // OpenGL keeps its commands in order, but for what shaders write: a barrier says how that is read, or written over,
@@ -46,11 +44,16 @@ void fill(const VitrailGlTarget_T& target, const StoragePart& part, std::uint64_
                                         static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
 }
 
+// Through a buffer of its own: where the host writes into a buffer, a driver may move all of it to the host's memory.
 void write(const VitrailGlTarget_T& target, const StoragePart& part, const void* data, std::size_t bytes) {
-  target.context->gl.BufferSubData(GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(target.storage.offset + part.offset),
-                                   static_cast<GLsizeiptr>(bytes), data);
+  const GlFunctions& gl = target.context->gl;
+  gl.BindBuffer(GL_COPY_READ_BUFFER, target.writtenBuffer);
+  gl.BufferSubData(GL_COPY_READ_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
+  gl.CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0,
+                       static_cast<GLintptr>(target.storage.offset + part.offset), static_cast<GLsizeiptr>(bytes));
 }
 
+// The heads are emptied by a kernel, which is the next pass.
 void clear(VitrailGlTarget_T& target) {
   const GlFunctions& gl = target.context->gl;
   const GlStorage& storage = target.storage;
@@ -60,7 +63,6 @@ void clear(VitrailGlTarget_T& target) {
   const layout::VitrailParameters parameters = parametersOf(
       target.info, storage.needs.nodeCapacity, {0, storage.wholeByBinding}, target.area, target.frames.newest());
   write(target, storage.layout.parameters, &parameters, sizeof(parameters));
-  fill(target, storage.layout.heads, headBytes(parameters.width * parameters.height), layout::VITRAIL_END);
   fill(target, storage.layout.control, storage.layout.control.size, 0);
   if (target.info.keepsSums() && target.sums.begin(target.slots)) {
     fill(target, storage.layout.sums, storage.layout.sums.size, 0);
@@ -155,7 +157,10 @@ void dispatch(const VitrailGlTarget_T& target, const Pass& pass, const GlCallInf
       gl.DispatchCompute(1, 1, 1);
       break;
     case Extent::Nodes:
-      gl.DispatchCompute(std::min(storage.needs.nodeCapacity / kGroupNodes + 1, kMostNodeGroups), 1, 1);
+      gl.DispatchCompute(nodeGroups(storage.needs.nodeCapacity), 1, 1);
+      break;
+    case Extent::Heads:
+      gl.DispatchCompute(nodeGroups(target.area.width * target.area.height), 1, 1);
       break;
     case Extent::Copied:
       gl.DispatchCompute(groupsFor(info.copied.width), groupsFor(info.copied.height), 1);

@@ -47,7 +47,7 @@ VitrailResult GlStorage::create(const VitrailGlContext_T& context, const Storage
     offset = hostOffset;
   } else {
     const SavedCopies saved(context.gl);
-    const BufferDesc desc{layout.total, nullptr, GL_DYNAMIC_STORAGE_BIT, GL_DYNAMIC_COPY, name, "fragment lists"};
+    const BufferDesc desc{layout.total, nullptr, 0, GL_DYNAMIC_COPY, name, "fragment lists"}; // the device's alone
     const VitrailResult result = createBuffer(context, desc, &buffer);
     if (result != VITRAIL_SUCCESS) return result;
     own = true;

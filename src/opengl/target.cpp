@@ -157,6 +157,14 @@ VitrailResult createStats(VitrailGlTarget_T& target) {
   return VITRAIL_SUCCESS;
 }
 
+VitrailResult createWritten(VitrailGlTarget_T& target) {
+  const SavedCopies saved(target.context->gl);
+  constexpr std::size_t kBytes = std::max(sizeof(layout::VitrailParameters), sizeof(layout::VitrailCopyHeader));
+  const BufferDesc desc{kBytes,      nullptr, GL_DYNAMIC_STORAGE_BIT, GL_STREAM_COPY, target.debugName.c_str(),
+                        "parameters"};
+  return createBuffer(*target.context, desc, &target.writtenBuffer);
+}
+
 VitrailResult replaceStorage(VitrailGlTarget_T& target, const StorageNeeds& needs) {
   GlStorage made;
   const VitrailResult result =
@@ -172,6 +180,7 @@ VitrailResult buildTarget(VitrailGlTarget_T& target) {
   target.plan = FramePlan(planFacts(target.context->limits, target.info));
   VitrailResult result = findPrograms(target);
   if (result == VITRAIL_SUCCESS) result = createStats(target);
+  if (result == VITRAIL_SUCCESS) result = createWritten(target);
   if (result != VITRAIL_SUCCESS) return result;
   return replaceStorage(target, storageNeeds(target.context->limits, target.info));
 }
@@ -301,6 +310,7 @@ extern "C" void vitrailGlDestroyTarget(VitrailGlTarget target) {
     if (pending.fence != nullptr) gl.DeleteSync(pending.fence);
   }
   target->storage.destroy(*target->context);
+  if (target->writtenBuffer != 0) gl.DeleteBuffers(1, &target->writtenBuffer);
   if (target->statsBuffer != 0) gl.DeleteBuffers(1, &target->statsBuffer); // which unmaps it
   vitrail::releaseContext(target->context);
 }

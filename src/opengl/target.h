@@ -47,6 +47,7 @@ struct VitrailGlTarget_T {
   vitrail::FramePlan plan;
   std::vector<GLuint> programs; // of each of the plan's passes, the context's; 0 where a pass has none
   vitrail::GlStorage storage;
+  GLuint writtenBuffer = 0;              // what the host writes to the device, on its way
   GLuint statsBuffer = 0;                // StatsSlot[statisticsSlots()], of which the GPU writes the counters
   const std::byte* stats = nullptr;      // where it is mapped
   std::vector<vitrail::StatsSlot> slots; // what is known of each

@@ -10,8 +10,6 @@ namespace vitrail {
 
 namespace {
 
-constexpr std::uint32_t kMostNodeGroups = 32768; // more nodes than that are several a thread
-
 // ---- Barriers
 
 VkBufferMemoryBarrier bufferBarrier(const VitrailVkTarget_T& target, Resource resource, const Barrier& barrier) {
@@ -159,7 +157,10 @@ void dispatch(VkCommandBuffer commandBuffer, const VitrailVkTarget_T& target, co
       vk.CmdDispatch(commandBuffer, 1, 1, 1);
       break;
     case Extent::Nodes:
-      vk.CmdDispatch(commandBuffer, std::min(storage.needs.nodeCapacity / kGroupNodes + 1, kMostNodeGroups), 1, 1);
+      vk.CmdDispatch(commandBuffer, nodeGroups(storage.needs.nodeCapacity), 1, 1);
+      break;
+    case Extent::Heads:
+      vk.CmdDispatch(commandBuffer, nodeGroups(target.area.width * target.area.height), 1, 1);
       break;
     case Extent::Copied:
       vk.CmdDispatch(commandBuffer, groupsFor(info.copied.width), groupsFor(info.copied.height), 1);
