@@ -51,7 +51,7 @@ TEST(Cli, TheHelpPageNamesEveryOption) {
         "--device",  "--validate",   "--method",        "--samples",    "--msaa-resolve", "--nodes",
         "--resolve", "--layers",     "--memory-budget", "--list-build", "--up",           "--eye",
         "--look-at", "--fov",        "--clip-plane",    "--turntable",  "--format",       "--bits",
-        "--strict",  "--time",       "--animation",     "--variant",    "--point-size"}) {
+        "--strict",  "--time",       "--animation",     "--variant",    "--point-size",   "--api"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
 }

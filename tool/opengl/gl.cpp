@@ -38,7 +38,7 @@ std::vector<EGLDeviceEXT> eglDevices() {
   ::setenv("EGL_LOG_LEVEL", "fatal", 0); // Mesa prints what it cannot open
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") &&
       !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base")) {
-    throw GpuError("--api opengl needs EGL_EXT_device_enumeration, which this system's EGL lacks");
+    throw GpuError(fmt::format("EGL has no driver here that lists devices (EGL_EXT_device_enumeration): {}", kInstall));
   }
   std::array<EGLDeviceEXT, 64> devices{};
   EGLint count = 0;
