@@ -57,6 +57,8 @@ def main():
     subprocess.run([cross, spirv, "--hlsl", "--shader-model", "50", "--output", out], check=True)
     with open(out) as file:
         text = merge(file.read())
+    if "SPIRV_Cross_NumWorkgroups" in text:
+        raise SystemExit(f"{spirv}: HLSL does not tell how many work groups there are, and nobody binds that")
     if stage == "frag":
         text = views_of_pixel_shader(text)
     with open(out, "w") as file:
