@@ -45,15 +45,18 @@ void copyStatistics(const VitrailD3d11Target_T& target, ID3D11DeviceContext* com
   copy(commands, slot, offsetof(StatsSlot, begunFrame), target.begun.get(), 0, sizeof(StatsSlot::begunFrame));
 }
 
-void finishStatistics(const VitrailD3d11Target_T& target, ID3D11DeviceContext* commands) {
+void finishStatistics(VitrailD3d11Target_T& target, ID3D11DeviceContext* commands) {
   const std::uint64_t frame = target.frames.newest();
   D3d11Stamp stamp{};
   stamp.facts = {target.storage.needs.nodeCapacity, target.order.misused() ? 1U : 0U, target.sums.fact()};
   stamp.tag = frame + 1;
   commands->UpdateSubresource(target.stamp.get(), 0, nullptr, &stamp, 0, 0);
-  ID3D11Buffer* slot = target.statsBuffers[target.slotOf(frame)].get();
+  const std::size_t number = target.slotOf(frame);
+  ID3D11Buffer* slot = target.statsBuffers[number].get();
   copy(commands, slot, offsetof(StatsSlot, facts), target.stamp.get(), offsetof(D3d11Stamp, facts), sizeof(FrameFacts));
   copy(commands, slot, offsetof(StatsSlot, tag), target.stamp.get(), offsetof(D3d11Stamp, tag), sizeof(StatsSlot::tag));
+  commands->End(target.statsWritten[number].get());
+  target.statsExpected[number] = stamp.tag;
 }
 
 void beginCopy(const VitrailD3d11Target_T& target, ID3D11DeviceContext* commands, const VitrailRect& area) {
@@ -253,13 +256,19 @@ void runCall(VitrailD3d11Target_T& target, ID3D11DeviceContext* commands, Call c
 }
 
 void fetchStats(VitrailD3d11Target_T& target, ID3D11DeviceContext* immediate, std::size_t slot, bool flush) {
+  if (target.statsExpected[slot] == 0) return;
+  // Asked before it is mapped: Wine maps as if it might wait.
+  const UINT flags = flush ? 0U : UINT{D3D11_ASYNC_GETDATA_DONOTFLUSH};
+  if (immediate->GetData(target.statsWritten[slot].get(), nullptr, 0, flags) != S_OK) return;
   D3D11_MAPPED_SUBRESOURCE mapped{};
-  const HRESULT result =
-      immediate->Map(target.statsBuffers[slot].get(), 0, D3D11_MAP_READ, D3D11_MAP_FLAG_DO_NOT_WAIT, &mapped);
-  if (result == DXGI_ERROR_WAS_STILL_DRAWING && flush) immediate->Flush(); // else it might never begin
-  if (FAILED(result)) return;
-  std::memcpy(&target.slots[slot], mapped.pData, sizeof(StatsSlot));
-  immediate->Unmap(target.statsBuffers[slot].get(), 0);
+  ID3D11Buffer* buffer = target.statsBuffers[slot].get();
+  if (FAILED(immediate->Map(buffer, 0, D3D11_MAP_READ, D3D11_MAP_FLAG_DO_NOT_WAIT, &mapped))) return;
+  StatsSlot read{};
+  std::memcpy(&read, mapped.pData, sizeof(read));
+  immediate->Unmap(buffer, 0);
+  if (read.tag != target.statsExpected[slot]) return; // of a command list that has not run yet
+  target.slots[slot] = read;
+  target.statsExpected[slot] = 0;
 }
 
 } // namespace vitrail

@@ -250,6 +250,8 @@ VitrailResult createStats(VitrailD3d11Target_T& target) {
   result = createBuffer(context, desc, nullptr, name, "frame facts", target.stamp);
   target.slots.resize(statisticsSlots(target.info.framesInFlight));
   target.statsBuffers.resize(target.slots.size());
+  target.statsWritten.resize(target.slots.size());
+  target.statsExpected.resize(target.slots.size());
   desc = {};
   desc.ByteWidth = sizeof(StatsSlot);
   desc.Usage = D3D11_USAGE_STAGING;
@@ -258,6 +260,12 @@ VitrailResult createStats(VitrailD3d11Target_T& target) {
   for (Com<ID3D11Buffer>& buffer : target.statsBuffers) {
     if (result != VITRAIL_SUCCESS) return result;
     result = createBuffer(context, desc, &kNothing, name, "statistics", buffer);
+  }
+  constexpr D3D11_QUERY_DESC kQuery{D3D11_QUERY_EVENT, 0};
+  for (Com<ID3D11Query>& query : target.statsWritten) {
+    if (result != VITRAIL_SUCCESS) return result;
+    const HRESULT made = context.device->CreateQuery(&kQuery, query.out());
+    if (FAILED(made)) return refused(context.log, "query for statistics", made);
   }
   return result;
 }

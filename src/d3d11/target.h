@@ -67,6 +67,8 @@ struct VitrailD3d11Target_T {
   vitrail::Com<ID3D11Buffer> begun;                     // the number of the frame
   vitrail::Com<ID3D11Buffer> stamp;                     // D3d11Stamp
   std::vector<vitrail::Com<ID3D11Buffer>> statsBuffers; // a StatsSlot each, for the host to read
+  std::vector<vitrail::Com<ID3D11Query>> statsWritten;  // whether the GPU has written each
+  std::vector<std::uint64_t> statsExpected;             // the tag of what is on its way to each; 0: nothing is
   std::vector<vitrail::StatsSlot> slots;                // what was read of each
   vitrail::Growth growth;
   vitrail::SumsClear sums;

@@ -53,6 +53,26 @@ TEST_F(CallsTest, AFrameThatIsNotExecutedHasNoStatistics) {
   EXPECT_EQ(result.stats.fragmentsStored, 1U);
 }
 
+// Reading never waits: where the GPU has not run a frame, there is nothing; once it has, its statistics. A long frame
+// is recorded, and asked for at once.
+TEST_F(CallsTest, ReadingStatisticsDoesNotWait) {
+  HostDesc desc = squareHost();
+  const std::vector<Point> points = manyLists(desc, 600, 3);
+  desc.capacity = static_cast<std::uint32_t>(points.size());
+  D3d11Host host(backend(), desc);
+  host.draw(points); // shaders are made
+  PointTextures& textures = host.texturesOf(1);
+  ID3D11DeviceContext* commands = device().immediate();
+  host.drawOpaque(commands, textures);
+  host.begin(commands, 1, {});
+  host.drawPoints(commands, textures, points);
+  vitrailD3d11Collected(host.target(), commands);
+  vitrailD3d11Resolve(host.target(), commands, nullptr);
+  vitrailD3d11End(host.target(), commands);
+  EXPECT_FALSE(host.stats(1).has_value()) << "lists of " << points.size() << " fragments were done at once";
+  EXPECT_EQ(host.read(textures, 1).stats.fragmentsStored, points.size()); // waits for the picture
+}
+
 TEST_F(CallsTest, SlotsAreChecked) {
   VitrailD3d11ContextDesc desc = backend().contextDesc();
   VitrailD3d11Context context = nullptr;

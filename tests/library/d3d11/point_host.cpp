@@ -414,7 +414,12 @@ std::vector<FloatColor> D3d11Host::pixels(const PointTextures& textures) const {
 
 PointResult D3d11Host::read(const PointTextures& textures, std::uint64_t frame) const {
   std::vector<FloatColor> picture = pixels(textures); // which waits for the frame
-  const std::optional<VitrailStats> counted = stats(frame);
+  std::optional<VitrailStats> counted = stats(frame);
+  // wined3d looks at its queries when it comes to it.
+  for (int tries = 0; !counted && tries < 2000; ++tries) {
+    Sleep(1);
+    counted = stats(frame);
+  }
   if (!counted) throw HostError("the statistics of frame " + std::to_string(frame) + " are not there");
   return {std::move(picture), *counted};
 }
