@@ -148,7 +148,8 @@ void bindDraw(const VitrailD3d11Target_T& target, ID3D11DeviceContext* commands,
     resources[VITRAIL_VIEW_BINDING_OPAQUE] = target.views.at(number).opaque;
     resources[VITRAIL_VIEW_BINDING_DEPTH] = target.views.at(number).depth;
   }
-  for (const std::uint32_t i : {VITRAIL_BINDING_HEADS, VITRAIL_BINDING_NODES, VITRAIL_BINDING_SUMS}) {
+  constexpr std::array<std::uint32_t, 3> kRead = {VITRAIL_BINDING_HEADS, VITRAIL_BINDING_NODES, VITRAIL_BINDING_SUMS};
+  for (const std::uint32_t i : kRead) {
     resources.at(kPixelBufferSlot + i) = storage.parts.at(i).read.get();
   }
   const auto constants = constantsOf(target);

@@ -1,10 +1,14 @@
 // What only Direct3D 11's calls have: deferred contexts, slots, views, buffers of the host's, null and order.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "../expected.h"
 #include "point_host.h"
+
+extern "C" VitrailResult contextFromC(ID3D11Device* device, VitrailD3d11Context* context); // plain_c.c
 
 namespace vitrail::tests::d3d11 {
 namespace {
@@ -71,6 +75,56 @@ TEST_F(CallsTest, ReadingStatisticsDoesNotWait) {
   vitrailD3d11End(host.target(), commands);
   EXPECT_FALSE(host.stats(1).has_value()) << "lists of " << points.size() << " fragments were done at once";
   EXPECT_EQ(host.read(textures, 1).stats.fragmentsStored, points.size()); // waits for the picture
+}
+
+TEST_F(CallsTest, AreMadeFromC) {
+  VitrailD3d11Context context = nullptr;
+  EXPECT_EQ(contextFromC(device().get(), &context), VITRAIL_SUCCESS);
+  EXPECT_GT(vitrailD3d11MaxNodeCapacity(context, VITRAIL_NODE_STANDARD, 1), 1000000U);
+  EXPECT_EQ(vitrailD3d11MaxNodeCapacity(context, VITRAIL_NODE_COMPACT, 8), 0U);
+  vitrailD3d11DestroyContext(context);
+}
+
+// Targets may be destroyed after the context that they were made with.
+TEST_F(CallsTest, AContextIsFreedWithTheLastOfItsTargets) {
+  VitrailD3d11Context context = nullptr;
+  const VitrailD3d11ContextDesc contextDesc = backend().contextDesc();
+  ASSERT_EQ(vitrailD3d11CreateContext(&contextDesc, &context), VITRAIL_SUCCESS);
+  const VitrailD3d11TargetDesc desc = smallTarget();
+  VitrailD3d11Target target = nullptr;
+  ASSERT_EQ(vitrailD3d11CreateTarget(context, &desc, &target), VITRAIL_SUCCESS);
+  vitrailD3d11DestroyContext(context);
+  expectOneLine("targets are left");
+  vitrailD3d11Begin(target, device().immediate(), nullptr);
+  vitrailD3d11DestroyTarget(target);
+}
+
+// A resolve by fragment writes the first render target only.
+TEST_F(CallsTest, OtherRenderTargetsAreNotWritten) {
+  HostDesc desc;
+  desc.resolve = VITRAIL_RESOLVE_FRAGMENT;
+  desc.dualSourceBlending = false; // VitrailD3d11TargetDesc::severalRenderTargets
+  desc.capacity = 16;
+  const std::vector<Point> points = {{1, 1, 0.5F, {1.0F, 0.5F, 0.25F, 0.5F}}, {2, 1, 0.5F, {0.0F, 0.5F, 1.0F, 0.25F}}};
+  const PointResult alone = D3d11Host(backend(), desc).draw(points);
+  D3d11Host host(backend(), desc);
+  const PointTextures others(desc);
+  constexpr FloatColor kColor = {0.125F, 0.25F, 0.5F, 0.75F};
+  ID3D11DeviceContext* commands = device().immediate();
+  PointTextures& textures = host.texturesOf(0);
+  host.drawOpaque(commands, textures);
+  commands->ClearRenderTargetView(others.colorTarget.get(), kColor.data());
+  host.begin(commands, 0, {});
+  host.drawPoints(commands, textures, points);
+  vitrailD3d11Collected(host.target(), commands);
+  const std::array<ID3D11RenderTargetView*, 2> targets = {textures.colorTarget.get(), others.colorTarget.get()};
+  commands->OMSetRenderTargets(targets.size(), targets.data(), nullptr);
+  vitrailD3d11Resolve(host.target(), commands, nullptr);
+  vitrailD3d11End(host.target(), commands);
+  EXPECT_TRUE(host.read(textures, 0).pixels == alone.pixels);
+  const PointResult other = host.read(others, 0);
+  EXPECT_TRUE(
+      std::all_of(other.pixels.begin(), other.pixels.end(), [&](const auto& color) { return color == kColor; }));
 }
 
 TEST_F(CallsTest, SlotsAreChecked) {
