@@ -63,3 +63,18 @@ build() {
   fi
   (cd "$root" && cmake --build --preset "$1") >>"$log" 2>&1 || { tail -n 60 "$log" >&2; die "the build of preset $1 failed"; }
 }
+
+# Microsoft's HLSL compilers, which the npm package webgpu carries, into build/direct3d/compilers.
+fetch_hlsl_compilers() {
+  local version=0.6.2 folder="$root/build/direct3d/compilers" name
+  [ ! -f "$folder/dxcompiler.dll" ] || return 0
+  command -v npm >/dev/null || install_packages npm
+  mkdir -p "$folder/package"
+  say "fetching Microsoft's HLSL compilers (npm package webgpu $version)"
+  (cd "$folder/package" && npm pack --silent "webgpu@$version" >/dev/null && tar xzf "webgpu-$version.tgz") ||
+    die "npm could not fetch webgpu $version; put d3dcompiler_47.dll and dxcompiler.dll into $folder by hand"
+  for name in d3dcompiler_47.dll dxcompiler.dll; do
+    mv "$folder/package/package/dist/win32-x64/$name" "$folder/$name"
+  done
+  rm -rf "$folder/package"
+}

@@ -1,4 +1,4 @@
-// Where resources are bound, for C++ and GLSL.
+// Where resources are bound, for C++ and GLSL. (HLSL has registers: target.hlsl.)
 #ifndef VITRAIL_BINDINGS_H
 #define VITRAIL_BINDINGS_H
 

@@ -1,5 +1,5 @@
-// The structures that shaders and C++ share. This file is both GLSL and C++: it stands once, C++ asserts the sizes
-// below, and a test reads the strides and offsets of the compiled SPIR-V.
+// The structures that shaders and C++ share. This file is GLSL, HLSL (VITRAIL_HLSL) and C++: it stands once, C++
+// asserts the sizes below, and a test reads the strides and offsets of the compiled SPIR-V.
 #ifndef VITRAIL_LAYOUT_H
 #define VITRAIL_LAYOUT_H
 
@@ -19,6 +19,15 @@ struct vec4 {
 };
 #endif
 
+// What HLSL calls otherwise, of the structures that it has. It reaches nodes and counters as words.
+#ifdef VITRAIL_HLSL
+#define VITRAIL_FLOATS float4
+#define VITRAIL_WORDS uint4
+#else
+#define VITRAIL_FLOATS vec4
+#define VITRAIL_WORDS uvec4
+#endif
+
 // One stored fragment in each node format. They are vectors because a GPU stores one at once: collecting was seen to
 // take as long as it has stores. A word that holds `next`, the index of the next node of the same pixel, has it in its
 // low bits, 32 - coverage bits of them (24 in `compact`), and the coverage above it: no bits at 1 sample, 4 at 2 and 4
@@ -27,26 +36,32 @@ struct vec4 {
 // 12 bytes in two arrays: all of these first, then as many words with `next`.
 //   x  8 bits each, r lowest: sRGB-encoded r, g, b and linear alpha
 //   y  the bits of gl_FragCoord.z, in [0, 1], in the low 30 bits; the blend mode above them
+#ifndef VITRAIL_HLSL
 struct VitrailNodeStandard {
   uvec2 words;
 };
+#endif
 // 8 bytes.
 //   x  1 sample: r5 g6 b5 from bit 0 on the sRGB curve, depth code from bit 16.
 //      Else: r5 g5 b5 from bit 0, the low 3 bits of alpha from bit 15, the depth code without its low 2 bits from
 //      bit 18.
 //   y  next; from bit 24: 1 sample: alpha in 6 bits. Else: coverage in 4 bits, the high 2 bits of alpha. From bit 30:
 //      the blend mode.
+#ifndef VITRAIL_HLSL
 struct VitrailNodeCompact {
   uvec2 words;
 };
+#endif
 // 16 bytes.
 //   x  red and green, two 16-bit floats, red lowest
 //   y  blue, a 16-bit float; alpha in 16 bits from bit 16
 //   z  depth and blend mode as in VitrailNodeStandard
 //   w  next
+#ifndef VITRAIL_HLSL
 struct VitrailNodeHdr {
   uvec4 words;
 };
+#endif
 // A loose node, which is not on a list yet (VitrailListBuild), holds in place of `next` the number of its pixel in 24
 // bits: VITRAIL_LOOSE_PIXELS of them at most. `standard` ones at 1 sample then also are as loose.glsl says.
 //
@@ -104,6 +119,13 @@ struct VitrailControl {
   uint plainFirstInstance;
 };
 
+// Where languages that reach those as words find what a fragment counts, in bytes.
+#define VITRAIL_CONTROL_REQUESTED 0
+#define VITRAIL_CONTROL_WRAPS 4
+#define VITRAIL_CONTROL_MISFITS 8
+#define VITRAIL_CONTROL_MISFIT_NODES 12
+#define VITRAIL_CONTROL_STALE_NODES 96
+
 // How nodes are collected, as a number: a shader that was specialized for another target, that cannot reach the pool,
 // or whose coverage has not passed the depth test that the target takes it to have passed, must not write to it.
 // Samples are 1, 2, 4 or 8, the others behind them 0 or 1.
@@ -134,13 +156,13 @@ struct VitrailParameters {
   uint frame;          // the low bits of its number, which its statistics are to have again
   // The nodes for shaders of each VITRAIL_LAYOUT: `capacity` for those that suit the target, else 0. Asking whether a
   // fragment's node is one of them asks both questions at once.
-  uvec4 capacities[VITRAIL_LAYOUTS / 4];
+  VITRAIL_WORDS capacities[VITRAIL_LAYOUTS / 4];
 };
 
 // One fragment of a sorted list, as it was stored: what shaders that walk lists are given (list.glsl), and what copied
 // lists hold.
 struct VitrailLayer {
-  vec4 color; // linear colour and alpha, as vitrailCollect() took them
+  VITRAIL_FLOATS color; // linear colour and alpha, as vitrailCollect() took them
   float depth;
   uint blend;    // VITRAIL_OVER, VITRAIL_PREMULTIPLIED, VITRAIL_ADDITIVE, VITRAIL_MULTIPLY
   uint coverage; // one bit a sample; 1 with one sample
@@ -178,8 +200,11 @@ static_assert(sizeof(VitrailNodeCompact) == 8);
 static_assert(sizeof(VitrailNodeHdr) == 16);
 static_assert(sizeof(VitrailListClass) == 16);
 static_assert(sizeof(VitrailControl) == 216);
-static_assert(offsetof(VitrailControl, wraps) == 4); // collect.glsl reaches both as words
-static_assert(offsetof(VitrailControl, misfits) == 8);
+static_assert(offsetof(VitrailControl, requested) == VITRAIL_CONTROL_REQUESTED); // collect.glsl has it as word 0, too,
+static_assert(offsetof(VitrailControl, wraps) == VITRAIL_CONTROL_WRAPS);         // this as word 1
+static_assert(offsetof(VitrailControl, misfits) == VITRAIL_CONTROL_MISFITS);     // and this as word 2
+static_assert(offsetof(VitrailControl, misfitNodes) == VITRAIL_CONTROL_MISFIT_NODES);
+static_assert(offsetof(VitrailControl, staleNodes) == VITRAIL_CONTROL_STALE_NODES);
 static_assert(offsetof(VitrailControl, classes) == 100);
 static_assert(offsetof(VitrailControl, overflowGroupsX) == 148);
 static_assert(offsetof(VitrailControl, plainFirstInstance) == 212);
@@ -187,6 +212,8 @@ static_assert(offsetof(VitrailParameters, wholeByBinding) == 48);
 static_assert(offsetof(VitrailParameters, capacities) == 64);
 static_assert(sizeof(VitrailParameters) == 1600);
 #define VITRAIL_CONSTANT constexpr uint
+#elif defined(VITRAIL_HLSL)
+#define VITRAIL_CONSTANT static const uint
 #else
 #define VITRAIL_CONSTANT const uint
 #endif
@@ -220,6 +247,8 @@ VITRAIL_CONSTANT VITRAIL_LONG_LIST = 64u;   // fragments that the third dispatch
 VITRAIL_CONSTANT VITRAIL_SUM_WORDS = 5u;
 
 #undef VITRAIL_CONSTANT
+#undef VITRAIL_FLOATS
+#undef VITRAIL_WORDS
 
 #ifdef __cplusplus
 } // namespace vitrail::layout

@@ -18,7 +18,12 @@ void main() {
     if (gl_GlobalInvocationID.x == 0u) vitrailControl.misfitNodes = nodesInUse();
     return;
   }
-  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+#ifdef VITRAIL_NO_GROUP_COUNT // for languages that do not tell: as the kernel is dispatched (nodeGroups())
+  uint groups = min(vitrailParameters.capacity / gl_WorkGroupSize.x + 1u, 32768u);
+#else
+  uint groups = gl_NumWorkGroups.x;
+#endif
+  uint threads = groups * gl_WorkGroupSize.x;
   uint nodes = nodesInUse();
   for (uint index = gl_GlobalInvocationID.x; index < nodes; index += threads) {
     uvec4 node = vitrailLoadNode(index, vitrailNodes());

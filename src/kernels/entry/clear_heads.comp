@@ -3,10 +3,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "target.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 64) in; // kGroupNodes of kernels.h
 
 void main() {
   uint pixels = vitrailParameters.width * vitrailParameters.height;
-  uint step = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  for (uint i = gl_GlobalInvocationID.x; i < pixels; i += step) vitrailHeads[i] = VITRAIL_END;
+  uint threads = min(pixels / gl_WorkGroupSize.x + 1u, 32768u) * gl_WorkGroupSize.x; // as it is dispatched: nodeGroups()
+  for (uint i = gl_GlobalInvocationID.x; i < pixels; i += threads) vitrailHeads[i] = VITRAIL_END;
 }

@@ -31,7 +31,12 @@ void writePixel(uvec2 pixel, VitrailSink r) {
   VITRAIL_EACH_SAMPLE(VITRAIL_ADD_SAMPLE)
   imageStore(colorImage, ivec2(pixel), sum / float(kSamples));
 #else
-  imageStore(colorImage, ivec2(pixel), over(r.pairs[0], imageLoad(colorImage, ivec2(pixel))));
+#ifdef VITRAIL_NO_IMAGE_LOADS
+  vec4 behind = texelFetch(opaqueImage, ivec2(pixel), 0);
+#else
+  vec4 behind = imageLoad(colorImage, ivec2(pixel));
+#endif
+  imageStore(colorImage, ivec2(pixel), over(r.pairs[0], behind));
 #endif
 }
 

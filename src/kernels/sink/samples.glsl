@@ -37,6 +37,9 @@ uint vitrailVisible(uvec4 key) {
 
 #else
 #define VITRAIL_ACCUMULATORS 1
+#ifdef VITRAIL_NO_IMAGE_LOADS // for APIs that do not read the image that is written: what is behind, in a copy
+layout(VITRAIL_BOUND(1, VITRAIL_VIEW_BINDING_OPAQUE)) uniform texture2D opaqueImage;
+#endif
 #ifdef VITRAIL_PER_SAMPLE
 uint vitrailVisible(uvec4 key) {
   bool covered = (vitrailKeyCoverage(key, vitrailNodes()) & (1u << gl_SampleID)) != 0u;
