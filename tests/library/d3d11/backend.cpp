@@ -185,15 +185,6 @@ ID3D11InputLayout* D3d11Backend::pointLayout() {
 
 D3d11Backend& backend() { return Registered<D3d11Backend>::get(); }
 
-void expectOneLine(const std::string& word) {
-  const std::vector<LogLine> lines = backend().takeLog();
-  EXPECT_EQ(lines.size(), 1U) << "lines about " << word;
-  for (const LogLine& line : lines) {
-    EXPECT_NE(line.text.find(word), std::string::npos) << "the log says: " << line.text;
-    EXPECT_EQ(line.text.find('\n'), std::string::npos) << "the log says: " << line.text;
-  }
-}
-
 void D3d11Test::TearDown() {
   for (const std::string& error : backend().takeErrors()) ADD_FAILURE() << error;
 }

@@ -12,12 +12,6 @@
 
 namespace vitrail::tests::d3d11 {
 
-// A line of the library's log.
-struct LogLine {
-  VitrailLogSeverity severity = VITRAIL_LOG_ERROR;
-  std::string text;
-};
-
 // "NAME=VALUE", for shaders.
 using Defines = std::vector<std::string>;
 
@@ -28,13 +22,13 @@ class D3d11Backend : public Backend {
   const Features& features() override;
   std::unique_ptr<PointHost> makeHost(const HostDesc& desc) override;
   VitrailTileLimits tileLimits(VitrailNodeFormat format, std::uint32_t samples) override;
+  std::vector<LogLine> takeLog() override;
   // Lines of the library's log that no test took, and a removed device.
   std::vector<std::string> takeErrors() override;
   void close() override;
 
   VitrailD3d11Context context();
   VitrailD3d11ContextDesc contextDesc();
-  std::vector<LogLine> takeLog();
 
   // Shaders of tests/library/d3d11/shaders, compiled once. Throws HostError.
   ID3D11PixelShader* pixelShader(const std::string& file, const Defines& defines = {});
@@ -55,8 +49,7 @@ class D3d11Backend : public Backend {
 
 D3d11Backend& backend();
 
-// The library has logged one line since the last look, and the word is in it.
-void expectOneLine(const std::string& word);
+inline void expectOneLine(const std::string& word) { tests::expectOneLine(backend(), word); }
 
 // A test of what only Direct3D 11 has.
 class D3d11Test : public ::testing::Test {

@@ -52,6 +52,7 @@ class D3d11Host : public PointHost {
   [[nodiscard]] std::vector<std::uint32_t> words(StoragePart StorageLayout::*part) override;
   [[nodiscard]] VitrailMemory memory() const override;
   [[nodiscard]] std::optional<VitrailStats> stats(std::uint64_t frame) const override;
+  [[nodiscard]] std::uint64_t newestFrame() const override { return vitrailD3d11TargetFrame(target_); }
 
   [[nodiscard]] VitrailD3d11Target target() const { return target_; }
   PointTextures& texturesOf(std::uint64_t frame) { return textures_[frame % kFramesTogether]; }
