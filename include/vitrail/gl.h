@@ -25,7 +25,8 @@
  * rules hold: what one has written is seen by another after glFinish() or a fence, and where the other binds it anew.
  * A target is used by one thread at a time, in one context in a frame.
  *
- * State: what a call changes of the context's state it puts back, but for vitrailGlBind(), whose purpose is a change.
+ * State: what a call changes of the context's state it puts back, but for vitrailGlBind(), whose purpose is a change. A
+ * program that was deleted while it was current is gone when a call takes its place, as OpenGL has it: then none is.
  * docs/integration.md lists what is touched. Conditional rendering, transform feedback and queries of samples or
  * primitives are not active during calls. Error flags: creating calls read them (glGetError) and so clear what the host
  * left there, with a line in the log; other calls do not.

@@ -61,6 +61,7 @@ namespace vitrail {
   X(PFNGLGETSTRINGIPROC, GetStringi)                           \
   X(PFNGLISENABLEDPROC, IsEnabled)                             \
   X(PFNGLISENABLEDIPROC, IsEnabledi)                           \
+  X(PFNGLISPROGRAMPROC, IsProgram)                             \
   X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
   X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)                     \
   X(PFNGLOBJECTLABELPROC, ObjectLabel)                         \

@@ -99,7 +99,9 @@ SavedShaders::~SavedShaders() {
   gl_.BindBuffer(GL_UNIFORM_BUFFER, static_cast<GLuint>(uniform_));
   gl_.BindBuffer(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(storage_));
   gl_.BindBuffer(indirectTarget_, static_cast<GLuint>(indirect_));
-  gl_.UseProgram(static_cast<GLuint>(program_));
+  // One that the host had deleted while it was current is gone since another took its place.
+  const auto program = static_cast<GLuint>(program_);
+  gl_.UseProgram(program != 0 && gl_.IsProgram(program) != GL_FALSE ? program : 0);
 }
 
 // ---- Draws

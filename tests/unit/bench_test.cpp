@@ -397,13 +397,13 @@ TEST(BenchCsv, OneRowForEachMeasurement) {
       "device,driver,cpu,sweep,step,scene,count,width,height,triangles,method,nodes,resolve,samples,exact,"
       "fragments,missing,layers_max,tiles,cost_ms,cost_lower_quartile_ms,cost_upper_quartile_ms,frame_ms,"
       "cost_ratio,frame_ratio,memory_bytes,max_layers,passes,list_build,msaa_resolve,stencil_mark,memory_budget_mib,"
-      "node_capacity,overflowed,approximate_pixels");
+      "node_capacity,overflowed,approximate_pixels,api");
   EXPECT_EQ(lines[1],
             "\"Abacus, \"\"large\"\"\",beads 1.0,false,,,spheres,400,100,10,1600000,unsorted,,,1,false,,,,1,2,"
-            "2,2,4,1,1,0,,,,,,,,false,");
+            "2,2,4,1,1,0,,,,,,,,false,,vulkan");
   EXPECT_EQ(lines[2],
             "\"Abacus, \"\"large\"\"\",beads 1.0,false,,,spheres,400,100,10,1600000,linked-list,standard,"
-            "compute,1,true,700,0,9,1,7,5.25,8.75,9,3.5,2.25,0,16,,fragment,,,,,false,0");
+            "compute,1,true,700,0,9,1,7,5.25,8.75,9,3.5,2.25,0,16,,fragment,,,,,false,0,vulkan");
 }
 
 TEST(BenchCsv, ASweepNamesItsStep) {

@@ -84,6 +84,7 @@ void GlFrame::wait() {
 }
 
 void GlFrame::finish() {
+  glUseProgram(0); // no program is in use when its owner goes
   glFinish();
   timers_.addSubmission();
   surfaces_.gl().check("a frame");

@@ -58,7 +58,6 @@ constexpr CsvColumn kCsvColumns[] = {
     {names::kHeight, [](const CsvRow& row) { return cell(row.scene.height); }},
     {names::kTriangles, [](const CsvRow& row) { return cell(row.scene.triangles); }},
     {names::kMethod, [](const CsvRow& row) { return row.measured.options.name; }},
-    {names::kApi, [](const CsvRow& row) { return std::string(nameOf(row.measured.options.api)); }},
     {names::kNodes, [](const CsvRow& row) { return row.frame.nodes; }},
     {names::kResolve, [](const CsvRow& row) { return row.frame.resolve; }},
     {names::kSamples, [](const CsvRow& row) { return cell(row.frame.samples); }},
@@ -92,6 +91,7 @@ constexpr CsvColumn kCsvColumns[] = {
     {names::kOverflowed, [](const CsvRow& row) { return cell(hasOverflowed(row.measured)); }},
     {names::kApproximatePixels,
      [](const CsvRow& row) { return orEmpty(row.frame.counted, row.frame.approximatePixels); }},
+    {names::kApi, [](const CsvRow& row) { return std::string(nameOf(row.measured.options.api)); }},
 };
 
 // One line of what `cellOf` says of every column.

@@ -7,6 +7,7 @@ layout(local_size_x = 64) in; // kGroupNodes of kernels.h
 
 void main() {
   uint pixels = vitrailParameters.width * vitrailParameters.height;
-  uint threads = min(pixels / gl_WorkGroupSize.x + 1u, 32768u) * gl_WorkGroupSize.x; // as it is dispatched: nodeGroups()
+  uint groups = min(pixels / gl_WorkGroupSize.x + 1u, 32768u); // as the kernel is dispatched (nodeGroups())
+  uint threads = groups * gl_WorkGroupSize.x;
   for (uint i = gl_GlobalInvocationID.x; i < pixels; i += threads) vitrailHeads[i] = VITRAIL_END;
 }

@@ -526,6 +526,33 @@ TEST_F(StateTest, MakingAndDestroyingLeaveWhatTheyFind) {
 }
 
 // A target with a memory budget gets a larger pool, between frames.
+// OpenGL keeps a program that was deleted only as long as it is current: there is none to put back, and no error.
+TEST_F(StateTest, ADeletedProgramIsLetGo) {
+  HostDesc desc;
+  desc.capacity = 16;
+  OpenGlHost host(backend(), desc);
+  const GLuint program = glCreateProgram();
+  const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
+  const char* text = "#version 430\nlayout(local_size_x = 1) in;\nvoid main() {}\n";
+  glShaderSource(shader, 1, &text, nullptr);
+  glCompileShader(shader);
+  glAttachShader(program, shader);
+  glDeleteShader(shader);
+  glLinkProgram(program);
+  glUseProgram(program);
+  glDeleteProgram(program);
+  VitrailGlBeginInfo info{};
+  info.frame = 1;
+  vitrailGlBegin(host.target(), &info);
+  GLint current = -1;
+  glGetIntegerv(GL_CURRENT_PROGRAM, &current);
+  EXPECT_EQ(current, 0);
+  vitrailGlCollected(host.target());
+  vitrailGlResolve(host.target(), nullptr);
+  vitrailGlEnd(host.target());
+  EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+}
+
 TEST_F(StateTest, APoolThatGrowsLeavesWhatItFinds) {
   HostDesc desc;
   desc.capacity = 16;
