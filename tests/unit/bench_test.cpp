@@ -412,7 +412,7 @@ TEST(BenchCsv, ASweepNamesItsStep) {
   const std::vector<std::string> lines = linesOf(toCsv(report));
   ASSERT_EQ(lines.size(), 10U); // 5 steps of 2, less one
   EXPECT_NE(lines[1].find(",resolution,57600,spheres,"), std::string::npos) << lines[1];
-  EXPECT_TRUE(lines[1].ends_with(",4,,1,0,,,,,,,,false,")) << lines[1]; // no ratio
+  EXPECT_TRUE(lines[1].ends_with(",4,,1,0,,,,,,,,false,,vulkan")) << lines[1]; // no ratio
 }
 
 // Whoever reads one of the reports learns that a frame had more fragments than nodes.
@@ -426,7 +426,7 @@ TEST(BenchTable, AnOverflowIsSaid) {
   EXPECT_NE(toTable(report).find(" not exact: linked-list, standard, 500 nodes at most overflowed: 200 of 700"),
             std::string::npos)
       << toTable(report);
-  EXPECT_TRUE(linesOf(toCsv(report))[2].ends_with(",500,true,0")) << toCsv(report);
+  EXPECT_TRUE(linesOf(toCsv(report))[2].ends_with(",500,true,0,vulkan")) << toCsv(report);
   EXPECT_NE(toJson(report).find("\"overflowed\": true"), std::string::npos);
 }
 
