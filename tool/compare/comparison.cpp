@@ -1,7 +1,6 @@
 #include "comparison.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
 #include "../bench/matrix.h"

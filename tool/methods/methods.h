@@ -2,7 +2,8 @@
 // promises.
 //
 // A new method is a folder of its own with its code and its shaders, a line among the factories below, and a row of the
-// table in methods.cpp. Options, help pages, benchmarks and reports follow from the row.
+// table in methods.cpp. Options, help pages, benchmarks and reports follow from the row. With OpenGL as well it has a
+// gl_NAME.cpp beside it, a factory and a place in the row, and its shaders stand in opengl/shaders.cmake, too.
 #pragma once
 
 #include <cstdint>

@@ -84,7 +84,7 @@ struct GlContext {
   EGLContext context = EGL_NO_CONTEXT;
   std::vector<std::string> messages;
 
-  // Throws GpuError; what says why the device cannot be used.
+  // Throws GpuError; what() is what the device lacks, in words.
   GlContext(EGLDeviceEXT device, bool debug);
   ~GlContext();
   GlContext(const GlContext&) = delete;
@@ -94,7 +94,7 @@ struct GlContext {
 GlContext::GlContext(EGLDeviceEXT device, bool debug) {
   display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
   if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) {
-    throw GpuError("EGL cannot open it");
+    throw GpuError("a driver that EGL can open");
   }
   eglBindAPI(EGL_OPENGL_API);
   const EGLint wanted[] = {

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <span>
 
+#include <fmt/format.h>
+
 #include "../cpu/cpu_texture.h"
 #include "../stage/light_data.h"
 #include "../stage/material_data.h"
@@ -75,14 +77,16 @@ void GlScene::uploadMaterials(const Scene& scene, std::optional<float> opacity) 
 GLuint GlScene::texture(const Scene& scene, std::uint32_t image, Texels texels) {
   const auto found = textures_.find({image, texels});
   if (found != textures_.end()) return found->second.get();
-  const CpuTexture source = makeCpuTexture(scene.images.at(image), texels);
+  const Image& original = scene.images.at(image);
+  if (const std::uint32_t side = gl_.limits().textureSide; std::max(original.width, original.height) > side) {
+    throw GpuError(fmt::format("the texture {} would be {}x{} pixels; a side can be at most {} on {}", image,
+                               original.width, original.height, side, gl_.name()));
+  }
+  const CpuTexture source = makeCpuTexture(original, texels);
   const bool halves = texels == Texels::Premultiplied;
   GlTextureInfo info;
   info.width = static_cast<std::uint32_t>(source.width[0]);
   info.height = static_cast<std::uint32_t>(source.height[0]);
-  if (std::max(info.width, info.height) > gl_.limits().textureSide) {
-    throw GpuError(gl_.name() + " has no textures as large as one of the scene's");
-  }
   info.format = halves ? GL_RGBA16F : texels == Texels::Srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8;
   info.pixelBytes = halves ? 8 : 4;
   info.levels = static_cast<std::uint32_t>(source.levels);
