@@ -2,10 +2,11 @@
 # beside them.
 find_program(VITRAIL_GLSLC glslc REQUIRED)
 
-# embed_shader(TARGETS target... NAME name SOURCE file NAMESPACE ns [INCLUDES dir...] [DEFINES def...] [OPTIMIZE flag])
+# embed_shader(TARGETS target... NAME name SOURCE file NAMESPACE ns [INCLUDES dir...] [DEFINES def...] [OPTIMIZE flag]
+#              [ENVIRONMENT env])
 # gives the targets, all of this folder, `#include "shaders/<name>.h"`, which declares `ns::shaders::<name with . as _>`.
 function(embed_shader)
-  cmake_parse_arguments(arg "" "NAME;SOURCE;NAMESPACE;OPTIMIZE" "TARGETS;INCLUDES;DEFINES" ${ARGN})
+  cmake_parse_arguments(arg "" "NAME;SOURCE;NAMESPACE;OPTIMIZE;ENVIRONMENT" "TARGETS;INCLUDES;DEFINES" ${ARGN})
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/generated)
   set(words ${folder}/shaders/${arg_NAME}.inc)
   set(header ${folder}/shaders/${arg_NAME}.h)
@@ -14,12 +15,15 @@ function(embed_shader)
   if(NOT arg_OPTIMIZE)
     set(arg_OPTIMIZE -O)
   endif()
+  if(NOT arg_ENVIRONMENT)
+    set(arg_ENVIRONMENT vulkan1.2) # what every supported device takes
+  endif()
   list(TRANSFORM arg_INCLUDES PREPEND -I)
   list(TRANSFORM arg_DEFINES PREPEND -D)
-  # -mfmt=num: comma-separated words. Vulkan 1.2's SPIR-V: what every supported device takes.
+  # -mfmt=num: comma-separated words.
   add_custom_command(
     OUTPUT ${words}
-    COMMAND ${VITRAIL_GLSLC} --target-env=vulkan1.2 ${arg_OPTIMIZE} -Werror -mfmt=num -MD -MF ${words}.d ${arg_INCLUDES} ${arg_DEFINES}
+    COMMAND ${VITRAIL_GLSLC} --target-env=${arg_ENVIRONMENT} ${arg_OPTIMIZE} -Werror -mfmt=num -MD -MF ${words}.d ${arg_INCLUDES} ${arg_DEFINES}
             -o ${words} ${source}
     DEPENDS ${source}
     DEPFILE ${words}.d

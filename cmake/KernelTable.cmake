@@ -22,8 +22,8 @@ function(kernel_enumerator name result)
   set(${result} ${joined} PARENT_SCOPE)
 endfunction()
 
-# Compiles one variant, and appends it to `includes` and `variants` of the caller.
-function(embed_variant target table row color samples sorting access)
+# Compiles one variant for `api`, vulkan or opengl, and appends it to `includes` and `variants` of the caller.
+function(embed_variant target table row api color samples sorting access)
   list(GET row 0 name)
   list(GET row 1 entry)
   list(GET row 6 optimize)
@@ -50,6 +50,13 @@ function(embed_variant target table row color samples sorting access)
     list(APPEND defines VITRAIL_BUFFER_REFERENCE)
   endif()
   set(symbol ${stage}_${name})
+  set(environment vulkan1.2)
+  if(api STREQUAL opengl)
+    list(APPEND defines VITRAIL_OPENGL)
+    set(symbol gl_${symbol})
+    set(environment opengl)
+    set(optimize -O0) # NVIDIA makes slower code of optimized modules
+  endif()
   foreach(value ${color} ${samples} ${sorting} ${access})
     if(NOT value STREQUAL -)
       string(APPEND symbol _${value})
@@ -62,7 +69,8 @@ function(embed_variant target table row color samples sorting access)
     NAMESPACE vitrail
     INCLUDES ${PROJECT_SOURCE_DIR}/shaders ${folder}
     DEFINES ${defines}
-    OPTIMIZE ${optimize})
+    OPTIMIZE ${optimize}
+    ENVIRONMENT ${environment})
   kernel_enumerator(${name} enumerator)
   string(REPLACE - any axes "${color}, ${samples}, ${sorting}, ${access}")
   set(includes "${includes}#include \"shaders/${symbol}.h\"\n" PARENT_SCOPE)
@@ -106,11 +114,12 @@ function(write_kernel_list file content)
        CONTENT "// Made by cmake/KernelTable.cmake.\n${content}")
 endfunction()
 
-# embed_kernels(target table): gives the target, of this folder, every kernel, and makes in generated/kernels
-#   includes.inc   the headers with the words of all variants
-#   variants.inc   VITRAIL_VARIANT(stage, Enumerator, color, samples, sorting, access, symbol) a variant, each axis a value
-#                  or `any`
-function(embed_kernels target table)
+# embed_kernels(target table api): gives the target, of this folder, every kernel (api vulkan), or those that the table
+# has as modules for OpenGL (api opengl), and makes in generated/kernels
+#   API_includes.inc   the headers with the words of all variants
+#   API_variants.inc   VITRAIL_VARIANT(stage, Enumerator, color, samples, sorting, access, symbol) a variant, each axis a value
+#                      or `any`
+function(embed_kernels target table api)
   file(STRINGS ${table} rows REGEX "^[^#]")
   foreach(line ${rows})
     string(REGEX REPLACE "[ \t]+" ";" row "${line}")
@@ -122,16 +131,23 @@ function(embed_kernels target table)
     kernel_axis(${samples} "one;several" samples)
     kernel_axis(${sorting} "networks;insertion" sortings)
     kernel_axis(${access} "binding;address" accesses)
+    if(api STREQUAL opengl)
+      list(GET row 8 form)
+      if(NOT form STREQUAL module)
+        continue()
+      endif()
+      set(accesses binding)
+    endif()
     foreach(c ${colors})
       foreach(s ${samples})
         foreach(w ${sortings})
           foreach(a ${accesses})
-            embed_variant(${target} ${table} "${row}" ${c} ${s} ${w} ${a})
+            embed_variant(${target} ${table} "${row}" ${api} ${c} ${s} ${w} ${a})
           endforeach()
         endforeach()
       endforeach()
     endforeach()
   endforeach()
-  write_kernel_list(includes "${includes}")
-  write_kernel_list(variants "${variants}")
+  write_kernel_list(${api}_includes "${includes}")
+  write_kernel_list(${api}_variants "${variants}")
 endfunction()

@@ -22,7 +22,7 @@
 
 #ifndef __cplusplus
 // What the languages of Vulkan and of OpenGL (VITRAIL_OPENGL) say in different ways. OpenGL has one number for each
-// binding point of a kind, and no specialization constants; the numbers may be moved on by VITRAIL_BINDING_BASE.
+// binding point of a kind, which may be moved on by VITRAIL_BINDING_BASE, and specialization constants in SPIR-V only.
 #ifndef VITRAIL_OPENGL
 #define VITRAIL_BOUND(set_number, number) set = set_number, binding = number
 #define VITRAIL_SPECIALIZED(id) layout(constant_id = id)
@@ -33,7 +33,11 @@
 #else
 #define VITRAIL_BOUND(set_number, number) binding = number
 #endif
+#ifdef GL_SPIRV
+#define VITRAIL_SPECIALIZED(id) layout(constant_id = id)
+#else
 #define VITRAIL_SPECIALIZED(id)
+#endif
 #define VITRAIL_TEXTURE_MS sampler2DMS
 #endif
 #endif

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "kernels/includes.inc"
+#include "kernels/vulkan_includes.inc"
 
 namespace vitrail {
 
@@ -35,14 +35,14 @@ struct Variant {
           Sorting::sorting, Access::access,                                   \
           shaders::symbol},
 constexpr std::array kVariants = {
-#include "kernels/variants.inc"
+#include "kernels/vulkan_variants.inc"
 };
 #undef VITRAIL_VARIANT
 
 #define VITRAIL_VARIANT(stage, name, color, samples, sorting, access, symbol) \
   KernelVariant{#symbol, shaders::symbol, Access::access == Access::address},
 constexpr std::array kPublicVariants = {
-#include "kernels/variants.inc"
+#include "kernels/vulkan_variants.inc"
 };
 #undef VITRAIL_VARIANT
 

@@ -7,14 +7,14 @@
 #define VITRAIL_SET 0
 #include "vitrail/target.glsl"
 
-#ifndef VITRAIL_OPENGL
+#ifndef VITRAIL_IS_FORMAT
 VITRAIL_SPECIALIZED(0) const uint kFormat = VITRAIL_FORMAT_STANDARD;
 VITRAIL_SPECIALIZED(1) const uint kSamples = 1u;
 VITRAIL_SPECIALIZED(2) const bool kNearestIsOne = false;
 VITRAIL_SPECIALIZED(3) const uint kMaxLayers = 0u;
 VITRAIL_SPECIALIZED(4) const bool kTestDepth = false; // coverage has not passed the depth test
 VITRAIL_SPECIALIZED(5) const uint kGroup = 4u;        // list/group.comp: invocations that share a list, 4 or 8
-#else // the library defines what follows "VITRAIL_IS_"
+#else // GLSL for OpenGL, which has no such constants: the library defines them
 const uint kFormat = VITRAIL_IS_FORMAT;
 const uint kSamples = VITRAIL_IS_SAMPLES;
 const bool kNearestIsOne = VITRAIL_IS_NEAREST_ONE;

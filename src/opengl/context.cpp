@@ -125,6 +125,13 @@ const char* compilerThreadsName(const GlFunctions& gl) {
   return hasExtension(gl, "GL_ARB_parallel_shader_compile") ? "glMaxShaderCompilerThreadsARB" : nullptr;
 }
 
+// NVIDIA's compiler makes faster code of SPIR-V than of GLSL. Mesa's refuses blocks that share a binding, as the forms
+// of the node pool do, so that it would be asked in vain (docs/notes/opengl.md).
+bool gainsByModules(const GlFunctions& gl) {
+  const auto* vendor = reinterpret_cast<const char*>(gl.GetString(GL_VENDOR));
+  return vendor != nullptr && contains(vendor, "NVIDIA") && hasExtension(gl, "GL_ARB_gl_spirv");
+}
+
 std::string sourceFor(const char* name) { return kSourcePrefix + flattened(name) + "#line 1\n"; }
 
 } // namespace
@@ -195,6 +202,13 @@ extern "C" VitrailResult vitrailGlCreateContext(const VitrailGlContextDesc* desc
   if (const char* name = compilerThreadsName(made->gl)) {
     made->gl.MaxShaderCompilerThreads =
         reinterpret_cast<PFNGLMAXSHADERCOMPILERTHREADSKHRPROC>(desc->getProcAddress(name, desc->loaderUser));
+  }
+  if (gainsByModules(made->gl)) {
+    made->gl.SpecializeShader =
+        reinterpret_cast<PFNGLSPECIALIZESHADERPROC>(desc->getProcAddress("glSpecializeShaderARB", desc->loaderUser));
+    made->gl.ShaderBinary =
+        reinterpret_cast<PFNGLSHADERBINARYPROC>(desc->getProcAddress("glShaderBinary", desc->loaderUser));
+    made->takesModules = made->gl.SpecializeShader != nullptr && made->gl.ShaderBinary != nullptr;
   }
   readLimits(*made);
   made->collectSource = sourceFor("vitrail/collect.glsl");

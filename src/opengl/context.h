@@ -21,7 +21,8 @@ struct VitrailGlContext_T {
   std::uint32_t bindingBase = 0;
   std::string collectSource;
   std::string listSource;
-  std::mutex programsMutex; // guards `programs`
+  std::mutex programsMutex;  // guards what follows
+  bool takesModules = false; // SPIR-V; not after the driver refused one
   std::map<vitrail::ProgramKey, GLuint> programs;
   // The handle and its targets: what the context has is freed with the last of them.
   std::atomic<std::uint32_t> owners{1};

@@ -83,6 +83,9 @@ struct GlFunctions {
   PFNGLMAPBUFFERRANGEPROC MapBufferRange = nullptr;
   // Null without GL_KHR_parallel_shader_compile or the extension of ARB.
   PFNGLMAXSHADERCOMPILERTHREADSKHRPROC MaxShaderCompilerThreads = nullptr;
+  // Null where the kernels are compiled from GLSL.
+  PFNGLSHADERBINARYPROC ShaderBinary = nullptr;
+  PFNGLSPECIALIZESHADERARBPROC SpecializeShader = nullptr;
 
   // Fills the table. Returns the name of a function that is missing, or null where all are there.
   const char* load(VitrailGlGetProcAddress getProcAddress, void* user);

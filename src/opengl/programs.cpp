@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "context.h"
+#include "modules.h"
 #include "source.h"
 
 namespace vitrail {
@@ -101,11 +102,24 @@ struct Build {
   ProgramKey key;
   GLuint program = 0;
   std::array<GLuint, 2> shaders{}; // 0 where there is none
+  bool isModule = false;
 
   [[nodiscard]] const char* name() const {
     return key.draws ? "fragment resolve" : kernelName(static_cast<Kernel>(key.kernel));
   }
 };
+
+// Hands a kernel's module to the driver.
+GLuint startModule(const GlFunctions& gl, Spirv module, const ProgramKey& key) {
+  // By their numbers in src/kernels/target.glsl.
+  constexpr std::array<GLuint, 6> kNumbers = {0, 1, 2, 3, 4, 5};
+  const std::array<GLuint, kNumbers.size()> values = {
+      key.format, key.samples, key.nearestIsOne ? 1U : 0U, key.maxLayers, key.testDepth ? 1U : 0U, key.group};
+  const GLuint shader = gl.CreateShader(GL_COMPUTE_SHADER);
+  gl.ShaderBinary(1, &shader, GL_SHADER_BINARY_FORMAT_SPIR_V, module.data(), static_cast<GLsizei>(module.size_bytes()));
+  gl.SpecializeShader(shader, "main", static_cast<GLuint>(kNumbers.size()), kNumbers.data(), values.data());
+  return shader;
+}
 
 // Hands a row's shader to the driver, and does not wait for it.
 GLuint startShader(const GlFunctions& gl, GLenum stage, const Row& row, const ProgramKey& key) {
@@ -119,9 +133,14 @@ GLuint startShader(const GlFunctions& gl, GLenum stage, const Row& row, const Pr
 }
 
 // Nothing that is asked of a shader or program until all are linked: the answer would be waited for.
-Build start(const GlFunctions& gl, const ProgramKey& key) {
+Build start(const VitrailGlContext_T& context, const ProgramKey& key) {
+  const GlFunctions& gl = context.gl;
   Build build{key, gl.CreateProgram(), {}};
-  if (const Row* row = findRow(key.draws ? Stage::frag : Stage::comp, key.kernel, key)) {
+  const Spirv module = context.takesModules ? moduleFor(key) : Spirv();
+  if (!module.empty()) {
+    build.shaders[0] = startModule(gl, module, key);
+    build.isModule = true;
+  } else if (const Row* row = findRow(key.draws ? Stage::frag : Stage::comp, key.kernel, key)) {
     build.shaders[0] = startShader(gl, key.draws ? GL_FRAGMENT_SHADER : GL_COMPUTE_SHADER, *row, key);
   }
   if (key.draws) build.shaders[1] = startShader(gl, GL_VERTEX_SHADER, *findRow(Stage::vert, 0, key), key);
@@ -160,14 +179,26 @@ std::string finish(const GlFunctions& gl, const Build& build) {
   return "it does not link: " + firstLine(said.data());
 }
 
+void deleteShaders(const GlFunctions& gl, const Build& build) {
+  for (const GLuint shader : build.shaders) {
+    if (shader != 0) gl.DeleteShader(shader);
+  }
+}
+
 // Waits for the programs and keeps those that the driver takes. Of the others the first is logged.
-VitrailResult keep(VitrailGlContext_T& context, std::span<const Build> builds) {
+VitrailResult keep(VitrailGlContext_T& context, std::span<Build> builds) {
   const GlFunctions& gl = context.gl;
   VitrailResult result = VITRAIL_SUCCESS;
-  for (const Build& build : builds) {
-    const std::string reason = finish(gl, build);
-    for (const GLuint shader : build.shaders) {
-      if (shader != 0) gl.DeleteShader(shader);
+  for (Build& build : builds) {
+    std::string reason = finish(gl, build);
+    deleteShaders(gl, build);
+    if (!reason.empty() && build.isModule) { // a driver that does not take this one may take its GLSL
+      context.takesModules = false;
+      gl.DeleteProgram(build.program);
+      build = start(context, build.key);
+      gl.LinkProgram(build.program);
+      reason = finish(gl, build);
+      deleteShaders(gl, build);
     }
     if (reason.empty()) {
       context.label(GL_PROGRAM, build.program, "vitrail", build.name());
@@ -195,7 +226,7 @@ VitrailResult findPrograms(VitrailGlContext_T& context, std::span<const ProgramK
   for (const ProgramKey& key : wanted) {
     if (context.programs.contains(key)) continue;
     if (!threads) threads.emplace(gl);
-    builds.push_back(start(gl, key));
+    builds.push_back(start(context, key));
   }
   for (const Build& build : builds) gl.LinkProgram(build.program);
   const VitrailResult result = keep(context, builds);

@@ -7,6 +7,18 @@
 
 namespace vitrail {
 
+namespace {
+
+// NVIDIA's driver gives a buffer large pages where it is a whole number of them, and small ones otherwise, which cost
+// the atomics of collecting a tenth (docs/notes/opengl.md).
+std::uint64_t wholePages(std::uint64_t bytes, std::uint64_t most) {
+  constexpr std::uint64_t kPage = std::uint64_t{2} << 20U;
+  const std::uint64_t whole = (bytes + kPage - 1) / kPage * kPage;
+  return bytes >= kPage && whole <= most ? whole : bytes;
+}
+
+} // namespace
+
 VitrailResult createBuffer(const VitrailGlContext_T& context, const BufferDesc& desc, GLuint* buffer) {
   const GlFunctions& gl = context.gl;
   *buffer = 0;
@@ -39,15 +51,17 @@ VitrailResult createBuffer(const VitrailGlContext_T& context, const BufferDesc& 
 }
 
 VitrailResult GlStorage::create(const VitrailGlContext_T& context, const StorageNeeds& wanted, GLuint hostBuffer,
-                                std::uint64_t hostOffset, const char* name) {
+                                std::uint64_t hostOffset, std::uint64_t mostBytes, const char* name) {
   needs = wanted;
   layout = layoutStorage(needs);
+  bytes = layout.total;
   if (hostBuffer != 0) {
     buffer = hostBuffer;
     offset = hostOffset;
   } else {
     const SavedCopies saved(context.gl);
-    const BufferDesc desc{layout.total, nullptr, 0, GL_DYNAMIC_COPY, name, "fragment lists"}; // the device's alone
+    bytes = wholePages(layout.total, mostBytes);
+    const BufferDesc desc{bytes, nullptr, 0, GL_DYNAMIC_COPY, name, "fragment lists"}; // the device's alone
     const VitrailResult result = createBuffer(context, desc, &buffer);
     if (result != VITRAIL_SUCCESS) return result;
     own = true;

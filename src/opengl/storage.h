@@ -11,12 +11,13 @@ struct GlStorage {
   StorageLayout layout;
   GLuint buffer = 0;
   std::uint64_t offset = 0;
+  std::uint64_t bytes = 0; // of the layout, and of what fills the last page
   bool own = false;
   bool wholeByBinding = false;
 
-  // `hostBuffer` 0: a buffer of its own. Logs its errors.
+  // `hostBuffer` 0: a buffer of its own, of `mostBytes` at most where the layout is no larger. Logs its errors.
   VitrailResult create(const VitrailGlContext_T& context, const StorageNeeds& wanted, GLuint hostBuffer,
-                       std::uint64_t hostOffset, const char* name);
+                       std::uint64_t hostOffset, std::uint64_t mostBytes, const char* name);
   void destroy(const VitrailGlContext_T& context);
 
   // Binds the first `count` parts (bindings.h) to the points from `base` on.

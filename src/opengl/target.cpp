@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <new>
 
@@ -167,8 +168,12 @@ VitrailResult createWritten(VitrailGlTarget_T& target) {
 
 VitrailResult replaceStorage(VitrailGlTarget_T& target, const StorageNeeds& needs) {
   GlStorage made;
+  const std::uint64_t budget = target.info.memoryBudget;
+  const std::uint64_t beside = statisticsBytes(target.info.framesInFlight);
   const VitrailResult result =
-      made.create(*target.context, needs, target.hostBuffer, target.info.bufferOffset, target.debugName.c_str());
+      made.create(*target.context, needs, target.hostBuffer, target.info.bufferOffset,
+                  budget == 0 ? std::numeric_limits<std::uint64_t>::max() : budget - std::min(budget, beside),
+                  target.debugName.c_str());
   if (result != VITRAIL_SUCCESS) return result;
   target.storage.destroy(*target.context);
   target.storage = made;
@@ -384,7 +389,7 @@ extern "C" void vitrailGlTargetMemory(VitrailGlTarget target, VitrailMemory* mem
   memory->nodeCapacity = storage.needs.nodeCapacity;
   memory->nodeBytes = storage.layout.nodes.size;
   memory->headBytes = storage.layout.heads.size;
-  memory->totalBytes = storage.layout.total + vitrail::statisticsBytes(target->info.framesInFlight);
+  memory->totalBytes = storage.bytes + vitrail::statisticsBytes(target->info.framesInFlight);
   memory->otherBytes = memory->totalBytes - memory->nodeBytes - memory->headBytes;
 }
 

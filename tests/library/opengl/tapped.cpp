@@ -16,14 +16,17 @@ void Tap::reset() {
   const Tap kept = std::exchange(*this, {});
   real = kept.real;
   missing = kept.missing;
+  vendor = kept.vendor;
 }
 
 namespace {
 
-#define VITRAIL_ALL_FUNCTIONS(X)             \
-  VITRAIL_GL_FUNCTIONS(X)                    \
-  X(PFNGLBUFFERSTORAGEPROC, BufferStorage)   \
-  X(PFNGLMAPBUFFERRANGEPROC, MapBufferRange) \
+#define VITRAIL_ALL_FUNCTIONS(X)                       \
+  VITRAIL_GL_FUNCTIONS(X)                              \
+  X(PFNGLBUFFERSTORAGEPROC, BufferStorage)             \
+  X(PFNGLMAPBUFFERRANGEPROC, MapBufferRange)           \
+  X(PFNGLSHADERBINARYPROC, ShaderBinary)               \
+  X(PFNGLSPECIALIZESHADERARBPROC, SpecializeShaderARB) \
   X(PFNGLMAXSHADERCOMPILERTHREADSKHRPROC, MaxShaderCompilerThreadsKHR)
 
 enum class Function : std::size_t {
@@ -66,6 +69,17 @@ bool hasEffect(Function function) {
   return fence && tap.fence == LostFence::AsEver;
 }
 
+// The vendor that the driver says it is of.
+template <typename Result>
+Result answered(Function function, std::uint32_t first, Result result) {
+  if constexpr (std::is_same_v<Result, const GLubyte*>) {
+    if (function == Function::GetString && first == GL_VENDOR && tap.vendor != nullptr) {
+      return reinterpret_cast<const GLubyte*>(tap.vendor);
+    }
+  }
+  return result;
+}
+
 // Another text for the shader that is about to be compiled.
 void spoil(Function function, GLuint shader) {
   if (function != Function::CompileShader || tap.shaders++ != tap.spoiledShader) return;
@@ -89,7 +103,12 @@ struct Tapped<Result(APIENTRYP)(Arguments...)> {
     tap.calls.push_back({kNames[kIndex], firstOf(arguments...)});
     if (!hasEffect(kFunction) || isLeftOut(kFunction)) return lostResult<Result>(kFunction);
     spoil(kFunction, firstOf(arguments...));
-    return reinterpret_cast<Result(APIENTRYP)(Arguments...)>(realFunctions[kIndex])(arguments...);
+    const auto real = reinterpret_cast<Result(APIENTRYP)(Arguments...)>(realFunctions[kIndex]);
+    if constexpr (std::is_void_v<Result>) {
+      real(arguments...);
+    } else {
+      return answered(kFunction, firstOf(arguments...), real(arguments...));
+    }
   }
 };
 

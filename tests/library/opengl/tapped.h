@@ -24,7 +24,8 @@ enum class LostFence { Failed, Signaled, AsEver };
 // Every loader of a process is the same one.
 struct Tap {
   VitrailGlGetProcAddress real = nullptr;
-  std::string_view missing; // the function that the driver does not have; kept by reset()
+  std::string_view missing;     // the function that the driver does not have; kept by reset()
+  const char* vendor = nullptr; // whom the driver says it is of, where that is not its own; kept by reset()
   std::vector<TappedCall> calls;
   // From this call on (its number in `calls`) the context is lost: commands have no effect and raise GL_CONTEXT_LOST,
   // what is asked for is left as it is.
