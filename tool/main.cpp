@@ -20,6 +20,7 @@ constexpr const char* kHelp =
     R"(Vitrail draws transparent models exactly: every pixel's surfaces are blended in depth order.
 
 Usage:
+  vitrail view MODEL                      look at a model in a window
   vitrail render MODEL -o picture.png     draw glTF, OBJ, PLY and STL models
   vitrail render --scene NAME -o pic.png  draw a built-in scene
   vitrail scenes                          list the built-in scenes
@@ -47,6 +48,7 @@ int runProgram(int argc, char** argv) {
   app.require_subcommand(0, 1);
   std::function<void()> run;
   vitrail::tool::addRenderCommand(app, run);
+  vitrail::tool::addViewCommand(app, run);
   vitrail::tool::addCompareCommand(app, run);
   vitrail::tool::addBenchCommand(app, run);
   vitrail::tool::addInfoCommand(app, run);

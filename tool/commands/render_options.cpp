@@ -13,16 +13,8 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr const char* kRenderHelp =
-    R"(Draws models with exact transparency and writes a picture, or the pictures of a turn around them.
-
-Usage:
-  vitrail render MODEL... -o FILE [options]
-  vitrail render --scene NAME -o FILE [options]
-
-@scene@
-
-How to blend it:
+constexpr const char* kBlendHelp =
+    R"(How to blend it:
   --method M            one of these; the first is the default
 @methods@
   --samples N           1 (default), 2, 4 or 8 samples a pixel, as the device offers
@@ -43,7 +35,18 @@ How to blend it:
                         loop-64 and interlock: 8); depth-peeling leaves the others out; the layers
                         of multi-layer (default 4)
   --memory-budget MIB   for fragments, at least 1; a picture that needs more is drawn in tiles, the
-                        same picture (default: what the device can give)
+                        same picture (default: what the device can give))";
+
+constexpr const char* kRenderHelp =
+    R"(Draws models with exact transparency and writes a picture, or the pictures of a turn around them.
+
+Usage:
+  vitrail render MODEL... -o FILE [options]
+  vitrail render --scene NAME -o FILE [options]
+
+@scene@
+
+@blend@
 
 Where to:
 @output@
@@ -131,29 +134,38 @@ void checkMethod(const RenderArguments& arguments) {
 
 } // namespace
 
-std::string renderHelp() {
-  return withApiHelp(withDeviceHelp(withText(withText(withSceneHelp(kRenderHelp), "@methods@", methodsHelp()),
-                                             "@output@", kOutputHelp)),
-                     false);
+std::string withPictureHelp(const std::string& page) {
+  const std::string blend = withText(kBlendHelp, "@methods@", methodsHelp());
+  return withApiHelp(withDeviceHelp(withText(withSceneHelp(page), "@blend@", blend)), false);
 }
 
-void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
+std::string renderHelp() { return withText(withPictureHelp(kRenderHelp), "@output@", kOutputHelp); }
+
+void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
   command.add_option("MODEL", arguments.models);
   addSceneOptions(command, arguments);
-  addOutputOptions(command, arguments);
-  command.add_option("--json", arguments.json);
   command.add_option("--device", arguments.device);
   command.add_flag("--validate", arguments.validate);
-  addWarningOptions(command, arguments);
   addMethodOptions(command, arguments);
 }
 
-void checkRenderArguments(RenderArguments& arguments) {
-  checkSceneArguments(arguments, "render");
+void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
+  addPictureOptions(command, arguments);
+  addOutputOptions(command, arguments);
+  command.add_option("--json", arguments.json);
+  addWarningOptions(command, arguments);
+}
+
+void checkPictureArguments(RenderArguments& arguments, const std::string& command) {
+  checkSceneArguments(arguments, command);
   arguments.method.name = arguments.methodName.value_or(arguments.method.name);
   checkMethod(arguments);
   static_cast<void>(deviceFor(arguments.device, false, {arguments.method.name}, {arguments.method.api}));
   chooseDevice(arguments);
+}
+
+void checkRenderArguments(RenderArguments& arguments) {
+  checkPictureArguments(arguments, "render");
   static_cast<void>(outputFormatOf(arguments));
 }
 

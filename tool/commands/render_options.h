@@ -24,6 +24,16 @@ struct RenderArguments : SceneArguments, OutputArguments {
   bool validate = false;
 };
 
+// What a picture is of, how it is blended and on which device: the options without those of files.
+void addPictureOptions(CLI::App& command, RenderArguments& arguments);
+
+// Checks what one of these alone does not show, and finds out which device they need. `command` is what help is named
+// after. Throws UsageError.
+void checkPictureArguments(RenderArguments& arguments, const std::string& command);
+
+// Their lines of a help page, in place of the marks @scene@, @blend@, @api@ and @device@.
+std::string withPictureHelp(const std::string& page);
+
 // Adds the options to a command. Texts that cannot be understood end the parse with a CLI::ValidationError.
 void addRenderOptions(CLI::App& command, RenderArguments& arguments);
 

@@ -92,7 +92,7 @@ void openLoader() {
 }
 
 // With `log`, the instance runs under the validation layer and reports to it from its creation to its destruction.
-VkInstance createInstance(ValidationLog* log) {
+VkInstance createInstance(ValidationLog* log, std::vector<const char*> extensions = {}) {
   openLoader();
   auto application = vkStruct<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
   application.pApplicationName = "vitrail";
@@ -102,7 +102,6 @@ VkInstance createInstance(ValidationLog* log) {
 
   // The layer brings the debug utilities itself where neither the loader nor a driver has them.
   const bool debugUtils = hasInstanceExtension(nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) || log != nullptr;
-  std::vector<const char*> extensions;
   if (debugUtils) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
 
   const VkValidationFeatureEnableEXT enabled = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
@@ -170,6 +169,14 @@ bool hasFormat(VkPhysicalDevice device, VkFormat format, VkFormatFeatureFlags ne
   VkFormatProperties properties{};
   vkGetPhysicalDeviceFormatProperties(device, format, &properties);
   return (properties.optimalTilingFeatures & needed) == needed;
+}
+
+// Whether a device shows pictures as `options` want it.
+bool presents(VkInstance instance, VkPhysicalDevice device, const GpuOptions& options) {
+  if (!options.presents) return true;
+  const std::optional<std::uint32_t> family = findQueueFamily(device);
+  return family && hasDeviceExtension(device, VK_KHR_SWAPCHAIN_EXTENSION_NAME) &&
+         options.presents(instance, device, *family);
 }
 
 // What keeps the tool from rendering on a device, in words; empty where nothing does.
@@ -326,7 +333,7 @@ struct Gpu::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl();
   void createMessenger();
-  void createDevice();
+  void createDevice(bool swapchain);
 };
 
 Gpu::Impl::~Impl() {
@@ -346,7 +353,7 @@ void Gpu::Impl::createMessenger() {
   check(vkCreateDebugUtilsMessengerEXT(instance, &info, nullptr, &messenger), "vkCreateDebugUtilsMessengerEXT");
 }
 
-void Gpu::Impl::createDevice() {
+void Gpu::Impl::createDevice(bool swapchain) {
   const float priority = 1.0F;
   auto queueInfo = vkStruct<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
   queueInfo.queueFamilyIndex = queueFamily;
@@ -379,6 +386,7 @@ void Gpu::Impl::createDevice() {
   enabled.features.fullDrawIndexUint32 = supported.fullDrawIndexUint32; // for meshes beyond 16.7 M vertices
 
   std::vector<const char*> extensions;
+  if (swapchain) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   if (features.postDepthCoverage) extensions.push_back(VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
   if (features.fragmentInterlock) extensions.push_back(VK_EXT_FRAGMENT_SHADER_INTERLOCK_EXTENSION_NAME);
   if (features.middleSamples != 0) extensions.push_back(VK_EXT_SAMPLE_LOCATIONS_EXTENSION_NAME);
@@ -395,9 +403,11 @@ void Gpu::Impl::createDevice() {
 }
 
 Gpu::Gpu(const GpuOptions& options) : impl_(std::make_unique<Impl>()) {
-  impl_->instance = createInstance(options.validate ? &impl_->log : nullptr);
+  impl_->instance = createInstance(options.validate ? &impl_->log : nullptr, options.instanceExtensions);
   if (options.validate) impl_->createMessenger();
-  const std::vector<VkPhysicalDevice> devices = enumerate(impl_->instance);
+  std::vector<VkPhysicalDevice> devices = enumerate(impl_->instance);
+  std::erase_if(devices, [&](VkPhysicalDevice device) { return !presents(impl_->instance, device, options); });
+  if (devices.empty()) throw GpuError("no Vulkan device shows pictures in a window here");
   const DeviceSummary chosen = choose(summarizeAll(devices), options);
   impl_->physicalDevice = devices[chosen.index];
   impl_->maxAllocation = chosen.maxAllocationBytes;
@@ -405,7 +415,7 @@ Gpu::Gpu(const GpuOptions& options) : impl_(std::make_unique<Impl>()) {
   vkGetPhysicalDeviceProperties(impl_->physicalDevice, &impl_->properties);
   vkGetPhysicalDeviceMemoryProperties(impl_->physicalDevice, &impl_->memoryProperties);
   impl_->features = supportedFeatures(impl_->physicalDevice);
-  impl_->createDevice();
+  impl_->createDevice(static_cast<bool>(options.presents));
 }
 
 Gpu::~Gpu() = default;

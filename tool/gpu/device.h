@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,6 +40,10 @@ struct GpuOptions {
   // Runs under the Khronos validation layer with synchronization validation; a missing layer is a GpuError.
   bool validate = false;
   bool onlyGpus = false; // isUsableGpu()
+  // For windows: what the instance is made with beside the tool's own, and whether a queue family shows pictures in
+  // them. With it the device has VK_KHR_swapchain.
+  std::vector<const char*> instanceExtensions{};
+  std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t queueFamily)> presents{};
 };
 
 // Instance, device and one queue with graphics and compute, made for Vulkan 1.3 with dynamic rendering,

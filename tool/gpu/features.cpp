@@ -14,17 +14,6 @@ namespace vitrail::tool {
 
 namespace {
 
-bool hasExtension(VkPhysicalDevice device, const char* name) {
-  std::uint32_t count = 0;
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
-  std::vector<VkExtensionProperties> extensions(count);
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
-        "vkEnumerateDeviceExtensionProperties");
-  return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& extension) {
-    return std::strcmp(extension.extensionName, name) == 0;
-  });
-}
-
 bool blends(VkPhysicalDevice device, VkFormat format) {
   VkFormatProperties properties{};
   vkGetPhysicalDeviceFormatProperties(device, format, &properties);
@@ -41,7 +30,7 @@ VkSampleCountFlags imageSampleCounts(VkPhysicalDevice device, VkFormat format, V
 
 // The counts of samples that can be placed in the middle of the pixel.
 VkSampleCountFlags middleSampleCounts(VkPhysicalDevice device) {
-  if (!hasExtension(device, VK_EXT_SAMPLE_LOCATIONS_EXTENSION_NAME)) return 0;
+  if (!hasDeviceExtension(device, VK_EXT_SAMPLE_LOCATIONS_EXTENSION_NAME)) return 0;
   auto locations = vkStruct<VkPhysicalDeviceSampleLocationsPropertiesEXT>(
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SAMPLE_LOCATIONS_PROPERTIES_EXT);
   auto properties = vkStruct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
@@ -65,6 +54,17 @@ VkSampleCountFlags pictureSampleCounts(VkPhysicalDevice device, const VkPhysical
 
 } // namespace
 
+bool hasDeviceExtension(VkPhysicalDevice device, const char* name) {
+  std::uint32_t count = 0;
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
+  std::vector<VkExtensionProperties> extensions(count);
+  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
+        "vkEnumerateDeviceExtensionProperties");
+  return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& extension) {
+    return std::strcmp(extension.extensionName, name) == 0;
+  });
+}
+
 GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(device, &properties);
@@ -72,7 +72,7 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   auto features12 = vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
   auto interlock = vkStruct<VkPhysicalDeviceFragmentShaderInterlockFeaturesEXT>(
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FRAGMENT_SHADER_INTERLOCK_FEATURES_EXT);
-  if (hasExtension(device, VK_EXT_FRAGMENT_SHADER_INTERLOCK_EXTENSION_NAME)) features12.pNext = &interlock;
+  if (hasDeviceExtension(device, VK_EXT_FRAGMENT_SHADER_INTERLOCK_EXTENSION_NAME)) features12.pNext = &interlock;
   auto features = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.pNext = &features12;
   vkGetPhysicalDeviceFeatures2(device, &features);
@@ -88,7 +88,7 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   result.int64Atomics = features.features.shaderInt64 == VK_TRUE && features12.shaderBufferInt64Atomics == VK_TRUE;
   result.fragmentInterlock = interlock.fragmentShaderPixelInterlock == VK_TRUE;
   if (features.features.shaderClipDistance == VK_TRUE) result.clipPlanes = limits.maxClipDistances;
-  result.postDepthCoverage = hasExtension(device, VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
+  result.postDepthCoverage = hasDeviceExtension(device, VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);
   result.sampleCounts = pictureSampleCounts(device, limits);
   result.middleSamples = result.sampleCounts & middleSampleCounts(device);
   const VkSampleCountFlags stencil =

@@ -29,6 +29,9 @@ struct GpuFeatures {
   VkSampleCountFlags sampleCounts = VK_SAMPLE_COUNT_1_BIT; // of a picture's images
 };
 
+// Whether it has an extension of that name.
+bool hasDeviceExtension(VkPhysicalDevice device, const char* name);
+
 GpuFeatures supportedFeatures(VkPhysicalDevice device);
 
 // A sample count as a flag, whose value is the count.

@@ -1,0 +1,382 @@
+// `vitrail view` in a real window: somebody uses mouse and keyboard, and what is on the screen is what `vitrail render`
+// draws.
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <functional>
+#include <random>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "../tool/png_reader.h"
+#include "../tool/vitrail.h"
+#include "desk.h"
+
+namespace vitrail::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+// A window, and what it says of itself.
+class View {
+ public:
+  View(const TemporaryFolder& folder, Words words) : folder_(folder) {
+    const std::string events = folder.file("events");
+    std::ofstream(events).flush();
+    words.insert(words.begin(), {kTool, "view", "--events", events, "--size", "640x480"});
+    process_ = ::fork();
+    if (process_ == 0) {
+      if (::chdir(folder.path().c_str()) != 0) ::_exit(99);
+      const int error = ::creat(folder.file("stderr").c_str(), 0600);
+      const int out = ::creat(folder.file("stdout").c_str(), 0600);
+      ::dup2(error, STDERR_FILENO);
+      ::dup2(out, STDOUT_FILENO);
+      std::vector<char*> arguments;
+      for (std::string& word : words) arguments.push_back(word.data());
+      arguments.push_back(nullptr);
+      ::execv(arguments[0], arguments.data());
+      ::_exit(98);
+    }
+    events_.open(events);
+    desk.find();
+  }
+  ~View() {
+    if (process_ > 0) {
+      ::kill(process_, SIGKILL);
+      ::waitpid(process_, nullptr, 0);
+    }
+  }
+  View(const View&) = delete;
+  View& operator=(const View&) = delete;
+
+  // The next event that fits, of those to come; those before it are passed. Null where none comes.
+  Json next(const std::function<bool(const Json&)>& fits, std::chrono::seconds patience = 60s) {
+    const Clock::time_point end = Clock::now() + patience;
+    while (Clock::now() < end) {
+      std::string line;
+      const std::streampos place = events_.tellg();
+      if (std::getline(events_, line) && !events_.eof()) {
+        Json event = Json::parse(line);
+        if (fits(event)) return event;
+        continue;
+      }
+      events_.clear();
+      events_.seekg(place);
+      int status = 0;
+      if (::waitpid(process_, &status, WNOHANG) == process_) {
+        ended_ = status;
+        process_ = 0;
+        return nullptr;
+      }
+      std::this_thread::sleep_for(5ms);
+    }
+    return nullptr;
+  }
+  Json shown(std::chrono::seconds patience = 60s) {
+    return next([](const Json& event) { return event["event"] == "shown" && event["coarse"] == 1; }, patience);
+  }
+  Json happened(const std::string& what) {
+    return next([&](const Json& event) { return event["event"] == what; });
+  }
+  // The last fine picture, once there has been none for a while.
+  Json settled() {
+    Json last = shown();
+    for (Json more = shown(1s); !more.is_null(); more = shown(1s)) last = more;
+    return last;
+  }
+
+  // Closes the window. The exit code.
+  int close() {
+    if (process_ > 0) desk.close();
+    for (int i = 0; i < 3000 && process_ > 0; ++i) {
+      if (::waitpid(process_, &ended_, WNOHANG) == process_) process_ = 0;
+      std::this_thread::sleep_for(10ms);
+    }
+    EXPECT_EQ(process_, 0) << "the window does not close";
+    return WIFEXITED(ended_) ? WEXITSTATUS(ended_) : 128 + WTERMSIG(ended_);
+  }
+  void expectClosesWell() {
+    EXPECT_EQ(close(), 0);
+    EXPECT_EQ(readText(folder_.file("stderr")), "");
+  }
+
+  // Seconds of processor time so far.
+  [[nodiscard]] double processorTime() const {
+    std::istringstream text(readText("/proc/" + std::to_string(process_) + "/stat"));
+    std::string word;
+    double ticks = 0.0;
+    for (int i = 1; text >> word; ++i) {
+      if (i == 14 || i == 15) ticks += std::stod(word);
+    }
+    return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
+  }
+
+  Desk desk;
+
+ private:
+  const TemporaryFolder& folder_;
+  std::ifstream events_;
+  pid_t process_ = 0;
+  int ended_ = 0;
+};
+
+// The words of a command for a shell, run in the folder. The picture that it draws.
+Pixels drawn(const TemporaryFolder& folder, const std::string& command) {
+  const std::size_t program = command.find(' ');
+  const ProcessResult result =
+      run({"/bin/sh", "-c", "cd '" + folder.path().string() + "' && " + kTool + command.substr(program)});
+  EXPECT_EQ(result.exitCode, 0) << command << "\n" << result.error;
+  const ReadPng image = readPng(folder.file("picture.png"));
+  Pixels pixels{image.width, image.height, {}};
+  for (std::size_t i = 0; i < image.rgba.size(); ++i) {
+    if (i % 4 != 3) pixels.rgb.push_back(image.rgba[i]);
+  }
+  return pixels;
+}
+
+std::uint64_t differing(const Pixels& a, const Pixels& b) {
+  if (a.rgb.size() != b.rgb.size()) return std::max(a.rgb.size(), b.rgb.size());
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) count += a.rgb[i] != b.rgb[i] ? 1 : 0;
+  return count;
+}
+
+// On the processor, and on Mesa's driver by Vulkan.
+class ViewTest : public testing::TestWithParam<std::string> {
+ protected:
+  Words with(Words words) const {
+    words.insert(words.end(), {"--device", GetParam(), "--validate"});
+    return words;
+  }
+  // Hides the panel and compares the screen with the command's picture.
+  void expectSameAsRendered(View& view, const std::string& command) {
+    view.desk.key("Tab");
+    std::this_thread::sleep_for(300ms);
+    EXPECT_EQ(differing(view.desk.look(), drawn(folder_, command)), 0U) << command;
+    view.desk.key("Tab");
+  }
+
+  TemporaryFolder folder_;
+};
+INSTANTIATE_TEST_SUITE_P(Devices, ViewTest, testing::Values("cpu", "llvmpipe"),
+                         [](const auto& device) { return device.param; });
+
+TEST_P(ViewTest, ShowsWhatRenderDraws) {
+  View view(folder_, with({"--scene", "spheres", "--count", "64"}));
+  EXPECT_EQ(view.happened("opened")["text"], "spheres");
+  const Json shown = view.settled();
+  ASSERT_FALSE(shown.is_null());
+  EXPECT_EQ(shown["width"], 640);
+  EXPECT_TRUE(shown["exact"]);
+  expectSameAsRendered(view, shown["command"]);
+  view.expectClosesWell();
+}
+
+TEST_P(ViewTest, TheCameraIsMovedByMouseAndKeys) {
+  View view(folder_, with({"--scene", "interlocked"}));
+  std::set<std::string> commands{view.settled()["command"]};
+  const auto expectAnother = [&](const char* how) {
+    const Json shown = view.settled();
+    ASSERT_FALSE(shown.is_null()) << how;
+    EXPECT_TRUE(commands.insert(shown["command"]).second) << how << ": " << shown["command"];
+  };
+  view.desk.drag(1, 500, 240, 560, 300);
+  expectAnother("orbit");
+  view.desk.drag(3, 500, 240, 540, 220);
+  expectAnother("pan");
+  view.desk.move(500, 240);
+  view.desk.wheel(3);
+  expectAnother("zoom");
+  for (const char* key : {"Left", "Up", "minus", "f", "1", "3", "7"}) {
+    view.desk.key(key);
+    expectAnother(key);
+  }
+  view.desk.key("Right", {"Shift_L"});
+  const Json last = view.settled();
+  EXPECT_TRUE(commands.insert(last["command"]).second);
+  expectSameAsRendered(view, last["command"]);
+  view.desk.key("r");
+  EXPECT_FALSE(commands.insert(view.settled()["command"]).second) << "reset";
+  view.expectClosesWell();
+}
+
+TEST_P(ViewTest, RotatesUntilItIsToldToStop) {
+  View view(folder_, with({"--scene", "interlocked"}));
+  const Json first = view.settled();
+  view.desk.key("space");
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_FALSE(
+        view.next([&](const Json& event) { return event["event"] == "shown" && event["command"] != first["command"]; })
+            .is_null());
+  }
+  view.desk.key("space");
+  const Json last = view.settled();
+  ASSERT_FALSE(last.is_null());
+  expectSameAsRendered(view, last["command"]);
+  view.expectClosesWell();
+}
+
+TEST_P(ViewTest, TakesNoProcessorTimeAtRest) {
+  View view(folder_, with({"--scene", "interlocked"}));
+  view.settled();
+  std::this_thread::sleep_for(500ms);
+  const double before = view.processorTime();
+  std::this_thread::sleep_for(2s);
+  EXPECT_LE(view.processorTime() - before, 0.021); // two ticks
+  view.expectClosesWell();
+}
+
+TEST_P(ViewTest, ResizesMinimisesAndComesBack) {
+  View view(folder_, with({"--scene", "interlocked"}));
+  view.settled();
+  for (const auto& [width, height] : {std::pair{800U, 300U}, {333U, 517U}, {1U, 1U}, {400U, 400U}}) {
+    view.desk.resize(width, height);
+    const Json shown = view.settled();
+    ASSERT_FALSE(shown.is_null());
+    EXPECT_EQ(shown["width"], width);
+    EXPECT_EQ(shown["height"], height);
+  }
+  view.desk.minimise(true);
+  std::this_thread::sleep_for(300ms);
+  view.desk.minimise(false);
+  std::this_thread::sleep_for(300ms);
+  view.desk.key("3");
+  const Json shown = view.settled();
+  ASSERT_FALSE(shown.is_null());
+  expectSameAsRendered(view, shown["command"]);
+  view.expectClosesWell();
+}
+
+TEST_P(ViewTest, OpensWhatIsDropped) {
+  View view(folder_, with({"--scene", "interlocked"}));
+  const Json first = view.settled();
+  std::ofstream(folder_.file("bad.glb")) << "no model";
+  view.desk.drop({folder_.file("bad.glb")});
+  const std::string reason = view.happened("error")["text"];
+  EXPECT_NE(reason.find("bad.glb"), std::string::npos) << reason;
+  EXPECT_EQ(reason.find('\n'), std::string::npos);
+  std::ofstream(folder_.file("one two.stl")) << "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                                                "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+  view.desk.drop({folder_.file("one%20two.stl")});
+  EXPECT_EQ(view.happened("opened")["text"], "one two.stl");
+  view.desk.key("Left");
+  const Json shown = view.settled();
+  ASSERT_FALSE(shown.is_null());
+  expectSameAsRendered(view, shown["command"]);
+  view.expectClosesWell();
+}
+
+TEST_P(ViewTest, SavesAndCopiesWhatItShows) {
+  View view(folder_, with({"--scene", "interlocked", "--opacity", "0.4", "--background", "#123456"}));
+  view.settled();
+  view.desk.key("Up");
+  view.settled();
+  view.desk.key("p");
+  const std::string saved = view.happened("saved")["text"];
+  view.desk.key("c");
+  const std::string command = view.happened("copied")["text"];
+  EXPECT_EQ(saved, "interlocked_1.png");
+  EXPECT_EQ(readText(folder_.file("stdout")), command + "\n");
+  drawn(folder_, command);
+  EXPECT_EQ(readText(folder_.file(saved)), readText(folder_.file("picture.png")));
+  view.expectClosesWell();
+}
+
+// Keys and mouse at random.
+TEST_P(ViewTest, TakesWhateverInputThereIs) {
+  View view(folder_, with({"--scene", "interlocked"}));
+  view.settled();
+  std::mt19937 random(7);
+  const auto below = [&](int count) { return static_cast<int>(random() % static_cast<unsigned>(count)); };
+  const std::vector<std::string> keys = {
+      "1",     "3",  "7",    "f",     "r",     "space",  "Tab", "s", "bracketleft", "bracketright", "Left",
+      "Right", "Up", "Down", "equal", "minus", "Escape", "x",   "m"};
+  const auto seconds = std::chrono::seconds(
+      std::getenv("VITRAIL_TEST_SECONDS") != nullptr ? std::atoi(std::getenv("VITRAIL_TEST_SECONDS")) : 8);
+  for (const auto end = Clock::now() + seconds; Clock::now() < end;) {
+    switch (below(5)) {
+      case 0:
+        view.desk.drag(1 + static_cast<unsigned>(below(3)), below(640), below(480), below(640), below(480));
+        break;
+      case 1:
+        view.desk.wheel(below(7) - 3);
+        break;
+      case 2:
+        if (below(6) == 0)
+          view.desk.resize(1 + static_cast<unsigned>(below(700)), 1 + static_cast<unsigned>(below(600)));
+        break;
+      default:
+        view.desk.key(keys[static_cast<std::size_t>(below(static_cast<int>(keys.size())))]);
+    }
+  }
+  view.expectClosesWell();
+}
+
+TEST(ViewMethodsTest, DrawsByEveryMethod) {
+  const TemporaryFolder folder;
+  View view(folder, {"--scene", "planes", "--count", "3", "--device", "llvmpipe", "--validate"});
+  const std::string first = view.settled()["method"];
+  std::set<std::string> methods{first};
+  for (int i = 0; i < 40; ++i) {
+    view.desk.key("m");
+    const Json event = view.next([](const Json& what) { return what["event"] == "shown" || what["event"] == "error"; });
+    ASSERT_FALSE(event.is_null());
+    if (event["event"] == "error") continue; // one that the device does not have
+    if (event["method"] == first) break;
+    methods.insert(event["method"]);
+  }
+  EXPECT_GE(methods.size(), 15U);
+  view.expectClosesWell();
+}
+
+TEST(ViewMethodsTest, SortsOrDoesNot) {
+  const TemporaryFolder folder;
+  View view(folder, {"--scene", "planes", "--count", "5", "--device", "llvmpipe", "--validate", "--layers", "4"});
+  view.settled();
+  const auto method = [&](const char* key) {
+    view.desk.key(key);
+    return view.settled();
+  };
+  EXPECT_EQ(method("s")["method"], "unsorted");
+  EXPECT_EQ(method("s")["method"], "linked-list");
+  const std::string command = method("bracketleft")["command"];
+  EXPECT_NE(command.find("--layers 3"), std::string::npos) << command;
+  view.expectClosesWell();
+}
+
+TEST(ViewMethodsTest, ClosesWhileItLoads) {
+  const TemporaryFolder folder;
+  View view(folder, {"--scene", "spheres", "--count", "3000", "--device", "cpu"});
+  const Clock::time_point start = Clock::now();
+  EXPECT_EQ(view.close(), 0);
+  EXPECT_LT(Clock::now() - start, 5s);
+}
+
+TEST(ViewRefusalTest, SaysWhyThereIsNoWindow) {
+  const auto refuse = [](const Words& words, const ProcessOptions& options, int code, const std::string& reason) {
+    const ProcessResult result = vitrail(words, options);
+    EXPECT_EQ(result.exitCode, code);
+    EXPECT_NE(result.error.find(reason), std::string::npos) << result.error;
+    EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+  };
+  refuse({"view", "--scene", "interlocked"}, {{}, {"DISPLAY=:999", "WAYLAND_DISPLAY="}, {}}, 1,
+         "vitrail render writes pictures");
+  refuse({"view", "--scene", "interlocked"}, {{}, {"VK_DRIVER_FILES=/none", "VK_ICD_FILENAMES=/none"}, {}}, 1,
+         "mesa-vulkan-drivers");
+  refuse({"view", "--scene", "none"}, {}, 2, "none");
+  refuse({"view", "missing.glb"}, {}, 1, "missing.glb");
+  refuse({"view"}, {}, 2, "vitrail view --help");
+  refuse({"view", "--scene", "interlocked", "-o", "a.png"}, {}, 2, "-o");
+}
+
+} // namespace
+} // namespace vitrail::tests

@@ -1,0 +1,82 @@
+// Draws the pictures that a window shows, on a thread of its own, so that the window is never waited for.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "../commands/render_options.h"
+#include "../render/device.h"
+
+namespace vitrail::tool {
+
+// A picture that is wanted: what `vitrail render` would draw, or one with a pixel for each square of `coarse` pixels.
+struct Wanted {
+  RenderArguments arguments;
+  std::uint32_t coarse = 1;
+};
+
+struct Drawn {
+  Wanted wanted;
+  Picture picture;
+  FrameReport report;
+  double milliseconds = 0.0; // for the picture, without what had to be made once
+  std::vector<std::string> warnings;
+};
+
+class Drawer {
+ public:
+  // The device outlives it. `onNews` is called from the thread where take() or takeError() has something new.
+  Drawer(const Device& device, void (*onNews)());
+  // Waits for the picture at hand.
+  ~Drawer();
+  Drawer(const Drawer&) = delete;
+  Drawer& operator=(const Drawer&) = delete;
+
+  // Has it drawn. What was asked for before and not begun is dropped.
+  void ask(Wanted wanted);
+
+  // The newest picture, once.
+  std::optional<Drawn> take();
+  // Why what was asked for last could not be drawn; null where it could be; once.
+  std::exception_ptr takeError();
+  // What the last picture shows; null before it. It does not change.
+  [[nodiscard]] std::shared_ptr<const Scene> scene() const;
+  // What it is at, in words; empty: nothing.
+  [[nodiscard]] std::string doing() const;
+
+ private:
+  void run();
+  void draw(const Wanted& wanted);
+  void load(const RenderArguments& arguments);
+  void prepare(const RenderArguments& arguments);
+  void say(const std::string& doing);
+
+  const Device& device_;
+  void (*onNews_)();
+
+  // Shared.
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<Wanted> wanted_;
+  std::optional<Drawn> drawn_;
+  std::exception_ptr error_;
+  std::shared_ptr<const Scene> shownScene_;
+  std::string doing_;
+  bool ends_ = false;
+
+  // The thread's own.
+  std::shared_ptr<const Scene> scene_;
+  RenderArguments sceneArguments_; // of scene_
+  std::unique_ptr<Renderer> renderer_;
+  RenderArguments rendererArguments_; // of renderer_
+  std::thread thread_;
+};
+
+} // namespace vitrail::tool

@@ -1,0 +1,51 @@
+#include "event_log.h"
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace vitrail::tool {
+
+namespace {
+
+void write(std::FILE* file, const nlohmann::json& line) {
+  const std::string text = line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  std::fwrite(text.data(), 1, text.size(), file);
+  std::fflush(file);
+}
+
+} // namespace
+
+EventLog::EventLog(const std::string& file) {
+  if (file.empty()) return;
+  file_.reset(std::fopen(file.c_str(), "w"));
+  if (!file_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
+}
+
+void EventLog::shown(const Drawn& drawn, const std::string& command) {
+  if (!file_) return;
+  const FrameReport& report = drawn.report;
+  write(file_.get(), {{"event", "shown"},
+                      {"method", report.method},
+                      {"device", report.device},
+                      {"width", report.width},
+                      {"height", report.height},
+                      {"samples", report.samples},
+                      {"coarse", drawn.wanted.coarse},
+                      {"complete", report.complete},
+                      {"exact", isExact(report)},
+                      {"fragments", report.fragmentsRequested},
+                      {"layersMax", report.layersMax},
+                      {"milliseconds", drawn.milliseconds},
+                      {"warnings", drawn.warnings},
+                      {"command", command}});
+}
+
+void EventLog::happened(const std::string& event, const std::string& text) {
+  if (file_) write(file_.get(), {{"event", event}, {"text", text}});
+}
+
+} // namespace vitrail::tool

@@ -1,0 +1,217 @@
+#include "panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "../methods/methods.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+constexpr float kWidth = 300.0F; // at the size of an ordinary screen
+
+template <typename Value>
+bool choose(const char* label, Value& value, std::initializer_list<std::pair<const char*, Value>> choices) {
+  bool changed = false;
+  const char* now = "";
+  for (const auto& [name, choice] : choices) {
+    if (choice == value) now = name;
+  }
+  if (!ImGui::BeginCombo(label, now)) return false;
+  for (const auto& [name, choice] : choices) {
+    if (ImGui::Selectable(name, choice == value)) {
+      changed = choice != value;
+      value = choice;
+    }
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+void showMethods(const PanelState& state) {
+  RenderArguments& arguments = state.arguments;
+  if (ImGui::BeginCombo("method", arguments.method.name.c_str(), ImGuiComboFlags_HeightLarge)) {
+    for (const std::string& name : methodsOf(state.device)) {
+      if (ImGui::Selectable(name.c_str(), name == arguments.method.name)) chooseMethod(arguments, name);
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(traitsOf(name).help).c_str());
+    }
+    ImGui::EndCombo();
+  }
+  if (Sorting::isChoice(state.device)) {
+    bool sorted = Sorting::isOn(arguments);
+    if (ImGui::Checkbox("sorting", &sorted)) state.sorting.set(arguments, sorted);
+  }
+  MethodOptions& method = arguments.method;
+  const MethodTraits& traits = traitsOf(method.name);
+  if (traits.takes(kTakesLayers)) {
+    auto layers = static_cast<int>(method.maxLayers);
+    if (ImGui::SliderInt("sorted layers", &layers, 0, 64, layers == 0 ? "all" : "%d")) {
+      method.maxLayers = static_cast<std::uint32_t>(std::max(layers, 0));
+    }
+  }
+  if (traits.takes(kTakesSamples)) {
+    choose<std::uint32_t>("samples", method.samples, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}});
+  }
+  if (traits.takes(kTakesNodes)) {
+    choose<VitrailNodeFormat>(
+        "nodes", method.nodes,
+        {{"hdr", VITRAIL_NODE_HDR}, {"standard", VITRAIL_NODE_STANDARD}, {"compact", VITRAIL_NODE_COMPACT}});
+  }
+  if (traits.takes(kTakesResolve)) {
+    choose<VitrailResolve>("resolve", method.resolve,
+                           {{"the device's", VITRAIL_RESOLVE_DEFAULT},
+                            {"compute", VITRAIL_RESOLVE_COMPUTE},
+                            {"fragment", VITRAIL_RESOLVE_FRAGMENT}});
+  }
+  if (traits.takes(kTakesMemoryBudget)) {
+    auto mebibytes = static_cast<int>(arguments.memoryBudget.value_or(0));
+    if (ImGui::SliderInt("memory", &mebibytes, 0, 4096, mebibytes == 0 ? "all" : "%d MiB",
+                         ImGuiSliderFlags_Logarithmic)) {
+      arguments.memoryBudget.reset();
+      if (mebibytes > 0) arguments.memoryBudget = static_cast<std::uint32_t>(mebibytes);
+    }
+  }
+}
+
+void showBackground(RenderArguments& arguments, const Scene* scene) {
+  Background background =
+      arguments.background.value_or(scene != nullptr ? scene->background.value_or(Background{}) : Background{});
+  bool changed = choose<Background::Kind>("background", background.kind,
+                                          {{"colour", Background::Kind::Color},
+                                           {"sky", Background::Kind::Sky},
+                                           {"transparent", Background::Kind::Transparent}});
+  if (background.kind == Background::Kind::Color) {
+    // Codes, so that the command line says the same colour.
+    int gray =
+        static_cast<int>(std::lround(255.0F * (background.srgb.r + background.srgb.g + background.srgb.b) / 3.0F));
+    if (ImGui::SliderInt("grey", &gray, 0, 255)) {
+      background.srgb = glm::vec3(static_cast<float>(std::clamp(gray, 0, 255)) / 255.0F);
+      changed = true;
+    }
+  }
+  if (changed) arguments.background = background;
+}
+
+void showLook(const PanelState& state, const Scene* scene, PanelActions& actions) {
+  RenderArguments& arguments = state.arguments;
+  float opacity = arguments.opacity.value_or(1.0F);
+  bool isXray = arguments.opacity.has_value();
+  if (ImGui::Checkbox("X-ray", &isXray)) {
+    arguments.opacity.reset();
+    if (isXray) arguments.opacity = opacity < 1.0F ? opacity : 0.25F;
+  }
+  if (isXray) {
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-ImGui::CalcTextSize("opacity").x - 10.0F);
+    if (ImGui::SliderFloat("opacity", &opacity, 0.004F, 1.0F, "%.3f")) {
+      arguments.opacity = std::clamp(opacity, 0.004F, 1.0F);
+    }
+  }
+  showBackground(arguments, scene);
+  ImGui::Checkbox("automatic rotation", &state.rotates);
+  ImGui::Checkbox("vertical synchronisation", &state.vsync);
+  actions.frame = ImGui::Button("Frame (F)");
+  ImGui::SameLine();
+  actions.reset = ImGui::Button("Reset (R)");
+}
+
+void showTimes(const PanelState& state, const Drawn& drawn) {
+  const FrameReport& report = drawn.report;
+  std::vector<float> times(state.milliseconds.begin(), state.milliseconds.end());
+  if (!times.empty()) {
+    const float most = *std::ranges::max_element(times);
+    ImGui::PlotLines("##times", times.data(), static_cast<int>(times.size()), 0,
+                     fmt::format("{:.2f} ms a picture", drawn.milliseconds).c_str(), 0.0F, 1.1F * most,
+                     ImVec2(-1.0F, 50.0F));
+  }
+  double longest = 1.0e-6;
+  for (const auto& [name, milliseconds] : report.passesMs) longest = std::max(longest, milliseconds);
+  for (const auto& [name, milliseconds] : report.passesMs) {
+    ImGui::ProgressBar(static_cast<float>(milliseconds / longest), ImVec2(-1.0F, 0.0F),
+                       fmt::format("{}: {:.3f} ms", name, milliseconds).c_str());
+  }
+}
+
+void showReport(const PanelState& state) {
+  if (state.drawn == nullptr) return;
+  const Drawn& drawn = *state.drawn;
+  const FrameReport& report = drawn.report;
+  if (report.complete && report.errorBound <= 1.0) {
+    ImGui::TextColored(ImVec4(0.4F, 0.9F, 0.4F, 1.0F), "exact: within 1/255");
+  } else if (report.complete) {
+    ImGui::TextColored(ImVec4(0.9F, 0.9F, 0.4F, 1.0F), "complete: within %.3g/255", report.errorBound);
+  } else {
+    ImGui::TextColored(ImVec4(1.0F, 0.5F, 0.4F, 1.0F), "not exact");
+  }
+  if (drawn.wanted.coarse > 1) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("(coarse while moving)");
+  }
+  ImGui::Text("%ux%u on %s", report.width, report.height, report.device.c_str());
+  if (report.counted) {
+    ImGui::Text("%llu fragments, at most %u in a pixel", static_cast<unsigned long long>(report.fragmentsRequested),
+                report.layersMax);
+    if (report.tiles > 1) ImGui::Text("drawn in %u tiles", report.tiles);
+    if (report.totalBytes > 0)
+      ImGui::Text("%.1f MiB for fragments", static_cast<double>(report.totalBytes) / 1048576.0);
+  }
+  showTimes(state, drawn);
+  for (const std::string& warning : drawn.warnings) {
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextColored(ImVec4(1.0F, 0.8F, 0.4F, 1.0F), "%s", warning.c_str());
+    ImGui::PopTextWrapPos();
+  }
+}
+
+} // namespace
+
+PanelActions drawPanel(const PanelState& state) {
+  PanelActions actions;
+  const float scale = ImGui::GetFontSize() / 13.0F;
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(10.0F, 10.0F), ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSizeConstraints(ImVec2(kWidth * scale, 60.0F),
+                                      ImVec2(kWidth * scale * 2.0F, std::max(display.y - 20.0F, 80.0F)));
+  if (!ImGui::Begin("Vitrail", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
+    ImGui::End();
+    return actions;
+  }
+  ImGui::PushItemWidth(kWidth * scale * 0.55F);
+  showMethods(state);
+  ImGui::Separator();
+  showLook(state, state.scene, actions);
+  ImGui::Separator();
+  showReport(state);
+  if (!state.doing.empty()) ImGui::TextDisabled("%s ...", state.doing.c_str());
+  ImGui::Separator();
+  actions.save = ImGui::Button("Save picture (P)");
+  ImGui::SameLine();
+  actions.copy = ImGui::Button("Copy command (C)");
+  ImGui::TextDisabled("drag: orbit  right: pan  wheel: zoom\n1 3 7: axes  space: rotate  tab: this panel");
+  ImGui::PopItemWidth();
+  ImGui::End();
+  return actions;
+}
+
+void drawNotice(std::string& notice, bool isError) {
+  if (notice.empty()) return;
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(0.5F * display.x, display.y - 12.0F), ImGuiCond_Always, ImVec2(0.5F, 1.0F));
+  ImGui::SetNextWindowSizeConstraints(ImVec2(0.0F, 0.0F), ImVec2(0.9F * display.x, 0.5F * display.y));
+  if (ImGui::Begin("##notice", nullptr,
+                   ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                       ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing)) {
+    ImGui::PushTextWrapPos(0.85F * display.x);
+    ImGui::TextColored(isError ? ImVec4(1.0F, 0.5F, 0.4F, 1.0F) : ImVec4(0.8F, 0.9F, 1.0F, 1.0F), "%s", notice.c_str());
+    ImGui::PopTextWrapPos();
+    if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(0)) notice.clear();
+  }
+  ImGui::End();
+}
+
+} // namespace vitrail::tool

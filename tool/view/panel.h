@@ -1,0 +1,40 @@
+// The widgets beside the picture.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+
+#include "drawer.h"
+#include "settings.h"
+
+namespace vitrail::tool {
+
+// What the panel shows and what is changed in it.
+struct PanelState {
+  RenderArguments& arguments;
+  Sorting& sorting;
+  bool& rotates;
+  bool& vsync;
+  const Device& device;
+  const std::string& presentedBy;        // a device
+  const Scene* scene;                    // null: none was drawn
+  const Drawn* drawn;                    // the picture on the screen; null: none
+  std::string doing;                     // what the drawer is at
+  const std::deque<float>& milliseconds; // of the last pictures
+};
+
+struct PanelActions {
+  bool frame = false;
+  bool reset = false;
+  bool save = false;
+  bool copy = false;
+};
+
+// Draws the panel; changes what the state refers to.
+PanelActions drawPanel(const PanelState& state);
+
+// A line at the bottom of the window, until it is clicked away.
+void drawNotice(std::string& notice, bool isError);
+
+} // namespace vitrail::tool

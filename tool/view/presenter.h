@@ -1,0 +1,90 @@
+// Shows pictures and Dear ImGui's widgets in a window, through Vulkan.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../gpu/device.h"
+#include "../gpu/resources.h"
+#include "../gpu/unique.h"
+#include "../image/picture.h"
+#include "swapchain.h"
+#include "window.h"
+
+struct ImDrawData;
+
+namespace vitrail::tool {
+
+class Presenter {
+ public:
+  // Opens a device of its own that shows pictures in the window: a GPU, else a CPU driver. The window outlives it.
+  // `validate`: as GpuOptions has it. Throws WindowError and GpuError.
+  Presenter(Window& window, bool validate);
+  ~Presenter();
+  Presenter(const Presenter&) = delete;
+  Presenter& operator=(const Presenter&) = delete;
+
+  // What ImGui::Image() and ImDrawList::AddImage() take for a picture of setPicture(): as it is, pixel by pixel, or
+  // smoothed.
+  [[nodiscard]] void* pictureTexture(bool smooth) const;
+  // The picture of the frames to come.
+  void setPicture(const Picture& picture);
+
+  // Shows what ImGui has drawn. False: the window has no size, and nothing was shown. Throws GpuError.
+  bool show(ImDrawData& data, bool vsync);
+
+  [[nodiscard]] std::string device() const;
+  // The validation layer's errors; waits for the device, and shows nothing any more.
+  std::vector<std::string> finish();
+
+ private:
+  // Whatever belongs to one of the frames in flight.
+  struct Slot {
+    Unique<VkCommandPool> pool;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    Unique<VkFence> done;
+    Unique<VkSemaphore> acquired;
+    GpuBuffer vertices;
+    GpuBuffer indices;
+    GpuBuffer pixels; // of a picture that this frame copies
+  };
+  struct Texture {
+    GpuImage image;
+    bool isNew = true;                     // nothing was copied to it
+    std::array<VkDescriptorSet, 2> sets{}; // as it is, smoothed
+  };
+  struct Pending {
+    PixelSize size;
+    std::vector<std::uint8_t> rgba;
+  };
+
+  void makeFont();
+  Texture makeTexture(PixelSize size, const char* name);
+  void fill(Slot& slot, Texture& texture, const Pending& pixels) const;
+  void reserve(GpuBuffer& buffer, std::uint64_t bytes, VkBufferUsageFlags usage, const char* name) const;
+  void draw(Slot& slot, const Swapchain::Image& image, ImDrawData& data);
+  void copyGeometry(Slot& slot, const ImDrawData& data) const;
+  void submit(Slot& slot, const Swapchain::Image& image) const;
+
+  Window& window_;
+  std::unique_ptr<Gpu> gpu_;
+  std::unique_ptr<Swapchain> swapchain_;
+  Unique<VkDescriptorSetLayout> setLayout_;
+  Unique<VkDescriptorPool> sets_;
+  std::array<Unique<VkSampler>, 2> samplers_; // as it is, smoothed
+  Unique<VkPipelineLayout> layout_;
+  Unique<VkPipeline> pipeline_;
+  static constexpr std::size_t kFrames = 2; // in flight
+  std::array<Slot, kFrames> slots_;
+  std::size_t next_ = 0;
+  Texture font_;
+  std::optional<Pending> fontPixels_;
+  Texture picture_;
+  std::optional<Pending> picturePixels_;
+};
+
+} // namespace vitrail::tool

@@ -1,0 +1,62 @@
+#include "settings.h"
+
+#include "../methods/methods.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+constexpr const char* kUnsorted = "unsorted";
+
+} // namespace
+
+std::vector<std::string> methodsOf(const Device& device) {
+  std::vector<std::string> names;
+  for (const std::string_view name : methodNames()) {
+    if (traitsOf(name).onProcessor || device.gpu() != nullptr) names.emplace_back(name);
+  }
+  return names;
+}
+
+void chooseMethod(RenderArguments& arguments, const std::string& name) {
+  const MethodOptions before = arguments.method;
+  const MethodTraits& traits = traitsOf(name);
+  MethodOptions& method = arguments.method;
+  method = {};
+  method.name = name;
+  if (traits.takes(kTakesSamples)) method.samples = before.samples;
+  if (traits.takes(kTakesNodes)) method.nodes = before.nodes;
+  if (traits.takes(kTakesResolve)) method.resolve = before.resolve;
+  if (traits.takes(kTakesListBuild)) method.listBuild = before.listBuild;
+  if (traits.takes(kTakesMsaaResolve)) method.msaaResolve = before.msaaResolve;
+  if (traits.takes(kTakesLayers)) method.maxLayers = before.maxLayers;
+  if (traits.takes(kTakesPasses)) method.passes = before.passes;
+  if (!traits.takes(kTakesMemoryBudget)) arguments.memoryBudget.reset();
+  try {
+    checkMethodOptions(method);
+  } catch (const std::invalid_argument&) { // they exclude each other here
+    method = {};
+    method.name = name;
+  }
+}
+
+bool Sorting::isOn(const RenderArguments& arguments) { return arguments.method.name != kUnsorted; }
+
+bool Sorting::isChoice(const Device& device) { return device.gpu() != nullptr; }
+
+void Sorting::set(RenderArguments& arguments, bool on) {
+  if (on == isOn(arguments)) return;
+  if (!on) {
+    sorted_.method = arguments.method;
+    sorted_.memoryBudget = arguments.memoryBudget;
+    hasSorted_ = true;
+    chooseMethod(arguments, kUnsorted);
+  } else if (hasSorted_) {
+    arguments.method = sorted_.method;
+    arguments.memoryBudget = sorted_.memoryBudget;
+  } else {
+    chooseMethod(arguments, std::string(kListMethod));
+  }
+}
+
+} // namespace vitrail::tool

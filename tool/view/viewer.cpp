@@ -1,0 +1,474 @@
+#include "viewer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <deque>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui_impl_glfw.h>
+
+#include "../commands/device_options.h"
+#include "../commands/output_file.h"
+#include "../commands/output_format.h"
+#include "../methods/methods.h"
+#include "../scene/message.h"
+#include "command_line.h"
+#include "drawer.h"
+#include "event_log.h"
+#include "navigation.h"
+#include "panel.h"
+#include "presenter.h"
+
+namespace vitrail::tool {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Dear ImGui, which has one context.
+class Widgets {
+ public:
+  explicit Widgets(const Window& window) {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr; // nothing is written beside the model
+    ImGui::StyleColorsDark();
+    ImGui::GetStyle().ScaleAllSizes(window.scale());
+    ImFontConfig font;
+    font.SizePixels = std::round(13.0F * window.scale());
+    io.Fonts->AddFontDefault(&font);
+    ImGui_ImplGlfw_InitForVulkan(window.handle(), true);
+  }
+  ~Widgets() {
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+  Widgets(const Widgets&) = delete;
+  Widgets& operator=(const Widgets&) = delete;
+};
+
+// As `render` opens it, but for volumes, which are not known before the scene is.
+Device openDevice(const RenderArguments& arguments) {
+  const bool openGl = arguments.method.api == Api::OpenGl;
+  return Device({arguments.device, arguments.validate, arguments.wish, !openGl, openGl});
+}
+
+// One line.
+std::string wordsOf(const std::exception_ptr& caught) {
+  try {
+    std::rethrow_exception(caught);
+  } catch (const std::bad_alloc&) {
+    return "out of memory";
+  } catch (const std::exception& error) {
+    return printable(error.what());
+  }
+}
+
+std::string titleOf(const RenderArguments& arguments) {
+  return fmt::format("{} - Vitrail", printable(nameOfScene(arguments)));
+}
+
+class Viewer {
+ public:
+  explicit Viewer(const ViewArguments& arguments)
+      : log_(arguments.events),
+        initial_(arguments.picture),
+        now_(arguments.picture),
+        device_(openDevice(arguments.picture)),
+        window_(titleOf(arguments.picture), {arguments.picture.width, arguments.picture.height}),
+        widgets_(window_),
+        presenter_(window_, arguments.picture.validate),
+        presentedBy_(presenter_.device()),
+        drawer_(std::make_unique<Drawer>(device_, Window::wake)) {
+    if (now_.wish == Wish::Fastest) now_.method = device_.exactMethod();
+    if (device_.gpu() == nullptr && device_.gl() == nullptr) now_.device = std::string(kProcessor);
+    initial_ = now_;
+    showing_ = now_;
+  }
+
+  void run() {
+    while (!window_.isClosing()) {
+      window_.wait(patience());
+      step();
+    }
+    finish();
+  }
+
+ private:
+  // How long nothing will change by itself, in seconds; negative: for ever.
+  double patience() const {
+    if (restless_ > 0) return 0.0;
+    if (!isMoving() && wantsFull()) return std::max(kSettle - since(lastMove_), 0.0);
+    return isSettling() ? kSettle : -1.0;
+  }
+  static double since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
+  bool isMoving() const { return rotates_ || drags_; }
+  bool isSettling() const { return since(lastMove_) < kSettle; }
+  // Whether the picture on the screen is a coarse one of what is seen.
+  bool wantsFull() const { return asked_ && asked_->coarse > 1; }
+
+  void step() {
+    const PixelSize size = window_.size();
+    if (restless_ > 0) --restless_;
+    if (size.width == 0 || size.height == 0) return; // minimised
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    openDropped();
+    takeNews();
+    steer(size);
+    pressKeys();
+    drawPicture(size);
+    drawPanels();
+    askFor(size);
+    ImGui::Render();
+    ImGuiIO& io = ImGui::GetIO();
+    const bool busy = ImGui::IsAnyMouseDown() || io.WantTextInput;
+    if (busy || io.MouseWheel != 0.0F || changed_) restless_ = kFramesOfAChange;
+    changed_ = false;
+    if (!presenter_.show(*ImGui::GetDrawData(), vsync_)) restless_ = std::max(restless_, 1);
+  }
+
+  // What was asked for may be of a file that is not there.
+  void openDropped() {
+    const std::vector<std::string> files = window_.takeDropped();
+    if (files.empty()) return;
+    now_.models = files;
+    now_.scene.clear();
+    now_.count.reset();
+    now_.seed.reset();
+    now_.load = {};
+    now_.clipPlanes.clear();
+    now_.camera.reset();
+    now_.orbit.reset();
+    now_.eye.reset();
+    now_.lookAt.reset();
+    now_.fov.reset();
+    isNavigating_ = false;
+    changed_ = true;
+    say({}, false);
+  }
+
+  void takeNews() {
+    if (const std::exception_ptr caught = drawer_->takeError()) {
+      isAsked_ = false;
+      if (!drawn_) std::rethrow_exception(caught); // there is nothing to go back to
+      const std::string error = wordsOf(caught);
+      now_ = showing_;
+      asked_ = Wanted{now_, 1};
+      isNavigating_ = false;
+      rotates_ = false;
+      log_.happened("error", error);
+      say(error, true);
+    }
+    std::optional<Drawn> drawn = drawer_->take();
+    if (!drawn) return;
+    isAsked_ = false;
+    changed_ = true;
+    presenter_.setPicture(drawn->picture);
+    const bool isOther = !drawn_ || drawer_->scene() != scene_;
+    scene_ = drawer_->scene();
+    showing_ = drawn->wanted.arguments;
+    if (isOther) {
+      window_.setTitle(titleOf(showing_));
+      initial_ = showing_;
+      log_.happened("opened", nameOfScene(showing_));
+      milliseconds_.clear();
+    }
+    if (drawn->wanted.coarse == 1) fullMilliseconds_ = drawn->milliseconds;
+    coarseMilliseconds_ = drawn->milliseconds;
+    milliseconds_.push_back(static_cast<float>(drawn->milliseconds));
+    constexpr std::size_t kKept = 120;
+    if (milliseconds_.size() > kKept) milliseconds_.pop_front();
+    log_.shown(*drawn, renderCommand(showing_, "picture.png"));
+    drawn_ = std::move(drawn);
+  }
+
+  // ---- The camera
+
+  void beginNavigation() {
+    if (isNavigating_ || !scene_) return;
+    navigation_.begin(*scene_, pictureOf(now_, *scene_).view);
+    isNavigating_ = true;
+  }
+
+  template <typename Move>
+  void move(Move&& moved) {
+    if (!scene_) return;
+    beginNavigation();
+    moved(navigation_);
+    navigation_.put(now_, *scene_);
+    lastMove_ = Clock::now();
+    changed_ = true;
+  }
+
+  // Sees it all from there, in degrees.
+  void frame(double azimuth, double elevation) {
+    now_.camera.reset();
+    now_.eye.reset();
+    now_.lookAt.reset();
+    now_.fov.reset();
+    now_.orbit = Orbit{static_cast<float>(azimuth), static_cast<float>(elevation), 1.0F};
+    isNavigating_ = false;
+    changed_ = true;
+  }
+
+  void frameFromHere() {
+    if (!scene_) return;
+    beginNavigation();
+    frame(navigation_.azimuth(), navigation_.elevation());
+  }
+
+  void reset() {
+    now_ = initial_;
+    rotates_ = false;
+    isNavigating_ = false;
+    changed_ = true;
+  }
+
+  void steer(PixelSize size) {
+    const ImGuiIO& io = ImGui::GetIO();
+    drags_ = false;
+    constexpr double kDegreesOfAHeight = 180.0;
+    const double right = io.MouseDelta.x / static_cast<double>(size.height);
+    const double up = -io.MouseDelta.y / static_cast<double>(size.height);
+    if (!io.WantCaptureMouse) {
+      const bool pans = ImGui::IsMouseDown(1) || ImGui::IsMouseDown(2) || (ImGui::IsMouseDown(0) && io.KeyShift);
+      drags_ = pans || ImGui::IsMouseDown(0);
+      if (drags_ && (right != 0.0 || up != 0.0)) {
+        move([&](Navigation& navigation) {
+          pans ? navigation.pan(right, up) : navigation.orbit(-right * kDegreesOfAHeight, -up * kDegreesOfAHeight);
+        });
+      }
+      if (io.MouseWheel != 0.0F) {
+        move([&](Navigation& navigation) { navigation.zoom(std::pow(1.1, io.MouseWheel)); });
+      }
+    }
+    if (rotates_ && scene_ && !isAsked_) {
+      const double seconds = std::min(since(lastTurn_), 0.5);
+      move([&](Navigation& navigation) { navigation.orbit(kDegreesOfASecond * seconds, 0.0); });
+      lastTurn_ = Clock::now();
+    }
+  }
+
+  void pressKeys() {
+    ImGuiIO& io = ImGui::GetIO();
+    if (io.WantTextInput) return;
+    const auto pressed = [](int key, bool repeat = false) { return ImGui::IsKeyPressed(key, repeat); };
+    const double back = io.KeyCtrl ? 180.0 : 0.0;
+    if (pressed(GLFW_KEY_1) || pressed(GLFW_KEY_KP_1)) frame(back, 0.0);
+    if (pressed(GLFW_KEY_3) || pressed(GLFW_KEY_KP_3)) frame(90.0 + back, 0.0);
+    if (pressed(GLFW_KEY_7) || pressed(GLFW_KEY_KP_7)) frame(0.0, io.KeyCtrl ? -90.0 : 90.0);
+    if (pressed(GLFW_KEY_F)) frameFromHere();
+    if (pressed(GLFW_KEY_R)) reset();
+    if (pressed(GLFW_KEY_SPACE)) toggleRotation();
+    if (pressed(GLFW_KEY_TAB)) hasPanel_ = !hasPanel_;
+    if (pressed(GLFW_KEY_S) && Sorting::isChoice(device_)) sorting_.set(now_, !Sorting::isOn(now_));
+    if (pressed(GLFW_KEY_M)) nextMethod(io.KeyShift ? -1 : 1);
+    if (pressed(GLFW_KEY_P)) save();
+    if (pressed(GLFW_KEY_C)) copy();
+    if (pressed(GLFW_KEY_Q) && io.KeyCtrl) window_.close();
+    if (pressed(GLFW_KEY_LEFT_BRACKET, true)) changeLayers(-1);
+    if (pressed(GLFW_KEY_RIGHT_BRACKET, true)) changeLayers(1);
+    constexpr double kStep = 5.0; // degrees; a twentieth of the picture
+    const auto arrow = [&](double right, double up) {
+      move([&](Navigation& navigation) {
+        io.KeyShift ? navigation.pan(-0.01 * right, -0.01 * up) : navigation.orbit(right, up);
+      });
+    };
+    if (pressed(GLFW_KEY_LEFT, true)) arrow(-kStep, 0.0);
+    if (pressed(GLFW_KEY_RIGHT, true)) arrow(kStep, 0.0);
+    if (pressed(GLFW_KEY_UP, true)) arrow(0.0, kStep);
+    if (pressed(GLFW_KEY_DOWN, true)) arrow(0.0, -kStep);
+    const bool in = pressed(GLFW_KEY_EQUAL, true) || pressed(GLFW_KEY_KP_ADD, true);
+    const bool out = pressed(GLFW_KEY_MINUS, true) || pressed(GLFW_KEY_KP_SUBTRACT, true);
+    if (in || out) move([&](Navigation& navigation) { navigation.zoom(in ? 1.1 : 1.0 / 1.1); });
+  }
+
+  void toggleRotation() {
+    rotates_ = !rotates_;
+    lastTurn_ = Clock::now();
+  }
+
+  void nextMethod(int step) {
+    const std::vector<std::string> names = methodsOf(device_);
+    const auto at = std::ranges::find(names, now_.method.name) - names.begin();
+    const auto count = static_cast<std::ptrdiff_t>(names.size());
+    chooseMethod(now_, names[static_cast<std::size_t>((at + step + count) % count)]);
+  }
+
+  void changeLayers(int step) {
+    if (!traitsTake(kTakesLayers)) return;
+    now_.method.maxLayers =
+        static_cast<std::uint32_t>(std::clamp(static_cast<int>(now_.method.maxLayers) + step, 0, 64));
+  }
+  bool traitsTake(MethodOption option) const { return traitsOf(now_.method.name).takes(option); }
+
+  // ---- Pictures
+
+  // Has it drawn what is to be seen, as coarse as moving smoothly takes.
+  void askFor(PixelSize size) {
+    now_.width = size.width;
+    now_.height = size.height;
+    Wanted wanted{now_, 1};
+    if (isMoving() || isSettling()) wanted.coarse = coarseness();
+    const bool isSame =
+        asked_ && asked_->coarse == wanted.coarse && renderCommand(asked_->arguments, "-") == renderCommand(now_, "-");
+    if (isSame) return;
+    asked_ = wanted;
+    isAsked_ = true;
+    drawer_->ask(std::move(wanted));
+  }
+
+  std::uint32_t coarseness() const {
+    constexpr double kSmooth = 40.0; // milliseconds a picture
+    for (std::uint32_t coarse : {1U, 2U, 3U}) {
+      if (fullMilliseconds_ <= kSmooth * coarse * coarse) return coarse;
+    }
+    return 4;
+  }
+
+  void drawPicture(PixelSize size) {
+    if (!drawn_) return;
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const ImVec2 corner = ImGui::GetIO().DisplaySize;
+    if (drawn_->picture.hasAlpha) drawChecks(list, corner);
+    const bool fits = drawn_->picture.width == size.width && drawn_->picture.height == size.height;
+    list.AddImage(presenter_.pictureTexture(!fits), ImVec2(0.0F, 0.0F), corner);
+  }
+
+  // What shows through transparent pictures.
+  static void drawChecks(ImDrawList& list, const ImVec2& corner) {
+    constexpr float kSide = 16.0F;
+    list.AddRectFilled(ImVec2(0.0F, 0.0F), corner, IM_COL32(160, 160, 160, 255));
+    for (int y = 0; static_cast<float>(y) * kSide < corner.y; ++y) {
+      for (int x = y % 2; static_cast<float>(x) * kSide < corner.x; x += 2) {
+        const ImVec2 from(static_cast<float>(x) * kSide, static_cast<float>(y) * kSide);
+        list.AddRectFilled(from, ImVec2(from.x + kSide, from.y + kSide), IM_COL32(110, 110, 110, 255));
+      }
+    }
+  }
+
+  void drawPanels() {
+    if (hasPanel_) {
+      const bool didRotate = rotates_;
+      const PanelActions actions = drawPanel({now_, sorting_, rotates_, vsync_, device_, presentedBy_, scene_.get(),
+                                              drawn_ ? &*drawn_ : nullptr, drawer_->doing(), milliseconds_});
+      if (rotates_ && !didRotate) lastTurn_ = Clock::now();
+      if (actions.frame) frameFromHere();
+      if (actions.reset) reset();
+      if (actions.save) save();
+      if (actions.copy) copy();
+    }
+    drawNotice(notice_, isError_);
+  }
+
+  void say(std::string notice, bool isError) {
+    notice_ = std::move(notice);
+    isError_ = isError;
+    changed_ = true;
+  }
+
+  // Writes the picture on the screen, without the widgets.
+  void save() {
+    if (!drawn_ || drawn_->wanted.coarse != 1) return;
+    try {
+      const std::string name = freeName();
+      OutputFile file{std::filesystem::path(name)};
+      RenderResult result;
+      result.picture = drawn_->picture;
+      const std::vector<std::byte> bytes = encodePicture(result, OutputFormat{});
+      file.write(bytes);
+      file.commit();
+      log_.happened("saved", name);
+      say(fmt::format("saved {}", std::filesystem::absolute(name).string()), false);
+    } catch (const std::exception& error) {
+      log_.happened("error", error.what());
+      say(error.what(), true);
+    }
+  }
+
+  // NAME_1.png, or the next number that is free.
+  std::string freeName() const {
+    std::string stem = std::filesystem::path(nameOfScene(showing_)).stem().string();
+    if (showing_.models.size() > 1) stem = "picture";
+    for (int i = 1;; ++i) {
+      std::string name = fmt::format("{}_{}.png", stem, i);
+      if (!std::filesystem::exists(name)) return name;
+    }
+  }
+
+  void copy() {
+    if (!drawn_) return;
+    const std::string command = renderCommand(showing_, "picture.png");
+    window_.copy(command);
+    fmt::print("{}\n", command); // for those whose clipboard ends with the window
+    std::fflush(stdout);
+    log_.happened("copied", command);
+    say(fmt::format("copied: {}", command), false);
+  }
+
+  void finish() {
+    const std::vector<std::string> errors = presenter_.finish();
+    const bool isBusy = !drawer_->doing().empty();
+    if (errors.empty() && isBusy && !now_.validate)
+      std::_Exit(0); // nobody waits for a file that is not wanted any more
+    drawer_.reset();
+    if (!errors.empty()) throw std::runtime_error(errors.front());
+    closeValidated(device_);
+  }
+
+  static constexpr double kSettle = 0.15;           // seconds behind a move until the picture is fine again
+  static constexpr int kFramesOfAChange = 3;        // which ImGui takes to come to rest
+  static constexpr double kDegreesOfASecond = 20.0; // of the automatic rotation
+
+  EventLog log_;
+  RenderArguments initial_; // of the scene
+  RenderArguments now_;     // what is wanted
+  RenderArguments showing_; // what the picture is of
+  Device device_;
+  Window window_;
+  Widgets widgets_;
+  Presenter presenter_;
+  std::string presentedBy_;
+  std::unique_ptr<Drawer> drawer_;
+  Sorting sorting_;
+  Navigation navigation_;
+  bool isNavigating_ = false; // navigation_ is where now_ is
+  std::shared_ptr<const Scene> scene_;
+  std::optional<Drawn> drawn_;
+  std::optional<Wanted> asked_;
+  bool isAsked_ = false; // and not drawn yet
+  std::deque<float> milliseconds_;
+  double fullMilliseconds_ = 0.0;
+  double coarseMilliseconds_ = 0.0;
+  bool rotates_ = false;
+  bool drags_ = false;
+  bool vsync_ = true;
+  bool hasPanel_ = true;
+  bool changed_ = true;
+  bool isError_ = false;
+  int restless_ = kFramesOfAChange; // frames to come in any case
+  std::string notice_;
+  Clock::time_point lastMove_;
+  Clock::time_point lastTurn_;
+};
+
+} // namespace
+
+void runViewer(const ViewArguments& arguments) { Viewer(arguments).run(); }
+
+} // namespace vitrail::tool
