@@ -23,6 +23,7 @@ Usage:
   vitrail view MODEL                      look at a model in a window
   vitrail render MODEL -o picture.png     draw glTF, OBJ, PLY and STL models
   vitrail render --scene NAME -o pic.png  draw a built-in scene
+  vitrail pick MODEL --at X,Y             list the surfaces under a pixel, front to back
   vitrail scenes                          list the built-in scenes
   vitrail compare MODEL -o DIR            compare transparency methods: their pictures and their costs
   vitrail compare A.png B.png             compare two pictures
@@ -49,6 +50,7 @@ int runProgram(int argc, char** argv) {
   std::function<void()> run;
   vitrail::tool::addRenderCommand(app, run);
   vitrail::tool::addViewCommand(app, run);
+  vitrail::tool::addPickCommand(app, run);
   vitrail::tool::addCompareCommand(app, run);
   vitrail::tool::addBenchCommand(app, run);
   vitrail::tool::addInfoCommand(app, run);

@@ -87,10 +87,15 @@ class View {
   Json happened(const std::string& what) {
     return next([&](const Json& event) { return event["event"] == what; });
   }
-  // The last fine picture, once there has been none for a while.
+  // The picture that it comes to rest with.
   Json settled() {
-    Json last = shown();
-    for (Json more = shown(1s); !more.is_null(); more = shown(1s)) last = more;
+    Json last;
+    const Json rest = next([&](const Json& event) {
+      if (event["event"] == "shown" && event["coarse"] == 1) last = event;
+      return event["event"] == "rest" && !last.is_null();
+    });
+    EXPECT_FALSE(rest.is_null());
+    EXPECT_TRUE(rest.is_null() || rest["text"] == last["command"]);
     return last;
   }
 
@@ -256,6 +261,40 @@ TEST_P(ViewTest, ResizesMinimisesAndComesBack) {
   view.expectClosesWell();
 }
 
+// What a click lists is what `vitrail pick` lists, which the unit tests compare with the reference.
+TEST_P(ViewTest, AClickListsTheLayersUnderIt) {
+  View view(folder_, with({"--scene", "interlocked"}));
+  view.settled();
+  std::size_t layers = 0;
+  for (const auto& [x, y] : {std::pair{420, 200}, {400, 260}, {450, 240}, {630, 470}}) {
+    view.desk.move(x, y);
+    view.desk.press(1, true);
+    view.desk.press(1, false);
+    const Json picked = view.happened("picked");
+    ASSERT_FALSE(picked.is_null());
+    EXPECT_EQ(picked["x"], x);
+    EXPECT_EQ(picked["y"], y);
+    const ProcessResult result = vitrail({"pick", "--scene", "interlocked", "--size", "640x480", "--at",
+                                          std::to_string(x) + "," + std::to_string(y), "--json"});
+    const Json expected = Json::parse(result.out)["layers"];
+    ASSERT_EQ(picked["layers"].size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      for (const char* what : {"object", "depth", "alpha"}) EXPECT_EQ(picked["layers"][i][what], expected[i][what]);
+    }
+    layers += expected.size();
+  }
+  EXPECT_GE(layers, 5U);
+  view.expectClosesWell();
+}
+
+TEST_P(ViewTest, ShowsAPartOfTheModel) {
+  View view(folder_, with({"--scene", "interlocked", "--hide", "pane 0", "--clip-plane=0,-1,0,-0.3"}));
+  const Json shown = view.settled();
+  ASSERT_FALSE(shown.is_null());
+  expectSameAsRendered(view, shown["command"]);
+  view.expectClosesWell();
+}
+
 TEST_P(ViewTest, OpensWhatIsDropped) {
   View view(folder_, with({"--scene", "interlocked"}));
   const Json first = view.settled();
@@ -268,6 +307,7 @@ TEST_P(ViewTest, OpensWhatIsDropped) {
                                                 "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
   view.desk.drop({folder_.file("one%20two.stl")});
   EXPECT_EQ(view.happened("opened")["text"], "one two.stl");
+  view.settled();
   view.desk.key("Left");
   const Json shown = view.settled();
   ASSERT_FALSE(shown.is_null());
@@ -335,6 +375,17 @@ TEST(ViewMethodsTest, DrawsByEveryMethod) {
     methods.insert(event["method"]);
   }
   EXPECT_GE(methods.size(), 15U);
+  view.expectClosesWell();
+}
+
+TEST(ViewMethodsTest, Peels) {
+  const TemporaryFolder folder;
+  View view(folder, {"--scene", "interlocked", "--peel", "2", "--validate"});
+  const Json shown = view.settled();
+  EXPECT_EQ(shown["method"], "cpu");
+  view.desk.key("Tab");
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(differing(view.desk.look(), drawn(folder, shown["command"])), 0U) << shown["command"];
   view.expectClosesWell();
 }
 

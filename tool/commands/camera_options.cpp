@@ -157,6 +157,11 @@ void checkCameraArguments(const CameraArguments& arguments) {
 
 void placeScene(const CameraArguments& arguments, Scene& scene) {
   turnScene(scene, arguments.up);
+  setClipPlanes(arguments, scene);
+}
+
+void setClipPlanes(const CameraArguments& arguments, Scene& scene) {
+  scene.clipPlanes.clear();
   for (const glm::dvec4& plane : arguments.clipPlanes) {
     const glm::dvec3 direction = turnOf(arguments.up) * glm::dvec3(plane);
     scene.clipPlanes.emplace_back(direction, plane.w - glm::dot(direction, scene.origin));

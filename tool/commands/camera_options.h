@@ -33,6 +33,9 @@ extern const char* const kCameraHelp;
 // Checks what one option alone does not show. Throws UsageError.
 void checkCameraArguments(const CameraArguments& arguments);
 
+// Gives a scene that was turned upright the clip planes, and no others.
+void setClipPlanes(const CameraArguments& arguments, Scene& scene);
+
 // Turns a scene upright and gives it its clip planes.
 void placeScene(const CameraArguments& arguments, Scene& scene);
 

@@ -12,6 +12,7 @@ namespace vitrail::tool {
 // Each adds its subcommand to `app`, and sets `run` to what it does when the user has chosen it.
 void addRenderCommand(CLI::App& app, std::function<void()>& run);
 void addViewCommand(CLI::App& app, std::function<void()>& run);
+void addPickCommand(CLI::App& app, std::function<void()>& run);
 void addCompareCommand(CLI::App& app, std::function<void()>& run);
 void addBenchCommand(CLI::App& app, std::function<void()>& run);
 void addInfoCommand(CLI::App& app, std::function<void()>& run);

@@ -46,6 +46,7 @@ Job prepare(const RenderArguments& arguments, const Progress& progress) {
   if (job.format.kind == FileKind::Mp4 && job.options.background.kind == Background::Kind::Transparent) {
     throw UsageError("a film has no alpha: choose another --background, or write pictures: -o frame_%04d.png");
   }
+  job.options.peel = arguments.peel.value_or(0);
   job.options.onTile = [&progress](std::uint32_t tiles) {
     progress.show(fmt::format("drawing: {} tiles done", tiles));
   };

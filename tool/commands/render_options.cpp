@@ -34,6 +34,8 @@ constexpr const char* kBlendHelp =
   --layers N            blends only the nearest N surfaces of a pixel exactly (default: all; loop,
                         loop-64 and interlock: 8); depth-peeling leaves the others out; the layers
                         of multi-layer (default 4)
+  --peel N              leaves out the N nearest transparent surfaces of each pixel: what they hide is
+                        seen. Drawn on the processor (method cpu)
   --memory-budget MIB   for fragments, at least 1; a picture that needs more is drawn in tiles, the
                         same picture (default: what the device can give))";
 
@@ -79,6 +81,7 @@ void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   addPositive(command, "--layers", method.maxLayers);
   addPositive(command, "--passes", method.passes);
   addPositive(command, "--memory-budget", arguments.memoryBudget);
+  addPositive(command, "--peel", arguments.peel);
   addChoice(command, "--nodes", "standard, compact and hdr", method.nodes, nodeFormatNamed);
   addChoice(command, "--resolve", "compute and fragment", method.resolve, resolveNamed);
   addChoice(command, "--list-build", "fragment and compute", method.listBuild, listBuildNamed);
@@ -101,14 +104,19 @@ std::string vulkanOption(const RenderArguments& arguments) {
 
 void chooseDevice(RenderArguments& arguments) {
   if (arguments.method.api == Api::OpenGl) { // which has a device of its own
+    if (arguments.peel) throw UsageError("--peel is drawn on the processor: leave --api out");
     arguments.wish = Wish::Vulkan;
     return;
   }
-  const bool isCpuMethod = arguments.methodName == kCpuMethod;
+  if (arguments.peel && arguments.methodName && arguments.methodName != kCpuMethod) {
+    throw UsageError("--peel is drawn by the method cpu: leave --method out, or name it");
+  }
+  const bool isCpuMethod = arguments.methodName == kCpuMethod || arguments.peel;
   const bool isCpuDevice = isProcessor(arguments.device);
   if (isCpuMethod && arguments.validate) throw UsageError("the method cpu is without Vulkan: leave --validate out");
   if (isCpuMethod && !isCpuDevice && !arguments.device.empty()) {
-    throw UsageError("the method cpu draws on the processor: leave --device out, or name cpu");
+    throw UsageError(arguments.peel ? "--peel is drawn on the processor: leave --device out, or name cpu"
+                                    : "the method cpu draws on the processor: leave --device out, or name cpu");
   }
   const std::string needsVulkan = isCpuMethod ? "" : vulkanOption(arguments);
   if (isCpuDevice && !needsVulkan.empty()) {

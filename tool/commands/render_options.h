@@ -19,6 +19,7 @@ struct RenderArguments : SceneArguments, OutputArguments {
   std::optional<std::string> methodName;     // --method
   Wish wish = Wish::Fastest;                 // what the other options need
   std::optional<std::uint32_t> memoryBudget; // MiB
+  std::optional<std::uint32_t> peel;         // surfaces of each pixel
   std::string device;
   std::string json; // empty: no report
   bool validate = false;

@@ -28,6 +28,10 @@ constexpr std::string_view kSceneHelp =
   --count N             how many spheres, planes, ... the scene has
   --seed S              another arrangement of the same scene (default 1)
 @load@
+  --isolate NAME        draws this object alone, with all below it: a node of the file, by its name or
+                        its path (car/wheel); several times for several
+  --hide NAME           leaves it out
+  --show NAME           draws it although one above it is hidden
 
 How to look at it:
   --size WxH            pixels (default 1280x720)
@@ -66,6 +70,10 @@ void addSceneOptions(CLI::App& command, SceneArguments& arguments) {
   addPointSize(command, arguments.pointSize);
   addLoadOptions(command, arguments.load);
   addCameraOptions(command, arguments);
+  // One name for each time that it is named.
+  command.add_option("--isolate", arguments.objects.isolate)->allow_extra_args(false);
+  command.add_option("--hide", arguments.objects.hide)->allow_extra_args(false);
+  command.add_option("--show", arguments.objects.show)->allow_extra_args(false);
   command.add_option_function<std::string>(
       "--background", [&arguments](const std::string& text) { arguments.background = backgroundOf(text); });
 }
@@ -156,6 +164,12 @@ Scene openScene(const SceneArguments& arguments, const Progress& progress) {
   }
   scene.pointSize = arguments.pointSize.value_or(scene.pointSize);
   placeScene(arguments, scene);
+  nameDraws(scene);
+  try {
+    chooseObjects(scene, arguments.objects);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
   return scene;
 }
 

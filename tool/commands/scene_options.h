@@ -32,6 +32,7 @@ struct SceneArguments : WarningOptions, CameraArguments {
   std::optional<float> pointSize; // pixels
   std::optional<float> opacity;
   std::optional<Background> background;
+  ObjectChoice objects;
 };
 
 // Adds all of them but MODEL. Texts that cannot be understood end the parse with a CLI::ValidationError.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <span>
 #include <utility>
@@ -13,6 +14,7 @@
 #include <vitrail/cpu.h>
 
 #include "../cpu/cpu_scene.h"
+#include "../cpu/peel.h"
 #include "../gpu/device.h"
 #include "../image/encode.h"
 #include "../image/large_array.h"
@@ -148,6 +150,21 @@ int countLayers(void* user, std::uint32_t x, std::uint32_t y, const VitrailLayer
   return 1;                                   // nobody looks at the picture
 }
 
+// Where the nearest fragments are left out.
+struct Peeling {
+  std::uint32_t count;
+  std::uint32_t samples;
+  std::atomic<bool> any{false}; // something was
+};
+
+int peel(void* user, std::uint32_t /*x*/, std::uint32_t /*y*/, const VitrailLayer* layers, std::uint32_t count,
+         float* color) {
+  Peeling& peeling = *static_cast<Peeling*>(user);
+  if (!peeling.any.load(std::memory_order_relaxed)) peeling.any = true;
+  blendPeeled({layers, count}, peeling.count, peeling.samples, color);
+  return 1;
+}
+
 int tellTiles(void* user, std::uint32_t tilesDone, std::uint32_t /*tiles*/) {
   static_cast<const RenderOptions*>(user)->onTile(tilesDone);
   return 0;
@@ -226,6 +243,11 @@ FrameReport CpuStillRenderer::Impl::draw(const RenderOptions& picture, Encoded* 
   VitrailCpuFrame frame = frameOf(picture);
   draws = scene.draws(picture.view, picture.width, picture.height);
   totals.clock.end("vertices");
+  Peeling peeling{picture.peel, method.samples};
+  if (picture.peel > 0) {
+    frame.list = peel;
+    frame.listUser = &peeling;
+  }
   if (encoded != nullptr && hasCodes(picture)) {
     drawCodes(picture, frame, *encoded, totals);
   } else {
@@ -235,6 +257,11 @@ FrameReport CpuStillRenderer::Impl::draw(const RenderOptions& picture, Encoded* 
   report.layersMean = meanLayers(report.fragmentsStored, totals.coveredPixels);
   if (!report.pixelLayers.empty()) report.layersMax = std::ranges::max(report.pixelLayers);
   finish(report, picture, totals.clock.passes());
+  if (picture.peel > 0 && !peeling.any) {
+    report.warnings.emplace_back(
+        "nothing was peeled away: every surface that is seen is opaque; --opacity makes all of "
+        "them translucent");
+  }
   return report;
 }
 

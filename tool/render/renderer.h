@@ -21,6 +21,7 @@ struct RenderOptions {
   // picture is the same. Default: what the device can give.
   std::optional<std::uint64_t> memoryBudget;
   Encoding encoding = Encoding::Srgb8;
+  std::uint32_t peel = 0; // the nearest transparent surfaces of each pixel that are left out; of CpuStillRenderer alone
   std::function<void(std::uint32_t tiles)> onTile; // told how many tiles are done, for people who wait
 };
 

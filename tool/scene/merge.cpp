@@ -1,6 +1,7 @@
 #include "merge.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <iterator>
 #include <utility>
 
@@ -37,6 +38,15 @@ void renumber(Scene& scene, const Scene& before) {
   for (Light& light : scene.lights) light.position = glm::vec3(glm::dvec3(light.position) + by);
 }
 
+// Puts all objects below one of the file's name.
+void putBelow(Scene& scene, const std::string& name) {
+  nameDraws(scene);
+  ObjectTree tree;
+  const std::uint32_t first = tree.append(scene.objects, tree.add(std::filesystem::path(name).filename().string()));
+  for (Draw& draw : scene.draws) draw.object += first;
+  scene.objects = std::move(tree);
+}
+
 void prefixWarnings(Scene& scene, const std::string& name) {
   for (std::string& warning : scene.warnings) warning.insert(0, name + ": ");
 }
@@ -44,8 +54,9 @@ void prefixWarnings(Scene& scene, const std::string& name) {
 } // namespace
 
 Scene mergeScenes(std::vector<Scene> scenes, const std::vector<std::string>& names) {
+  if (scenes.size() == 1) return std::move(scenes.front());
+  for (std::size_t i = 0; i < scenes.size(); ++i) putBelow(scenes[i], names[i]);
   Scene merged = std::move(scenes.front());
-  if (scenes.size() == 1) return merged;
   prefixWarnings(merged, names.front());
   for (std::size_t i = 1; i < scenes.size(); ++i) {
     Scene& scene = scenes[i];
@@ -54,6 +65,8 @@ Scene mergeScenes(std::vector<Scene> scenes, const std::vector<std::string>& nam
     append(merged.meshes, scene.meshes);
     append(merged.images, scene.images);
     append(merged.materials, scene.materials);
+    const std::uint32_t first = merged.objects.append(scene.objects, ObjectTree::none);
+    for (Draw& draw : scene.draws) draw.object += first;
     append(merged.draws, scene.draws);
     append(merged.cameras, scene.cameras);
     append(merged.lights, scene.lights);

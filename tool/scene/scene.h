@@ -13,6 +13,8 @@
 
 #include <glm/glm.hpp>
 
+#include "objects.h"
+
 namespace vitrail::tool {
 
 // A vertex with all that it may have, as code makes and reads one. Meshes keep less (below).
@@ -184,6 +186,7 @@ struct Draw {
   std::uint32_t mesh = 0;
   std::uint32_t material = 0;
   glm::mat4 transform{1.0F}; // mesh to world
+  std::uint32_t object = ObjectTree::none;
 };
 
 // A camera that came with a model, looking along its own -Z.
@@ -240,6 +243,7 @@ struct Scene {
   std::vector<Image> images;
   std::vector<Material> materials;
   std::vector<Draw> draws;
+  ObjectTree objects; // what draws belong to
   std::vector<SceneCamera> cameras;
   std::vector<Light> lights;
   FileFacts file;

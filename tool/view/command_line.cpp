@@ -68,6 +68,9 @@ void addScene(Words& words, const RenderArguments& arguments) {
   words.option("--time", arguments.load.time);
   if (arguments.load.animation) words.option("--animation", *arguments.load.animation);
   if (arguments.load.variant) words.option("--variant", *arguments.load.variant);
+  for (const std::string& name : arguments.objects.isolate) words.option("--isolate", name);
+  for (const std::string& name : arguments.objects.hide) words.option("--hide", name);
+  for (const std::string& name : arguments.objects.show) words.option("--show", name);
 }
 
 void addLook(Words& words, const RenderArguments& arguments) {
@@ -101,7 +104,9 @@ void addMethod(Words& words, const RenderArguments& arguments) {
   if (method.maxLayers != 0) words.raw("--layers", fmt::format("{}", method.maxLayers));
   if (method.passes != 0) words.raw("--passes", fmt::format("{}", method.passes));
   words.option("--memory-budget", arguments.memoryBudget);
-  if (!arguments.device.empty()) words.option("--device", arguments.device);
+  words.option("--peel", arguments.peel);
+  const bool isElsewhere = traitsOf(method.name).onProcessor && !isProcessor(arguments.device);
+  if (!arguments.device.empty() && !isElsewhere) words.option("--device", arguments.device);
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "../commands/errors.h"
 #include "../commands/progress.h"
 #include "../commands/scene_options.h"
 
@@ -14,8 +15,8 @@ namespace {
 // Whether both load the same scene.
 bool sameScene(const RenderArguments& a, const RenderArguments& b) {
   return a.models == b.models && a.scene == b.scene && a.count == b.count && a.seed == b.seed && a.up == b.up &&
-         a.clipPlanes == b.clipPlanes && a.pointSize == b.pointSize && a.load.time == b.load.time &&
-         a.load.animation == b.load.animation && a.load.variant == b.load.variant;
+         a.pointSize == b.pointSize && a.load.time == b.load.time && a.load.animation == b.load.animation &&
+         a.load.variant == b.load.variant;
 }
 
 } // namespace
@@ -39,6 +40,19 @@ void Drawer::ask(Wanted wanted) {
   changed_.notify_one();
 }
 
+void Drawer::askPick(RenderArguments arguments, std::uint32_t x, std::uint32_t y) {
+  {
+    const std::lock_guard lock(mutex_);
+    wantedPick_ = Picked{std::move(arguments), x, y, {}};
+  }
+  changed_.notify_one();
+}
+
+std::optional<Picked> Drawer::takePicked() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(picked_, std::nullopt);
+}
+
 std::optional<Drawn> Drawer::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(drawn_, std::nullopt);
@@ -49,7 +63,7 @@ std::exception_ptr Drawer::takeError() {
   return std::exchange(error_, nullptr);
 }
 
-std::shared_ptr<const Scene> Drawer::scene() const {
+std::shared_ptr<const SceneFacts> Drawer::scene() const {
   const std::lock_guard lock(mutex_);
   return shownScene_;
 }
@@ -67,18 +81,20 @@ void Drawer::say(const std::string& doing) {
 void Drawer::run() {
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return ends_ || wanted_.has_value(); });
+    changed_.wait(lock, [this] { return ends_ || wanted_ || wantedPick_; });
     if (ends_) break;
-    const Wanted wanted = *std::exchange(wanted_, std::nullopt);
-    doing_ = "drawing";
+    const std::optional<Wanted> wanted = std::exchange(wanted_, std::nullopt);
+    std::optional<Picked> picking;
+    if (!wanted) picking = std::exchange(wantedPick_, std::nullopt); // pictures first: they load what is picked in
+    doing_ = wanted ? "drawing" : "picking";
     lock.unlock();
     std::exception_ptr error;
     try {
-      draw(wanted);
+      wanted ? draw(*wanted) : pick(*picking);
     } catch (...) {
       error = std::current_exception();
     }
-    if (error) renderer_.reset(); // it may be half made, or on a device that is lost
+    if (error && wanted) renderer_.reset(); // it may be half made, or on a device that is lost
     lock.lock();
     if (error) error_ = error;
     doing_.clear();
@@ -93,11 +109,58 @@ void Drawer::load(const RenderArguments& arguments) {
   say("loading " + nameOfScene(arguments));
   onNews_();
   const Progress silent(false);
-  auto loaded = std::make_shared<const Scene>(openScene(arguments, silent));
-  if (loaded->draws.empty()) throw std::runtime_error(nameOfScene(arguments) + ": there is nothing to draw in it");
+  RenderArguments all = arguments;
+  all.objects = {};
+  Scene loaded = openScene(all, silent);
+  if (loaded.draws.empty()) throw std::runtime_error(nameOfScene(arguments) + ": there is nothing to draw in it");
+  try {
+    static_cast<void>(shownObjects(loaded.objects, arguments.objects)); // before anything is let go of
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
   renderer_.reset();
+  picker_.reset();
+  SceneFacts facts{nameOfScene(arguments), loaded.objects, {}, worldBounds(loaded), loaded.origin, loaded.background};
+  for (const Material& material : loaded.materials) facts.materials.push_back(material.name);
+  facts_ = std::make_shared<const SceneFacts>(std::move(facts));
   scene_ = std::move(loaded);
-  sceneArguments_ = arguments;
+  allDraws_ = scene_->draws;
+  sceneArguments_ = all;
+}
+
+// Draws these objects of the scene, cut so, from now on.
+void Drawer::choose(const RenderArguments& arguments) {
+  if (arguments.clipPlanes != sceneArguments_.clipPlanes) {
+    setClipPlanes(arguments, *scene_);
+    sceneArguments_.clipPlanes = arguments.clipPlanes;
+    renderer_.reset();
+    picker_.reset();
+  }
+  const ObjectChoice& choice = arguments.objects;
+  if (choice == sceneArguments_.objects) return;
+  const std::vector<bool> shown = shownObjects(scene_->objects, choice);
+  std::vector<Draw> draws = allDraws_;
+  std::erase_if(draws, [&](const Draw& draw) { return !shown[draw.object]; });
+  if (draws.empty()) throw std::runtime_error("all of it would be hidden");
+  scene_->draws = std::move(draws);
+  sceneArguments_.objects = choice;
+  renderer_.reset();
+  picker_.reset();
+}
+
+void Drawer::pick(Picked& picked) {
+  if (!scene_) return;
+  load(picked.arguments);
+  choose(picked.arguments);
+  if (!picker_ || pickerOpacity_ != picked.arguments.opacity) {
+    picker_.reset();
+    picker_ = std::make_unique<Picker>(*scene_, picked.arguments.opacity);
+    pickerOpacity_ = picked.arguments.opacity;
+  }
+  const RenderOptions options = pictureOf(picked.arguments, *scene_);
+  picked.layers = picker_->at(options.view, options.width, options.height, picked.x, picked.y);
+  const std::lock_guard lock(mutex_);
+  picked_ = std::move(picked);
 }
 
 void Drawer::prepare(const RenderArguments& arguments) {
@@ -112,6 +175,7 @@ void Drawer::prepare(const RenderArguments& arguments) {
 
 void Drawer::draw(const Wanted& wanted) {
   load(wanted.arguments);
+  choose(wanted.arguments);
   prepare(wanted.arguments);
   say("drawing");
   RenderArguments arguments = wanted.arguments;
@@ -119,15 +183,17 @@ void Drawer::draw(const Wanted& wanted) {
   arguments.height = std::max(arguments.height / wanted.coarse, 1U);
   RenderOptions options = pictureOf(arguments, *scene_);
   if (arguments.memoryBudget) options.memoryBudget = std::uint64_t{*arguments.memoryBudget} << 20U;
+  options.peel = arguments.peel.value_or(0);
   const auto start = std::chrono::steady_clock::now();
   RenderResult result = renderer_->render(options);
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-  Drawn drawn{wanted, std::move(result.picture), std::move(result.report), took.count(), scene_->warnings};
+  Drawn drawn{wanted,       options.view,    std::move(result.picture), std::move(result.report),
+              took.count(), scene_->warnings};
   drawn.warnings.insert(drawn.warnings.end(), drawn.report.warnings.begin(), drawn.report.warnings.end());
   if (result.isEmpty) drawn.warnings.push_back(nothingSeenWarning(*scene_, seenOf(options, arguments.opacity)));
   const std::lock_guard lock(mutex_);
   drawn_ = std::move(drawn);
-  shownScene_ = scene_;
+  shownScene_ = facts_;
 }
 
 } // namespace vitrail::tool

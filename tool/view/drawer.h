@@ -13,6 +13,7 @@
 
 #include "../commands/render_options.h"
 #include "../render/device.h"
+#include "../render/pick.h"
 
 namespace vitrail::tool {
 
@@ -22,8 +23,27 @@ struct Wanted {
   std::uint32_t coarse = 1;
 };
 
+// What a window has to know of a scene.
+struct SceneFacts {
+  std::string name;
+  ObjectTree objects;
+  std::vector<std::string> materials;
+  Bounds bounds; // of all of it, whatever is hidden
+  glm::dvec3 origin{0.0};
+  std::optional<Background> background;
+};
+
+// The surfaces under a pixel of the picture that `wanted` is of.
+struct Picked {
+  RenderArguments arguments;
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  std::vector<PickedLayer> layers;
+};
+
 struct Drawn {
   Wanted wanted;
+  View view;
   Picture picture;
   FrameReport report;
   double milliseconds = 0.0; // for the picture, without what had to be made once
@@ -42,19 +62,25 @@ class Drawer {
   // Has it drawn. What was asked for before and not begun is dropped.
   void ask(Wanted wanted);
 
+  // Has the surfaces under a pixel of such a picture found, behind the picture at hand.
+  void askPick(RenderArguments arguments, std::uint32_t x, std::uint32_t y);
+
   // The newest picture, once.
   std::optional<Drawn> take();
+  std::optional<Picked> takePicked(); // the same of what was picked last
   // Why what was asked for last could not be drawn; null where it could be; once.
   std::exception_ptr takeError();
   // What the last picture shows; null before it. It does not change.
-  [[nodiscard]] std::shared_ptr<const Scene> scene() const;
+  [[nodiscard]] std::shared_ptr<const SceneFacts> scene() const;
   // What it is at, in words; empty: nothing.
   [[nodiscard]] std::string doing() const;
 
  private:
   void run();
   void draw(const Wanted& wanted);
+  void pick(Picked& picked);
   void load(const RenderArguments& arguments);
+  void choose(const RenderArguments& arguments);
   void prepare(const RenderArguments& arguments);
   void say(const std::string& doing);
 
@@ -66,16 +92,22 @@ class Drawer {
   std::condition_variable changed_;
   std::optional<Wanted> wanted_;
   std::optional<Drawn> drawn_;
+  std::optional<Picked> wantedPick_;
+  std::optional<Picked> picked_;
   std::exception_ptr error_;
-  std::shared_ptr<const Scene> shownScene_;
+  std::shared_ptr<const SceneFacts> shownScene_;
   std::string doing_;
   bool ends_ = false;
 
   // The thread's own.
-  std::shared_ptr<const Scene> scene_;
+  std::optional<Scene> scene_; // with the draws that are chosen
+  std::vector<Draw> allDraws_;
+  std::shared_ptr<const SceneFacts> facts_;
   RenderArguments sceneArguments_; // of scene_
   std::unique_ptr<Renderer> renderer_;
   RenderArguments rendererArguments_; // of renderer_
+  std::unique_ptr<Picker> picker_;
+  std::optional<float> pickerOpacity_;
   std::thread thread_;
 };
 

@@ -44,6 +44,15 @@ void EventLog::shown(const Drawn& drawn, const std::string& command) {
                       {"command", command}});
 }
 
+void EventLog::picked(const Picked& picked, const SceneFacts& scene) {
+  if (!file_) return;
+  nlohmann::json layers = nlohmann::json::array();
+  for (const PickedLayer& layer : picked.layers) {
+    layers.push_back({{"object", scene.objects.path(layer.object)}, {"depth", layer.distance}, {"alpha", layer.alpha}});
+  }
+  write(file_.get(), {{"event", "picked"}, {"x", picked.x}, {"y", picked.y}, {"layers", layers}});
+}
+
 void EventLog::happened(const std::string& event, const std::string& text) {
   if (file_) write(file_.get(), {{"event", event}, {"text", text}});
 }

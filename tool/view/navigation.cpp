@@ -13,8 +13,7 @@ constexpr double kSteepest = 89.5; // degrees: straight down has no upright pict
 
 } // namespace
 
-void Navigation::begin(const Scene& scene, const View& view) {
-  const Bounds bounds = worldBounds(scene);
+void Navigation::begin(const Bounds& bounds, const View& view) {
   const glm::dvec3 middle = 0.5 * (glm::dvec3(bounds.min) + glm::dvec3(bounds.max));
   const double size = std::max(glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min)), 1.0e-12);
   const glm::dmat4 camera(view.cameraToWorld);
@@ -60,12 +59,12 @@ void Navigation::pan(double right, double up) {
 
 void Navigation::zoom(double factor) { distance_ = std::max(distance_ / factor, least_); }
 
-void Navigation::put(CameraArguments& arguments, const Scene& scene) const {
+void Navigation::put(CameraArguments& arguments, const glm::dvec3& origin) const {
   const glm::dmat3 fromScene = glm::transpose(turnOf(arguments.up)); // it only swaps coordinates
   arguments.camera.reset();
   arguments.orbit.reset();
-  arguments.eye = fromScene * (target_ + distance_ * towardsEye() + scene.origin);
-  arguments.lookAt = fromScene * (target_ + scene.origin);
+  arguments.eye = fromScene * (target_ + distance_ * towardsEye() + origin);
+  arguments.lookAt = fromScene * (target_ + origin);
   arguments.fov = static_cast<float>(fov_);
 }
 

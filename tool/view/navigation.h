@@ -9,8 +9,8 @@ namespace vitrail::tool {
 
 class Navigation {
  public:
-  // Where moves begin: a view of the scene, in a picture of `aspect`. It is looked at there until the first of them.
-  void begin(const Scene& scene, const View& view);
+  // Where moves begin: a view of a scene with that box.
+  void begin(const Bounds& bounds, const View& view);
 
   // Around the point, in degrees, to the right and up.
   void orbit(double right, double up);
@@ -23,8 +23,8 @@ class Navigation {
   [[nodiscard]] double azimuth() const { return azimuth_; }
   [[nodiscard]] double elevation() const { return elevation_; }
 
-  // The camera as options say it, in the file's coordinates.
-  void put(CameraArguments& arguments, const Scene& scene) const;
+  // The camera as options say it, in the file's coordinates; `origin` is the scene's.
+  void put(CameraArguments& arguments, const glm::dvec3& origin) const;
 
  private:
   [[nodiscard]] glm::dvec3 towardsEye() const;

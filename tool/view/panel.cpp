@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include "../methods/methods.h"
+#include "../scene/turn.h"
 
 namespace vitrail::tool {
 
@@ -78,7 +79,7 @@ void showMethods(const PanelState& state) {
   }
 }
 
-void showBackground(RenderArguments& arguments, const Scene* scene) {
+void showBackground(RenderArguments& arguments, const SceneFacts* scene) {
   Background background =
       arguments.background.value_or(scene != nullptr ? scene->background.value_or(Background{}) : Background{});
   bool changed = choose<Background::Kind>("background", background.kind,
@@ -97,7 +98,7 @@ void showBackground(RenderArguments& arguments, const Scene* scene) {
   if (changed) arguments.background = background;
 }
 
-void showLook(const PanelState& state, const Scene* scene, PanelActions& actions) {
+void showLook(const PanelState& state, const SceneFacts* scene, PanelActions& actions) {
   RenderArguments& arguments = state.arguments;
   float opacity = arguments.opacity.value_or(1.0F);
   bool isXray = arguments.opacity.has_value();
@@ -118,6 +119,77 @@ void showLook(const PanelState& state, const Scene* scene, PanelActions& actions
   actions.frame = ImGui::Button("Frame (F)");
   ImGui::SameLine();
   actions.reset = ImGui::Button("Reset (R)");
+}
+
+// A cut at right angles to an axis of the file: what is beyond the place is left out.
+void showCut(RenderArguments& arguments, const SceneFacts& scene) {
+  std::vector<glm::dvec4>& planes = arguments.clipPlanes;
+  if (planes.size() > 1) return; // of the command line
+  int axis = 0;
+  for (int i = 0; i < 3 && !planes.empty(); ++i) {
+    if (planes[0][i] != 0.0) axis = i + 1;
+  }
+  int chosen = axis;
+  if (choose<int>("cut", chosen, {{"none", 0}, {"x", 1}, {"y", 2}, {"z", 3}}) && chosen == 0) planes.clear();
+  if (chosen == 0) return;
+  // The box in the file's axes, which only swap coordinates.
+  const glm::dmat3 toFile = glm::transpose(turnOf(arguments.up));
+  const glm::dvec3 a = toFile * (glm::dvec3(scene.bounds.min) + scene.origin);
+  const glm::dvec3 b = toFile * (glm::dvec3(scene.bounds.max) + scene.origin);
+  const double low = std::min(a[chosen - 1], b[chosen - 1]);
+  const double high = std::max(a[chosen - 1], b[chosen - 1]);
+  if (!(high > low)) return;
+  double place = chosen == axis ? -planes[0].w : high;
+  auto share = static_cast<float>((place - low) / (high - low));
+  const bool moved = ImGui::SliderFloat("##cut", &share, 0.0F, 1.0F, "");
+  ImGui::SameLine();
+  ImGui::Text("%.4g", place);
+  if (!moved && chosen == axis) return;
+  if (moved) place = low + static_cast<double>(std::clamp(share, 0.0F, 1.0F)) * (high - low);
+  glm::dvec4 plane(0.0);
+  plane[chosen - 1] = -1.0;
+  plane.w = -place;
+  planes.assign(1, plane);
+}
+
+void showInside(const PanelState& state, PanelActions& actions) {
+  RenderArguments& arguments = state.arguments;
+  auto peel = static_cast<int>(arguments.peel.value_or(0));
+  if (ImGui::SliderInt("peel", &peel, 0, 32, peel == 0 ? "nothing" : "%d nearest")) {
+    choosePeel(arguments, static_cast<std::uint32_t>(std::clamp(peel, 0, 1000)));
+  }
+  if (state.scene != nullptr) showCut(arguments, *state.scene);
+  actions.objects = state.parts.draw(arguments.objects);
+}
+
+void showPicked(const PanelState& state) {
+  if (state.picked == nullptr || state.scene == nullptr) return;
+  const Picked& picked = *state.picked;
+  if (!ImGui::CollapsingHeader("Picked", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  ImGui::Text("pixel %u,%u: %zu layers", picked.x, picked.y, picked.layers.size());
+  const float height = static_cast<float>(std::clamp<std::size_t>(picked.layers.size(), 1, 10));
+  ImGui::BeginChild("layers", ImVec2(0.0F, (height + 1.0F) * ImGui::GetTextLineHeightWithSpacing()), true);
+  for (std::size_t i = 0; i < picked.layers.size(); ++i) {
+    const PickedLayer& layer = picked.layers[i];
+    const auto code = [](float value) { return std::pow(std::clamp(value, 0.0F, 1.0F), 1.0F / 2.2F); };
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::ColorButton("##color", ImVec4(code(layer.color.r), code(layer.color.g), code(layer.color.b), 1.0F),
+                       ImGuiColorEditFlags_NoTooltip, ImVec2(ImGui::GetFontSize(), ImGui::GetFontSize()));
+    ImGui::SameLine();
+    const std::string name(state.scene->objects.name(layer.object));
+    const std::string& material = state.scene->materials[layer.material];
+    ImGui::Text("%.5g  %s  %.0f%%", layer.distance, name.c_str(), 100.0 * static_cast<double>(layer.alpha));
+    if (ImGui::IsItemHovered()) {
+      ImGui::SetTooltip("%s\nmaterial %s\n%s", state.scene->objects.path(layer.object).c_str(), material.c_str(),
+                        layer.blend.c_str());
+    }
+    ImGui::PopID();
+  }
+  ImGui::EndChild();
+  if (state.pickedBefore != nullptr && !picked.layers.empty() && !state.pickedBefore->layers.empty()) {
+    ImGui::Text("%.6g from what was picked before",
+                glm::length(picked.layers[0].point - state.pickedBefore->layers[0].point));
+  }
 }
 
 void showTimes(const PanelState& state, const Drawn& drawn) {
@@ -186,13 +258,16 @@ PanelActions drawPanel(const PanelState& state) {
   ImGui::Separator();
   showLook(state, state.scene, actions);
   ImGui::Separator();
+  showInside(state, actions);
+  showPicked(state);
+  ImGui::Separator();
   showReport(state);
   if (!state.doing.empty()) ImGui::TextDisabled("%s ...", state.doing.c_str());
   ImGui::Separator();
   actions.save = ImGui::Button("Save picture (P)");
   ImGui::SameLine();
   actions.copy = ImGui::Button("Copy command (C)");
-  ImGui::TextDisabled("drag: orbit  right: pan  wheel: zoom\n1 3 7: axes  space: rotate  tab: this panel");
+  ImGui::TextDisabled("click: pick  drag: orbit  right: pan  wheel: zoom\n1 3 7: axes  space: rotate  tab: this panel");
   ImGui::PopItemWidth();
   ImGui::End();
   return actions;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "drawer.h"
+#include "parts.h"
 #include "settings.h"
 
 namespace vitrail::tool {
@@ -17,8 +18,11 @@ struct PanelState {
   bool& rotates;
   bool& vsync;
   const Device& device;
-  const std::string& presentedBy;        // a device
-  const Scene* scene;                    // null: none was drawn
+  const std::string& presentedBy; // a device
+  const SceneFacts* scene;        // null: none was drawn
+  const Picked* picked;           // null: nothing was
+  const Picked* pickedBefore;
+  Parts& parts;
   const Drawn* drawn;                    // the picture on the screen; null: none
   std::string doing;                     // what the drawer is at
   const std::deque<float>& milliseconds; // of the last pictures
@@ -29,6 +33,7 @@ struct PanelActions {
   bool reset = false;
   bool save = false;
   bool copy = false;
+  bool objects = false; // others are chosen: the camera stays
 };
 
 // Draws the panel; changes what the state refers to.

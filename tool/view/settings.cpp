@@ -32,12 +32,19 @@ void chooseMethod(RenderArguments& arguments, const std::string& name) {
   if (traits.takes(kTakesLayers)) method.maxLayers = before.maxLayers;
   if (traits.takes(kTakesPasses)) method.passes = before.passes;
   if (!traits.takes(kTakesMemoryBudget)) arguments.memoryBudget.reset();
+  if (name != kCpuMethod) arguments.peel.reset();
   try {
     checkMethodOptions(method);
   } catch (const std::invalid_argument&) { // they exclude each other here
     method = {};
     method.name = name;
   }
+}
+
+void choosePeel(RenderArguments& arguments, std::uint32_t count) {
+  if (count > 0 && arguments.method.name != kCpuMethod) chooseMethod(arguments, std::string(kCpuMethod));
+  arguments.peel.reset();
+  if (count > 0) arguments.peel = count;
 }
 
 bool Sorting::isOn(const RenderArguments& arguments) { return arguments.method.name != kUnsorted; }

@@ -15,6 +15,9 @@ std::vector<std::string> methodsOf(const Device& device);
 // Draws by another method: what it does not take of the options of the one before is as it is by default.
 void chooseMethod(RenderArguments& arguments, const std::string& name);
 
+// Leaves out so many of the nearest surfaces of each pixel: drawn by the method cpu.
+void choosePeel(RenderArguments& arguments, std::uint32_t count);
+
 // As the fragments are sorted, or blended in the order in which they are drawn.
 class Sorting {
  public:

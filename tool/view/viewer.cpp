@@ -134,6 +134,7 @@ class Viewer {
     drawPicture(size);
     drawPanels();
     askFor(size);
+    tellRest();
     ImGui::Render();
     ImGuiIO& io = ImGui::GetIO();
     const bool busy = ImGui::IsAnyMouseDown() || io.WantTextInput;
@@ -143,6 +144,14 @@ class Viewer {
   }
 
   // What was asked for may be of a file that is not there.
+  static bool sameCamera(const RenderArguments& a, const RenderArguments& b) {
+    const auto sameOrbit = [](const Orbit& one, const Orbit& other) {
+      return one.azimuth == other.azimuth && one.elevation == other.elevation && one.zoom == other.zoom;
+    };
+    return a.camera == b.camera && a.eye == b.eye && a.lookAt == b.lookAt && a.fov == b.fov &&
+           a.orbit.has_value() == b.orbit.has_value() && (!a.orbit || sameOrbit(*a.orbit, *b.orbit));
+  }
+
   void openDropped() {
     const std::vector<std::string> files = window_.takeDropped();
     if (files.empty()) return;
@@ -152,6 +161,7 @@ class Viewer {
     now_.seed.reset();
     now_.load = {};
     now_.clipPlanes.clear();
+    now_.objects = {};
     now_.camera.reset();
     now_.orbit.reset();
     now_.eye.reset();
@@ -174,6 +184,11 @@ class Viewer {
       log_.happened("error", error);
       say(error, true);
     }
+    if (std::optional<Picked> picked = drawer_->takePicked()) {
+      pickedBefore_ = std::exchange(picked_, std::move(picked));
+      log_.picked(*picked_, *drawer_->scene());
+      changed_ = true;
+    }
     std::optional<Drawn> drawn = drawer_->take();
     if (!drawn) return;
     isAsked_ = false;
@@ -187,6 +202,8 @@ class Viewer {
       initial_ = showing_;
       log_.happened("opened", nameOfScene(showing_));
       milliseconds_.clear();
+      picked_.reset();
+      pickedBefore_.reset();
     }
     if (drawn->wanted.coarse == 1) fullMilliseconds_ = drawn->milliseconds;
     coarseMilliseconds_ = drawn->milliseconds;
@@ -201,7 +218,11 @@ class Viewer {
 
   void beginNavigation() {
     if (isNavigating_ || !scene_) return;
-    navigation_.begin(*scene_, pictureOf(now_, *scene_).view);
+    // Where the view that is wanted was not drawn yet, it is that of the box.
+    const float aspect = static_cast<float>(now_.width) / static_cast<float>(std::max(now_.height, 1U));
+    const bool isDrawn = drawn_ && sameCamera(drawn_->wanted.arguments, now_);
+    navigation_.begin(scene_->bounds,
+                      isDrawn ? drawn_->view : frameScene(scene_->bounds, now_.orbit.value_or(Orbit{}), aspect));
     isNavigating_ = true;
   }
 
@@ -210,7 +231,7 @@ class Viewer {
     if (!scene_) return;
     beginNavigation();
     moved(navigation_);
-    navigation_.put(now_, *scene_);
+    navigation_.put(now_, scene_->origin);
     lastMove_ = Clock::now();
     changed_ = true;
   }
@@ -246,6 +267,7 @@ class Viewer {
     const double right = io.MouseDelta.x / static_cast<double>(size.height);
     const double up = -io.MouseDelta.y / static_cast<double>(size.height);
     if (!io.WantCaptureMouse) {
+      pickWhereClicked(size);
       const bool pans = ImGui::IsMouseDown(1) || ImGui::IsMouseDown(2) || (ImGui::IsMouseDown(0) && io.KeyShift);
       drags_ = pans || ImGui::IsMouseDown(0);
       if (drags_ && (right != 0.0 || up != 0.0)) {
@@ -262,6 +284,16 @@ class Viewer {
       move([&](Navigation& navigation) { navigation.orbit(kDegreesOfASecond * seconds, 0.0); });
       lastTurn_ = Clock::now();
     }
+  }
+
+  // A click that is no drag.
+  void pickWhereClicked(PixelSize size) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!scene_ || !ImGui::IsMouseReleased(0) || io.MouseDragMaxDistanceSqr[0] > 9.0F) return;
+    const float x = io.MousePos.x * io.DisplayFramebufferScale.x;
+    const float y = io.MousePos.y * io.DisplayFramebufferScale.y;
+    if (x < 0.0F || y < 0.0F || x >= static_cast<float>(size.width) || y >= static_cast<float>(size.height)) return;
+    drawer_->askPick(now_, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
   }
 
   void pressKeys() {
@@ -330,7 +362,15 @@ class Viewer {
     if (isSame) return;
     asked_ = wanted;
     isAsked_ = true;
+    isResting_ = false;
     drawer_->ask(std::move(wanted));
+  }
+
+  // Nothing is drawn until something happens: once, for scripts.
+  void tellRest() {
+    if (isResting_ || isAsked_ || !drawn_ || drawn_->wanted.coarse != 1 || isMoving() || isSettling()) return;
+    isResting_ = true;
+    log_.happened("rest", renderCommand(showing_, "picture.png"));
   }
 
   std::uint32_t coarseness() const {
@@ -365,11 +405,19 @@ class Viewer {
   void drawPanels() {
     if (hasPanel_) {
       const bool didRotate = rotates_;
+      parts_.set(scene_, now_.objects);
+      const ObjectChoice before = now_.objects;
       const PanelActions actions = drawPanel({now_, sorting_, rotates_, vsync_, device_, presentedBy_, scene_.get(),
-                                              drawn_ ? &*drawn_ : nullptr, drawer_->doing(), milliseconds_});
+                                              picked_ ? &*picked_ : nullptr, pickedBefore_ ? &*pickedBefore_ : nullptr,
+                                              parts_, drawn_ ? &*drawn_ : nullptr, drawer_->doing(), milliseconds_});
       if (rotates_ && !didRotate) lastTurn_ = Clock::now();
       if (actions.frame) frameFromHere();
       if (actions.reset) reset();
+      if (actions.objects) {
+        const ObjectChoice chosen = std::exchange(now_.objects, before);
+        move([](Navigation&) {}); // pins the camera, which would frame what is left
+        now_.objects = chosen;
+      }
       if (actions.save) save();
       if (actions.copy) copy();
     }
@@ -448,10 +496,14 @@ class Viewer {
   Sorting sorting_;
   Navigation navigation_;
   bool isNavigating_ = false; // navigation_ is where now_ is
-  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const SceneFacts> scene_;
+  Parts parts_;
+  std::optional<Picked> picked_;
+  std::optional<Picked> pickedBefore_;
   std::optional<Drawn> drawn_;
   std::optional<Wanted> asked_;
   bool isAsked_ = false; // and not drawn yet
+  bool isResting_ = false;
   std::deque<float> milliseconds_;
   double fullMilliseconds_ = 0.0;
   double coarseMilliseconds_ = 0.0;

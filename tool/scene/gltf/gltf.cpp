@@ -119,7 +119,9 @@ class SceneBuilder {
     requireAny();
     if (drawCount_ > 0) scene_.origin = box_.farMiddle();
     scene_.draws.reserve(drawCount_);
+    objectOf_.assign(document_.nodes.size(), ObjectTree::none);
     hierarchy_.visit([this](const GltfPlacedNode& node) { place(node); });
+    dropEmptyObjects(scene_);
     use_.report(scene_);
     if (drawCount_ > 0)
       requireDrawable(scene_);
@@ -209,7 +211,18 @@ class SceneBuilder {
     throw LoadError("the file holds no triangles, lines or points");
   }
 
+  // Nodes come depth first, so that the last object of a node above this one is the one that it is placed below.
+  std::uint32_t objectFor(const GltfPlacedNode& placed) {
+    const std::uint32_t parent = placed.parent == GltfNodes::none ? ObjectTree::none : objectOf_[placed.parent];
+    const std::uint32_t mesh = document_.nodes.mesh(placed.node);
+    std::string name(document_.nodes.ownName(placed.node));
+    if (name.empty() && mesh != GltfNodes::none) name = document_.model.meshes[mesh].name;
+    if (name.empty()) name = fmt::format("node {}", placed.node);
+    return objectOf_[placed.node] = scene_.objects.add(name, parent);
+  }
+
   void place(const GltfPlacedNode& placed) {
+    const std::uint32_t object = objectFor(placed);
     const GltfRareParts& rare = document_.nodes.rare(placed.node);
     if (rare.camera) addCamera(placed, *rare.camera);
     if (!placed.visible) return;
@@ -222,7 +235,7 @@ class SceneBuilder {
       const Shown shown = shownBy(placed.node, i);
       if (!shown.mesh) continue;
       forEachPlace(placed, shown, instances, [&](const glm::dmat4& transform) {
-        scene_.draws.push_back({*shown.mesh, shown.material, matrixOf(placed.node, transform)});
+        scene_.draws.push_back({*shown.mesh, shown.material, matrixOf(placed.node, transform), object});
       });
     }
   }
@@ -340,6 +353,7 @@ class SceneBuilder {
   }
 
   const GltfDocument& document_;
+  std::vector<std::uint32_t> objectOf_; // of each node, where it was placed last
   Scene scene_;
   GltfHierarchy hierarchy_;
   GltfExtensionUse use_;

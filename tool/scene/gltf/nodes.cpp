@@ -147,16 +147,16 @@ void GltfHierarchy::visit(const std::function<void(const GltfPlacedNode&)>& visi
   const GltfNodes& nodes = document_.nodes;
   constexpr std::uint64_t mostCopies = 1'000'000;
   std::uint64_t left = nodes.size() + mostCopies;
-  const auto arrive = [&](std::uint32_t node, const glm::dmat4& parent, bool visible) {
+  const auto arrive = [&](std::uint32_t node, std::uint32_t above, const glm::dmat4& parent, bool visible) {
     if (left-- == 0)
       throw LoadError(fmt::format("nodes with several parents make more than {} copies of others", mostCopies));
-    const GltfPlacedNode placed{node, parent * nodes.matrix(node), visible && !nodes.hidden(node)};
+    const GltfPlacedNode placed{node, parent * nodes.matrix(node), above, visible && !nodes.hidden(node)};
     visit(placed);
     return placed;
   };
   std::vector<Step> way;
   for (const std::uint32_t root : roots_) {
-    way.push_back({arrive(root, glm::dmat4(1.0), true), 0});
+    way.push_back({arrive(root, none, glm::dmat4(1.0), true), 0});
     while (!way.empty()) {
       Step& step = way.back();
       if (step.next == nodes.childCount(step.placed.node)) {
@@ -164,7 +164,7 @@ void GltfHierarchy::visit(const std::function<void(const GltfPlacedNode&)>& visi
         continue;
       }
       const std::uint32_t child = nodes.child(step.placed.node, step.next++);
-      const GltfPlacedNode placed = arrive(child, step.placed.world, step.placed.visible);
+      const GltfPlacedNode placed = arrive(child, step.placed.node, step.placed.world, step.placed.visible);
       if (nodes.childCount(child) > 0) way.push_back({placed, 0});
     }
   }

@@ -19,6 +19,7 @@ namespace vitrail::tool {
 struct GltfPlacedNode {
   std::uint32_t node = 0;
   glm::dmat4 world{1.0};
+  std::uint32_t parent = GltfNodes::none; // the node that it is placed below
   bool visible = true; // false: KHR_node_visibility hides it, or one above it
 };
 
