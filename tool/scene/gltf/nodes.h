@@ -20,7 +20,7 @@ struct GltfPlacedNode {
   std::uint32_t node = 0;
   glm::dmat4 world{1.0};
   std::uint32_t parent = GltfNodes::none; // the node that it is placed below
-  bool visible = true; // false: KHR_node_visibility hides it, or one above it
+  bool visible = true;                    // false: KHR_node_visibility hides it, or one above it
 };
 
 // What is drawn is the default scene, scene 0 where none is named, every tree where there are no scenes.
