@@ -38,7 +38,11 @@ using namespace std::chrono_literals;
 
 } // namespace
 
-Desk::Desk() : display_(XOpenDisplay(nullptr)) {
+Desk::Desk() {
+  for (int i = 0; i < 50 && display_ == nullptr; ++i) { // a server without clients may be starting anew
+    display_ = XOpenDisplay(nullptr);
+    if (display_ == nullptr) std::this_thread::sleep_for(20ms);
+  }
   if (display_ == nullptr) throw std::runtime_error("there is no X display: run this under xvfb-run");
   // A window may be gone when it is looked at.
   XSetErrorHandler([](Display*, XErrorEvent*) { return 0; });

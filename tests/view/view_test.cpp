@@ -378,6 +378,50 @@ TEST(ViewMethodsTest, DrawsByEveryMethod) {
   view.expectClosesWell();
 }
 
+// Depth complexity, the error, another method: to the right of the line in the middle, or wherever it is dragged to.
+TEST(ViewMethodsTest, ShowsAnotherPictureBesideIt) {
+  const TemporaryFolder folder;
+  View view(folder, {"--scene", "interlocked", "--device", "llvmpipe", "--validate", "--method", "weighted"});
+  const std::string command = view.settled()["command"];
+  view.desk.key("Tab");
+  const Pixels alone = drawn(folder, command);
+  const auto partThatDiffers = [&](int line, const Pixels& left) {
+    std::uint64_t wrong = 0; // pixels to the left of the line
+    std::uint64_t other = 0; // to its right
+    const Pixels screen = view.desk.look();
+    for (std::uint32_t y = 60; y < 480; ++y) {
+      for (std::uint32_t x = 0; x < 640; ++x) {
+        const std::size_t i = 3 * (y * 640 + x);
+        const bool differs = !std::equal(&screen.rgb[i], &screen.rgb[i] + 3, &left.rgb[i]);
+        const int side = static_cast<int>(x) - line;
+        wrong += side < -3 && differs ? 1 : 0;
+        other += side > 3 && differs ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(wrong, 0U);
+    return other;
+  };
+  for (const char* kind : {"complexity", "error"}) {
+    view.desk.key("b");
+    const Json shown = view.settled();
+    EXPECT_EQ(shown["beside"], kind);
+    EXPECT_GT(shown["largest"], 3);
+    std::this_thread::sleep_for(200ms);
+    EXPECT_GT(partThatDiffers(320, alone), 10000U);
+  }
+  view.desk.drag(1, 320, 300, 100, 300);
+  std::this_thread::sleep_for(200ms);
+  EXPECT_GT(partThatDiffers(100, alone), 100000U);
+  view.desk.key("b");
+  const Json method = view.settled();
+  EXPECT_EQ(method["beside"], "linked-list");
+  view.desk.key("b");
+  EXPECT_EQ(view.settled()["beside"], "");
+  std::this_thread::sleep_for(200ms);
+  EXPECT_EQ(differing(view.desk.look(), alone), 0U);
+  view.expectClosesWell();
+}
+
 TEST(ViewMethodsTest, Peels) {
   const TemporaryFolder folder;
   View view(folder, {"--scene", "interlocked", "--peel", "2", "--validate"});

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <utility>
 
 #include "../commands/errors.h"
 #include "../commands/progress.h"
 #include "../commands/scene_options.h"
+#include "../image/color_map.h"
+#include "../methods/methods.h"
+#include "settings.h"
 
 namespace vitrail::tool {
 
@@ -94,7 +98,7 @@ void Drawer::run() {
     } catch (...) {
       error = std::current_exception();
     }
-    if (error && wanted) renderer_.reset(); // it may be half made, or on a device that is lost
+    if (error && wanted) letGo(); // it may be half made, or on a device that is lost
     lock.lock();
     if (error) error_ = error;
     doing_.clear();
@@ -102,6 +106,13 @@ void Drawer::run() {
     onNews_();
     lock.lock();
   }
+}
+
+// What was made of the scene.
+void Drawer::letGo() {
+  renderer_.reset();
+  beside_.reset();
+  picker_.reset();
 }
 
 void Drawer::load(const RenderArguments& arguments) {
@@ -118,8 +129,7 @@ void Drawer::load(const RenderArguments& arguments) {
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
-  renderer_.reset();
-  picker_.reset();
+  letGo();
   SceneFacts facts{nameOfScene(arguments), loaded.objects, {}, worldBounds(loaded), loaded.origin, loaded.background};
   for (const Material& material : loaded.materials) facts.materials.push_back(material.name);
   facts_ = std::make_shared<const SceneFacts>(std::move(facts));
@@ -133,8 +143,7 @@ void Drawer::choose(const RenderArguments& arguments) {
   if (arguments.clipPlanes != sceneArguments_.clipPlanes) {
     setClipPlanes(arguments, *scene_);
     sceneArguments_.clipPlanes = arguments.clipPlanes;
-    renderer_.reset();
-    picker_.reset();
+    letGo();
   }
   const ObjectChoice& choice = arguments.objects;
   if (choice == sceneArguments_.objects) return;
@@ -144,8 +153,7 @@ void Drawer::choose(const RenderArguments& arguments) {
   if (draws.empty()) throw std::runtime_error("all of it would be hidden");
   scene_->draws = std::move(draws);
   sceneArguments_.objects = choice;
-  renderer_.reset();
-  picker_.reset();
+  letGo();
 }
 
 void Drawer::pick(Picked& picked) {
@@ -173,6 +181,56 @@ void Drawer::prepare(const RenderArguments& arguments) {
   rendererArguments_ = arguments;
 }
 
+Renderer& Drawer::besideRenderer(const RenderArguments& arguments, const MethodOptions& method) {
+  if (!beside_ || besideMethod_ != method || besideOpacity_ != arguments.opacity) {
+    beside_.reset();
+    beside_ = device_.makeRenderer(*scene_, arguments.opacity, DrawOrder::Forward, method);
+    besideMethod_ = method;
+    besideOpacity_ = arguments.opacity;
+  }
+  return *beside_;
+}
+
+void Drawer::drawBeside(const Wanted& wanted, const RenderOptions& options, Drawn& drawn) {
+  if (wanted.beside.kind == Beside::Kind::Nothing) {
+    beside_.reset();
+    return;
+  }
+  RenderArguments arguments = wanted.arguments;
+  arguments.method.api = Api::Vulkan;
+  RenderOptions picture = options;
+  picture.memoryBudget.reset();
+  picture.peel = 0;
+  Plane plane(options.width, options.height);
+  switch (wanted.beside.kind) {
+    case Beside::Kind::Method:
+      chooseMethod(arguments, wanted.beside.method);
+      drawn.beside = besideRenderer(arguments, arguments.method).render(picture).picture;
+      return;
+    case Beside::Kind::Complexity: {
+      MethodOptions counting;
+      counting.name = kLayerCount;
+      const FrameReport report = besideRenderer(arguments, counting).measure(picture);
+      std::ranges::copy(report.pixelLayers, plane.values.begin());
+      drawn.largest = std::max<double>(report.layersMax, 1.0);
+      break;
+    }
+    default: {
+      MethodOptions exact = device_.exactMethod();
+      exact.samples = arguments.method.samples;
+      const Picture right = besideRenderer(arguments, exact).render(picture).picture;
+      for (std::size_t i = 0; i < plane.values.size(); ++i) {
+        for (std::size_t c = 0; c < 4; ++c) {
+          const int off = std::abs(int{drawn.picture.rgba[4 * i + c]} - int{right.rgba[4 * i + c]});
+          plane.values[i] = std::max(plane.values[i], static_cast<double>(off));
+        }
+      }
+      drawn.largest = std::max(*std::ranges::max_element(plane.values), 1.0);
+    }
+  }
+  drawn.beside = heatmap(plane, drawn.largest, kMagma);
+}
+
 void Drawer::draw(const Wanted& wanted) {
   load(wanted.arguments);
   choose(wanted.arguments);
@@ -187,8 +245,14 @@ void Drawer::draw(const Wanted& wanted) {
   const auto start = std::chrono::steady_clock::now();
   RenderResult result = renderer_->render(options);
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-  Drawn drawn{wanted,       options.view,    std::move(result.picture), std::move(result.report),
-              took.count(), scene_->warnings};
+  Drawn drawn;
+  drawn.wanted = wanted;
+  drawn.view = options.view;
+  drawn.picture = std::move(result.picture);
+  drawn.report = std::move(result.report);
+  drawn.milliseconds = took.count();
+  drawn.warnings = scene_->warnings;
+  drawBeside(wanted, options, drawn);
   drawn.warnings.insert(drawn.warnings.end(), drawn.report.warnings.begin(), drawn.report.warnings.end());
   if (result.isEmpty) drawn.warnings.push_back(nothingSeenWarning(*scene_, seenOf(options, arguments.opacity)));
   const std::lock_guard lock(mutex_);

@@ -17,10 +17,24 @@
 
 namespace vitrail::tool {
 
+// What stands beside the picture of a window.
+struct Beside {
+  enum class Kind {
+    Nothing,
+    Method,     // the same by another method
+    Complexity, // how many transparent surfaces each pixel has
+    Error       // how far each pixel is from the exact picture
+  };
+  Kind kind = Kind::Nothing;
+  std::string method; // of Kind::Method
+  bool operator==(const Beside&) const = default;
+};
+
 // A picture that is wanted: what `vitrail render` would draw, or one with a pixel for each square of `coarse` pixels.
 struct Wanted {
   RenderArguments arguments;
   std::uint32_t coarse = 1;
+  Beside beside{};
 };
 
 // What a window has to know of a scene.
@@ -45,6 +59,8 @@ struct Drawn {
   Wanted wanted;
   View view;
   Picture picture;
+  Picture beside;       // empty: nothing
+  double largest = 0.0; // number that `beside` shows: surfaces, or 1/255
   FrameReport report;
   double milliseconds = 0.0; // for the picture, without what had to be made once
   std::vector<std::string> warnings;
@@ -79,6 +95,9 @@ class Drawer {
   void run();
   void draw(const Wanted& wanted);
   void pick(Picked& picked);
+  void drawBeside(const Wanted& wanted, const RenderOptions& options, Drawn& drawn);
+  Renderer& besideRenderer(const RenderArguments& arguments, const MethodOptions& method);
+  void letGo();
   void load(const RenderArguments& arguments);
   void choose(const RenderArguments& arguments);
   void prepare(const RenderArguments& arguments);
@@ -106,6 +125,9 @@ class Drawer {
   RenderArguments sceneArguments_; // of scene_
   std::unique_ptr<Renderer> renderer_;
   RenderArguments rendererArguments_; // of renderer_
+  std::unique_ptr<Renderer> beside_;
+  MethodOptions besideMethod_;
+  std::optional<float> besideOpacity_;
   std::unique_ptr<Picker> picker_;
   std::optional<float> pickerOpacity_;
   std::thread thread_;

@@ -11,6 +11,20 @@ namespace vitrail::tool {
 
 namespace {
 
+// What stands beside a picture.
+std::string nameOf(const Drawn& drawn) {
+  switch (drawn.wanted.beside.kind) {
+    case Beside::Kind::Method:
+      return drawn.wanted.beside.method;
+    case Beside::Kind::Complexity:
+      return "complexity";
+    case Beside::Kind::Error:
+      return "error";
+    default:
+      return "";
+  }
+}
+
 void write(std::FILE* file, const nlohmann::json& line) {
   const std::string text = line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   std::fwrite(text.data(), 1, text.size(), file);
@@ -40,6 +54,8 @@ void EventLog::shown(const Drawn& drawn, const std::string& command) {
                       {"fragments", report.fragmentsRequested},
                       {"layersMax", report.layersMax},
                       {"milliseconds", drawn.milliseconds},
+                      {"beside", nameOf(drawn)},
+                      {"largest", drawn.largest},
                       {"warnings", drawn.warnings},
                       {"command", command}});
 }

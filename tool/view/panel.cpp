@@ -152,6 +152,23 @@ void showCut(RenderArguments& arguments, const SceneFacts& scene) {
   planes.assign(1, plane);
 }
 
+void showBeside(const PanelState& state) {
+  Beside& beside = state.beside;
+  using Kind = Beside::Kind;
+  std::string now = "nothing";
+  if (beside.kind == Kind::Method) now = beside.method;
+  if (beside.kind == Kind::Complexity) now = "depth complexity";
+  if (beside.kind == Kind::Error) now = "error";
+  if (!ImGui::BeginCombo("beside it", now.c_str(), ImGuiComboFlags_HeightLarge)) return;
+  if (ImGui::Selectable("nothing")) beside = {};
+  if (ImGui::Selectable("depth complexity")) beside = {Kind::Complexity, {}};
+  if (ImGui::Selectable("error")) beside = {Kind::Error, {}};
+  for (const std::string& name : methodsOf(state.device)) {
+    if (ImGui::Selectable(name.c_str())) beside = {Kind::Method, name};
+  }
+  ImGui::EndCombo();
+}
+
 void showInside(const PanelState& state, PanelActions& actions) {
   RenderArguments& arguments = state.arguments;
   auto peel = static_cast<int>(arguments.peel.value_or(0));
@@ -255,6 +272,7 @@ PanelActions drawPanel(const PanelState& state) {
   }
   ImGui::PushItemWidth(kWidth * scale * 0.55F);
   showMethods(state);
+  showBeside(state);
   ImGui::Separator();
   showLook(state, state.scene, actions);
   ImGui::Separator();

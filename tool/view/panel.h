@@ -23,6 +23,7 @@ struct PanelState {
   const Picked* picked;           // null: nothing was
   const Picked* pickedBefore;
   Parts& parts;
+  Beside& beside;
   const Drawn* drawn;                    // the picture on the screen; null: none
   std::string doing;                     // what the drawer is at
   const std::deque<float>& milliseconds; // of the last pictures

@@ -44,9 +44,9 @@ Unique<VkDescriptorSetLayout> makeSetLayout(Gpu& gpu) {
   return {gpu.device(), layout, vkDestroyDescriptorSetLayout};
 }
 
-// For two textures, in two ways each.
+// For three textures, in two ways each.
 Unique<VkDescriptorPool> makePool(Gpu& gpu) {
-  constexpr std::uint32_t kSets = 4;
+  constexpr std::uint32_t kSets = 6;
   const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kSets};
   auto info = vkStruct<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
   info.maxSets = kSets;
@@ -111,8 +111,7 @@ Presenter::Presenter(Window& window, bool validate) : window_(window) {
     slot.acquired = {gpu.device(), semaphore, vkDestroySemaphore};
   }
   makeFont();
-  picture_ = makeTexture({1, 1}, "picture");
-  picturePixels_ = Pending{{1, 1}, {0, 0, 0, 0}};
+  for (const std::size_t side : {0U, 1U}) setTexture(textures_[side], {1, 1}, {0, 0, 0, 0}, "picture");
 }
 
 Presenter::~Presenter() {
@@ -124,8 +123,7 @@ std::string Presenter::device() const { return gpu_->properties().deviceName; }
 std::vector<std::string> Presenter::finish() {
   vkDeviceWaitIdle(gpu_->device());
   for (Slot& slot : slots_) slot = {};
-  font_ = {};
-  picture_ = {};
+  textures_ = {};
   pipeline_ = {};
   layout_ = {};
   samplers_ = {};
@@ -143,27 +141,28 @@ void Presenter::makeFont() {
   int height = 0;
   atlas.GetTexDataAsRGBA32(&pixels, &width, &height);
   const PixelSize size{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
-  font_ = makeTexture(size, "font");
-  fontPixels_ = Pending{size, {pixels, pixels + std::size_t{size.width} * size.height * 4}};
-  atlas.SetTexID(font_.sets[1]);
+  setTexture(textures_[kFont], size, {pixels, pixels + std::size_t{size.width} * size.height * 4}, "font");
+  atlas.SetTexID(textures_[kFont].sets[1]);
   atlas.ClearTexData();
 }
 
-Presenter::Texture Presenter::makeTexture(PixelSize size, const char* name) {
-  Texture texture;
+// Gives a texture other pixels, and an image of their size.
+void Presenter::setTexture(Texture& texture, PixelSize size, std::vector<std::uint8_t> pixels, const char* name) {
+  texture.pixels = std::move(pixels);
+  const VkExtent2D extent = texture.image.info().extent;
+  if (extent.width == size.width && extent.height == size.height) return;
+  check(vkDeviceWaitIdle(gpu_->device()), "vkDeviceWaitIdle"); // frames in flight show the one before
   GpuImageInfo info;
   info.extent = {size.width, size.height};
   info.format = kTextureFormat;
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   texture.image = GpuImage(*gpu_, info, name);
-  std::array<VkDescriptorSetLayout, 2> layouts = {setLayout_.get(), setLayout_.get()};
-  auto allocate = vkStruct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-  allocate.descriptorPool = sets_.get();
-  allocate.descriptorSetCount = 2;
-  allocate.pSetLayouts = layouts.data();
-  if (picture_.sets[0] != VK_NULL_HANDLE) {
-    texture.sets = picture_.sets; // a larger or smaller one in its place
-  } else {
+  if (texture.sets[0] == VK_NULL_HANDLE) {
+    const std::array<VkDescriptorSetLayout, 2> layouts = {setLayout_.get(), setLayout_.get()};
+    auto allocate = vkStruct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+    allocate.descriptorPool = sets_.get();
+    allocate.descriptorSetCount = 2;
+    allocate.pSetLayouts = layouts.data();
     check(vkAllocateDescriptorSets(gpu_->device(), &allocate, texture.sets.data()),
           "vkAllocateDescriptorSets (window)");
   }
@@ -177,18 +176,14 @@ Presenter::Texture Presenter::makeTexture(PixelSize size, const char* name) {
     write.pImageInfo = &image;
     vkUpdateDescriptorSets(gpu_->device(), 1, &write, 0, nullptr);
   }
-  return texture;
 }
 
-void* Presenter::pictureTexture(bool smooth) const { return picture_.sets[smooth ? 1 : 0]; }
+void* Presenter::texture(Side side, bool smooth) const {
+  return textures_[static_cast<std::size_t>(side)].sets[smooth ? 1 : 0];
+}
 
-void Presenter::setPicture(const Picture& picture) {
-  const VkExtent2D extent = picture_.image.info().extent;
-  if (extent.width != picture.width || extent.height != picture.height) {
-    check(vkDeviceWaitIdle(gpu_->device()), "vkDeviceWaitIdle"); // frames in flight show the one before
-    picture_ = makeTexture({picture.width, picture.height}, "picture");
-  }
-  picturePixels_ = Pending{{picture.width, picture.height}, picture.rgba};
+void Presenter::setPicture(Side side, const Picture& picture) {
+  setTexture(textures_[static_cast<std::size_t>(side)], {picture.width, picture.height}, picture.rgba, "picture");
 }
 
 void Presenter::reserve(GpuBuffer& buffer, std::uint64_t bytes, VkBufferUsageFlags usage, const char* name) const {
@@ -197,20 +192,31 @@ void Presenter::reserve(GpuBuffer& buffer, std::uint64_t bytes, VkBufferUsageFla
   buffer = GpuBuffer(*gpu_, std::max<std::uint64_t>(bytes + bytes / 2, 4096), usage, MemoryKind::Upload, name);
 }
 
-// Copies pixels to a texture, behind all frames that sampled it.
-void Presenter::fill(Slot& slot, Texture& texture, const Pending& pixels) const {
-  reserve(slot.pixels, pixels.rgba.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, "pixels");
-  std::memcpy(slot.pixels.mapped(), pixels.rgba.data(), pixels.rgba.size());
-  const GpuImage& image = texture.image;
-  cmdImageBarrier(slot.commands, image.get(), image.range(), VK_IMAGE_LAYOUT_UNDEFINED,
-                  {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_NONE}, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                  kCopyWrite);
-  VkBufferImageCopy copy{};
-  copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-  copy.imageExtent = {pixels.size.width, pixels.size.height, 1};
-  vkCmdCopyBufferToImage(slot.commands, slot.pixels.get(), image.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-  cmdImageBarrier(slot.commands, image.get(), image.range(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, kCopyWrite,
-                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kFragmentSample);
+// Copies the pixels of textures that have others, behind all frames that sampled them.
+void Presenter::fillTextures(Slot& slot) {
+  std::uint64_t bytes = 0;
+  for (const Texture& texture : textures_) bytes += texture.pixels.size();
+  if (bytes == 0) return;
+  reserve(slot.pixels, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, "pixels");
+  std::uint64_t offset = 0;
+  for (Texture& texture : textures_) {
+    if (texture.pixels.empty()) continue;
+    std::memcpy(static_cast<std::byte*>(slot.pixels.mapped()) + offset, texture.pixels.data(), texture.pixels.size());
+    const GpuImage& image = texture.image;
+    cmdImageBarrier(slot.commands, image.get(), image.range(), VK_IMAGE_LAYOUT_UNDEFINED,
+                    {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_NONE}, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                    kCopyWrite);
+    VkBufferImageCopy copy{};
+    copy.bufferOffset = offset;
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.imageExtent = {image.info().extent.width, image.info().extent.height, 1};
+    vkCmdCopyBufferToImage(slot.commands, slot.pixels.get(), image.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                           &copy);
+    cmdImageBarrier(slot.commands, image.get(), image.range(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, kCopyWrite,
+                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kFragmentSample);
+    offset += texture.pixels.size();
+    texture.pixels.clear();
+  }
 }
 
 void Presenter::copyGeometry(Slot& slot, const ImDrawData& data) const {
@@ -310,18 +316,7 @@ bool Presenter::show(ImDrawData& data, bool vsync) {
   auto begin = vkStruct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer (window)");
-  if (fontPixels_) { // the first frame: the picture follows in the next one, by another copy
-    fill(slot, font_, *fontPixels_);
-    fontPixels_.reset();
-    if (picture_.isNew) {
-      cmdImageBarrier(slot.commands, picture_.image.get(), picture_.image.range(), VK_IMAGE_LAYOUT_UNDEFINED, {},
-                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kFragmentSample);
-    }
-  } else if (picturePixels_) {
-    fill(slot, picture_, *picturePixels_);
-    picturePixels_.reset();
-  }
-  picture_.isNew = false;
+  fillTextures(slot);
   copyGeometry(slot, data);
   draw(slot, *image, data);
   check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer (window)");

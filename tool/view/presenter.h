@@ -28,11 +28,13 @@ class Presenter {
   Presenter(const Presenter&) = delete;
   Presenter& operator=(const Presenter&) = delete;
 
+  // The two pictures of a window.
+  enum class Side { Picture, Beside };
   // What ImGui::Image() and ImDrawList::AddImage() take for a picture of setPicture(): as it is, pixel by pixel, or
   // smoothed.
-  [[nodiscard]] void* pictureTexture(bool smooth) const;
+  [[nodiscard]] void* texture(Side side, bool smooth) const;
   // The picture of the frames to come.
-  void setPicture(const Picture& picture);
+  void setPicture(Side side, const Picture& picture);
 
   // Shows what ImGui has drawn. False: the window has no size, and nothing was shown. Throws GpuError.
   bool show(ImDrawData& data, bool vsync);
@@ -54,17 +56,15 @@ class Presenter {
   };
   struct Texture {
     GpuImage image;
-    bool isNew = true;                     // nothing was copied to it
     std::array<VkDescriptorSet, 2> sets{}; // as it is, smoothed
+    std::vector<std::uint8_t> pixels;      // to be copied to it; empty: they are there
   };
-  struct Pending {
-    PixelSize size;
-    std::vector<std::uint8_t> rgba;
-  };
+  static constexpr std::size_t kFont = 2; // behind those of Side
+  static constexpr std::size_t kTextures = 3;
 
   void makeFont();
-  Texture makeTexture(PixelSize size, const char* name);
-  void fill(Slot& slot, Texture& texture, const Pending& pixels) const;
+  void setTexture(Texture& texture, PixelSize size, std::vector<std::uint8_t> pixels, const char* name);
+  void fillTextures(Slot& slot);
   void reserve(GpuBuffer& buffer, std::uint64_t bytes, VkBufferUsageFlags usage, const char* name) const;
   void draw(Slot& slot, const Swapchain::Image& image, ImDrawData& data);
   void copyGeometry(Slot& slot, const ImDrawData& data) const;
@@ -81,10 +81,7 @@ class Presenter {
   static constexpr std::size_t kFrames = 2; // in flight
   std::array<Slot, kFrames> slots_;
   std::size_t next_ = 0;
-  Texture font_;
-  std::optional<Pending> fontPixels_;
-  Texture picture_;
-  std::optional<Pending> picturePixels_;
+  std::array<Texture, kTextures> textures_;
 };
 
 } // namespace vitrail::tool

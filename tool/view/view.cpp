@@ -23,6 +23,7 @@ In the window:
   1, 3, 7               from the front, the right, above; with ctrl from the other side
   space                 automatic rotation
   S, M, [ and ]         sorting on or off; the next method; fewer or more sorted layers
+  B                     beside the picture: depth complexity, error, another method, nothing
   P                     saves the picture as NAME_1.png in the current folder
   C                     copies the command that draws the picture again, bit for bit, and prints it
   tab                   shows or hides the panel

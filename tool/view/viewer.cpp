@@ -23,6 +23,7 @@
 #include "../commands/device_options.h"
 #include "../commands/output_file.h"
 #include "../commands/output_format.h"
+#include "../image/color_map.h"
 #include "../methods/methods.h"
 #include "../scene/message.h"
 #include "command_line.h"
@@ -178,7 +179,8 @@ class Viewer {
       if (!drawn_) std::rethrow_exception(caught); // there is nothing to go back to
       const std::string error = wordsOf(caught);
       now_ = showing_;
-      asked_ = Wanted{now_, 1};
+      beside_ = drawn_->wanted.beside;
+      asked_ = Wanted{now_, 1, beside_};
       isNavigating_ = false;
       rotates_ = false;
       log_.happened("error", error);
@@ -193,7 +195,8 @@ class Viewer {
     if (!drawn) return;
     isAsked_ = false;
     changed_ = true;
-    presenter_.setPicture(drawn->picture);
+    presenter_.setPicture(Presenter::Side::Picture, drawn->picture);
+    if (!drawn->beside.rgba.empty()) presenter_.setPicture(Presenter::Side::Beside, drawn->beside);
     const bool isOther = !drawn_ || drawer_->scene() != scene_;
     scene_ = drawer_->scene();
     showing_ = drawn->wanted.arguments;
@@ -262,14 +265,14 @@ class Viewer {
 
   void steer(PixelSize size) {
     const ImGuiIO& io = ImGui::GetIO();
-    drags_ = false;
     constexpr double kDegreesOfAHeight = 180.0;
     const double right = io.MouseDelta.x / static_cast<double>(size.height);
     const double up = -io.MouseDelta.y / static_cast<double>(size.height);
-    if (!io.WantCaptureMouse) {
+    if (!io.WantCaptureMouse && !dragsDivider_) {
       pickWhereClicked(size);
       const bool pans = ImGui::IsMouseDown(1) || ImGui::IsMouseDown(2) || (ImGui::IsMouseDown(0) && io.KeyShift);
-      drags_ = pans || ImGui::IsMouseDown(0);
+      const bool isDown = pans || ImGui::IsMouseDown(0);
+      drags_ = isDown && (drags_ || right != 0.0 || up != 0.0); // pressing alone moves nothing
       if (drags_ && (right != 0.0 || up != 0.0)) {
         move([&](Navigation& navigation) {
           pans ? navigation.pan(right, up) : navigation.orbit(-right * kDegreesOfAHeight, -up * kDegreesOfAHeight);
@@ -278,6 +281,8 @@ class Viewer {
       if (io.MouseWheel != 0.0F) {
         move([&](Navigation& navigation) { navigation.zoom(std::pow(1.1, io.MouseWheel)); });
       }
+    } else {
+      drags_ = false;
     }
     if (rotates_ && scene_ && !isAsked_) {
       const double seconds = std::min(since(lastTurn_), 0.5);
@@ -297,37 +302,84 @@ class Viewer {
   }
 
   void pressKeys() {
-    ImGuiIO& io = ImGui::GetIO();
-    if (io.WantTextInput) return;
-    const auto pressed = [](int key, bool repeat = false) { return ImGui::IsKeyPressed(key, repeat); };
-    const double back = io.KeyCtrl ? 180.0 : 0.0;
-    if (pressed(GLFW_KEY_1) || pressed(GLFW_KEY_KP_1)) frame(back, 0.0);
-    if (pressed(GLFW_KEY_3) || pressed(GLFW_KEY_KP_3)) frame(90.0 + back, 0.0);
-    if (pressed(GLFW_KEY_7) || pressed(GLFW_KEY_KP_7)) frame(0.0, io.KeyCtrl ? -90.0 : 90.0);
-    if (pressed(GLFW_KEY_F)) frameFromHere();
-    if (pressed(GLFW_KEY_R)) reset();
-    if (pressed(GLFW_KEY_SPACE)) toggleRotation();
-    if (pressed(GLFW_KEY_TAB)) hasPanel_ = !hasPanel_;
-    if (pressed(GLFW_KEY_S) && Sorting::isChoice(device_)) sorting_.set(now_, !Sorting::isOn(now_));
-    if (pressed(GLFW_KEY_M)) nextMethod(io.KeyShift ? -1 : 1);
-    if (pressed(GLFW_KEY_P)) save();
-    if (pressed(GLFW_KEY_C)) copy();
-    if (pressed(GLFW_KEY_Q) && io.KeyCtrl) window_.close();
-    if (pressed(GLFW_KEY_LEFT_BRACKET, true)) changeLayers(-1);
-    if (pressed(GLFW_KEY_RIGHT_BRACKET, true)) changeLayers(1);
+    const std::vector<KeyPress> keys = window_.takeKeys();
+    if (ImGui::GetIO().WantTextInput) return;
+    for (const KeyPress& key : keys) {
+      if (!key.repeats) press(key);
+      pressOrHold(key);
+    }
+  }
+
+  void press(const KeyPress& key) {
+    const double back = key.control ? 180.0 : 0.0;
+    switch (key.key) {
+      case GLFW_KEY_1:
+      case GLFW_KEY_KP_1:
+        return frame(back, 0.0);
+      case GLFW_KEY_3:
+      case GLFW_KEY_KP_3:
+        return frame(90.0 + back, 0.0);
+      case GLFW_KEY_7:
+      case GLFW_KEY_KP_7:
+        return frame(0.0, key.control ? -90.0 : 90.0);
+      case GLFW_KEY_F:
+        return frameFromHere();
+      case GLFW_KEY_R:
+        return reset();
+      case GLFW_KEY_SPACE:
+        return toggleRotation();
+      case GLFW_KEY_TAB:
+        hasPanel_ = !hasPanel_;
+        return;
+      case GLFW_KEY_S:
+        if (Sorting::isChoice(device_)) sorting_.set(now_, !Sorting::isOn(now_));
+        return;
+      case GLFW_KEY_M:
+        return nextMethod(key.shift ? -1 : 1);
+      case GLFW_KEY_B:
+        return nextBeside();
+      case GLFW_KEY_P:
+        return save();
+      case GLFW_KEY_C:
+        return copy();
+      case GLFW_KEY_Q:
+        if (key.control) window_.close();
+        return;
+      default:
+        return;
+    }
+  }
+
+  // Keys that go on while they are held.
+  void pressOrHold(const KeyPress& key) {
     constexpr double kStep = 5.0; // degrees; a twentieth of the picture
     const auto arrow = [&](double right, double up) {
       move([&](Navigation& navigation) {
-        io.KeyShift ? navigation.pan(-0.01 * right, -0.01 * up) : navigation.orbit(right, up);
+        key.shift ? navigation.pan(-0.01 * right, -0.01 * up) : navigation.orbit(right, up);
       });
     };
-    if (pressed(GLFW_KEY_LEFT, true)) arrow(-kStep, 0.0);
-    if (pressed(GLFW_KEY_RIGHT, true)) arrow(kStep, 0.0);
-    if (pressed(GLFW_KEY_UP, true)) arrow(0.0, kStep);
-    if (pressed(GLFW_KEY_DOWN, true)) arrow(0.0, -kStep);
-    const bool in = pressed(GLFW_KEY_EQUAL, true) || pressed(GLFW_KEY_KP_ADD, true);
-    const bool out = pressed(GLFW_KEY_MINUS, true) || pressed(GLFW_KEY_KP_SUBTRACT, true);
-    if (in || out) move([&](Navigation& navigation) { navigation.zoom(in ? 1.1 : 1.0 / 1.1); });
+    switch (key.key) {
+      case GLFW_KEY_LEFT:
+        return arrow(-kStep, 0.0);
+      case GLFW_KEY_RIGHT:
+        return arrow(kStep, 0.0);
+      case GLFW_KEY_UP:
+        return arrow(0.0, kStep);
+      case GLFW_KEY_DOWN:
+        return arrow(0.0, -kStep);
+      case GLFW_KEY_EQUAL:
+      case GLFW_KEY_KP_ADD:
+        return move([](Navigation& navigation) { navigation.zoom(1.1); });
+      case GLFW_KEY_MINUS:
+      case GLFW_KEY_KP_SUBTRACT:
+        return move([](Navigation& navigation) { navigation.zoom(1.0 / 1.1); });
+      case GLFW_KEY_LEFT_BRACKET:
+        return changeLayers(-1);
+      case GLFW_KEY_RIGHT_BRACKET:
+        return changeLayers(1);
+      default:
+        return;
+    }
   }
 
   void toggleRotation() {
@@ -340,6 +392,29 @@ class Viewer {
     const auto at = std::ranges::find(names, now_.method.name) - names.begin();
     const auto count = static_cast<std::ptrdiff_t>(names.size());
     chooseMethod(now_, names[static_cast<std::size_t>((at + step + count) % count)]);
+  }
+
+  // The exact one, or what that is compared with.
+  std::string methodBeside() const {
+    const std::string exact = device_.exactMethod().name;
+    return now_.method.name == exact && Sorting::isChoice(device_) ? "unsorted" : exact;
+  }
+
+  void nextBeside() {
+    using Kind = Beside::Kind;
+    switch (beside_.kind) {
+      case Kind::Nothing:
+        beside_ = {Kind::Complexity, {}};
+        break;
+      case Kind::Complexity:
+        beside_ = {Kind::Error, {}};
+        break;
+      case Kind::Error:
+        beside_ = {Kind::Method, methodBeside()};
+        break;
+      case Kind::Method:
+        beside_ = {};
+    }
   }
 
   void changeLayers(int step) {
@@ -355,10 +430,10 @@ class Viewer {
   void askFor(PixelSize size) {
     now_.width = size.width;
     now_.height = size.height;
-    Wanted wanted{now_, 1};
+    Wanted wanted{now_, 1, beside_};
     if (isMoving() || isSettling()) wanted.coarse = coarseness();
-    const bool isSame =
-        asked_ && asked_->coarse == wanted.coarse && renderCommand(asked_->arguments, "-") == renderCommand(now_, "-");
+    const bool isSame = asked_ && asked_->coarse == wanted.coarse && asked_->beside == beside_ &&
+                        renderCommand(asked_->arguments, "-") == renderCommand(now_, "-");
     if (isSame) return;
     asked_ = wanted;
     isAsked_ = true;
@@ -387,7 +462,43 @@ class Viewer {
     const ImVec2 corner = ImGui::GetIO().DisplaySize;
     if (drawn_->picture.hasAlpha) drawChecks(list, corner);
     const bool fits = drawn_->picture.width == size.width && drawn_->picture.height == size.height;
-    list.AddImage(presenter_.pictureTexture(!fits), ImVec2(0.0F, 0.0F), corner);
+    list.AddImage(presenter_.texture(Presenter::Side::Picture, !fits), ImVec2(0.0F, 0.0F), corner);
+    if (!drawn_->beside.rgba.empty()) drawBeside(list, corner, fits);
+  }
+
+  // The other picture to the right of a line that is dragged, and what its colours stand for.
+  void drawBeside(ImDrawList& list, const ImVec2& corner, bool fits) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const float line = std::round(divider_ * corner.x);
+    list.AddImage(presenter_.texture(Presenter::Side::Beside, !fits), ImVec2(line, 0.0F), corner,
+                  ImVec2(line / corner.x, 0.0F), ImVec2(1.0F, 1.0F));
+    list.AddLine(ImVec2(line, 0.0F), ImVec2(line, corner.y), IM_COL32(255, 160, 0, 255), 2.0F);
+    const bool isNear = std::abs(io.MousePos.x - line) < 6.0F && !io.WantCaptureMouse;
+    if (isNear || dragsDivider_) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    if (isNear && ImGui::IsMouseClicked(0)) dragsDivider_ = true;
+    if (!ImGui::IsMouseDown(0)) dragsDivider_ = false;
+    if (dragsDivider_) divider_ = std::clamp(io.MousePos.x / corner.x, 0.0F, 1.0F);
+    drawLegend(list, corner, drawn_->wanted.beside);
+  }
+
+  void drawLegend(ImDrawList& list, const ImVec2& corner, const Beside& beside) const {
+    std::string text = beside.method;
+    if (beside.kind == Beside::Kind::Complexity) text = fmt::format("surfaces of a pixel: 0 to {}", drawn_->largest);
+    if (beside.kind == Beside::Kind::Error) text = fmt::format("off the exact picture: 0 to {}/255", drawn_->largest);
+    const float height = ImGui::GetFontSize();
+    const ImVec2 at(corner.x - ImGui::CalcTextSize(text.c_str()).x - 20.0F, 14.0F);
+    const bool hasColors = beside.kind != Beside::Kind::Method;
+    list.AddRectFilled(ImVec2(at.x - 8.0F, at.y - 6.0F),
+                       ImVec2(corner.x - 12.0F, at.y + (hasColors ? 2.4F : 1.3F) * height), IM_COL32(0, 0, 0, 200));
+    list.AddText(at, IM_COL32(255, 255, 255, 255), text.c_str());
+    if (!hasColors) return;
+    const auto color = [](const std::array<std::uint8_t, 3>& c) { return IM_COL32(c[0], c[1], c[2], 255); };
+    const float step = (corner.x - 20.0F - at.x) / static_cast<float>(kMagma.size() - 1);
+    for (std::size_t i = 0; i + 1 < kMagma.size(); ++i) {
+      const float left = at.x + step * static_cast<float>(i);
+      list.AddRectFilledMultiColor(ImVec2(left, at.y + 1.3F * height), ImVec2(left + step, at.y + 2.1F * height),
+                                   color(kMagma[i]), color(kMagma[i + 1]), color(kMagma[i + 1]), color(kMagma[i]));
+    }
   }
 
   // What shows through transparent pictures.
@@ -407,9 +518,10 @@ class Viewer {
       const bool didRotate = rotates_;
       parts_.set(scene_, now_.objects);
       const ObjectChoice before = now_.objects;
-      const PanelActions actions = drawPanel({now_, sorting_, rotates_, vsync_, device_, presentedBy_, scene_.get(),
-                                              picked_ ? &*picked_ : nullptr, pickedBefore_ ? &*pickedBefore_ : nullptr,
-                                              parts_, drawn_ ? &*drawn_ : nullptr, drawer_->doing(), milliseconds_});
+      const PanelActions actions =
+          drawPanel({now_, sorting_, rotates_, vsync_, device_, presentedBy_, scene_.get(),
+                     picked_ ? &*picked_ : nullptr, pickedBefore_ ? &*pickedBefore_ : nullptr, parts_, beside_,
+                     drawn_ ? &*drawn_ : nullptr, drawer_->doing(), milliseconds_});
       if (rotates_ && !didRotate) lastTurn_ = Clock::now();
       if (actions.frame) frameFromHere();
       if (actions.reset) reset();
@@ -500,6 +612,9 @@ class Viewer {
   Parts parts_;
   std::optional<Picked> picked_;
   std::optional<Picked> pickedBefore_;
+  Beside beside_;
+  float divider_ = 0.5F; // part of the width
+  bool dragsDivider_ = false;
   std::optional<Drawn> drawn_;
   std::optional<Wanted> asked_;
   bool isAsked_ = false; // and not drawn yet

@@ -59,6 +59,12 @@ Window::Window(const std::string& title, PixelSize size) {
                       static_cast<int>(std::lround(fits.height * ratio)));
   }
   glfwSetWindowUserPointer(window_, this);
+  // Dear ImGui passes on to it what it takes, too.
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int /*code*/, int action, int mods) {
+    if (action == GLFW_RELEASE) return;
+    auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
+    self.keys_.push_back({key, (mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_CONTROL) != 0, action == GLFW_REPEAT});
+  });
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
     auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
     for (int i = 0; i < count; ++i) self.dropped_.emplace_back(paths[i]);
@@ -101,6 +107,8 @@ void Window::wait(double seconds) {
 }
 
 void Window::wake() { glfwPostEmptyEvent(); }
+
+std::vector<KeyPress> Window::takeKeys() { return std::exchange(keys_, {}); }
 
 std::vector<std::string> Window::takeDropped() { return std::exchange(dropped_, {}); }
 

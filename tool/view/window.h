@@ -24,6 +24,14 @@ struct PixelSize {
   bool operator==(const PixelSize&) const = default;
 };
 
+// A key that went down, or repeats.
+struct KeyPress {
+  int key = 0; // of GLFW
+  bool shift = false;
+  bool control = false;
+  bool repeats = false;
+};
+
 class Window {
  public:
   // Opens a window whose inside is so many pixels, or as many as the screen has room for. Throws WindowError where
@@ -48,6 +56,8 @@ class Window {
   // Wakes wait(). From any thread.
   static void wake();
 
+  // The keys since the last call: none is missed, however short it was down.
+  std::vector<KeyPress> takeKeys();
   // The files that were dropped since the last call.
   std::vector<std::string> takeDropped();
 
@@ -60,6 +70,7 @@ class Window {
  private:
   GLFWwindow* window_ = nullptr;
   std::vector<std::string> dropped_;
+  std::vector<KeyPress> keys_;
 };
 
 } // namespace vitrail::tool
