@@ -74,6 +74,9 @@ TEST(Inside, WhatCannotBeDoneIsRefused) {
   refuse({"pick", "walls.obj", "--at", "1,1", "--hide", "door"}, 2, "there are \"near\", \"far\"");
   refuse({"render", "walls.obj", "-o", "a.png", "--isolate", "door"}, 2, "no object is named");
   refuse({"render", "walls.obj", "-o", "a.png", "--peel", "0"}, 2, "--peel");
+  refuse({"render", "walls.obj", "-o", "a.png", "--fade", "near"}, 2, "NAME=A");
+  refuse({"render", "walls.obj", "-o", "a.png", "--fade", "near=2"}, 2, "NAME=A");
+  refuse({"render", "walls.obj", "-o", "a.png", "--fade", "door=0.5"}, 2, "no object is named");
   refuse({"render", "walls.obj", "-o", "a.png", "--peel", "1", "--method", "weighted"}, 2, "method cpu");
   refuse({"render", "walls.obj", "-o", "a.png", "--peel", "1", "--device", "llvmpipe"}, 2, "--peel");
   refuse({"render", "walls.obj", "-o", "a.png", "--peel", "1", "--api", "opengl"}, 2, "--peel");

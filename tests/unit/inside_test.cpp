@@ -216,17 +216,30 @@ using Paths = std::vector<std::string>;
 
 TEST(Objects, AreChosenWithAllBelowThem) {
   EXPECT_EQ(drawn({}), (Paths{"car/body", "car/wheel", "car/wheel/tyre", "wheel"}));
-  EXPECT_EQ(drawn({{"wheel"}, {}, {}}), (Paths{"car/wheel", "car/wheel/tyre", "wheel"}));
-  EXPECT_EQ(drawn({{"car/wheel"}, {}, {}}), (Paths{"car/wheel", "car/wheel/tyre"}));
-  EXPECT_EQ(drawn({{}, {"wheel"}, {}}), (Paths{"car/body"}));
-  EXPECT_EQ(drawn({{}, {"car"}, {"tyre"}}), (Paths{"car/wheel/tyre", "wheel"}));
-  EXPECT_EQ(drawn({{"car"}, {"body"}, {}}), (Paths{"car/wheel", "car/wheel/tyre"}));
-  EXPECT_TRUE(drawn({{}, {"car", "wheel"}, {}}).empty());
+  EXPECT_EQ(drawn({{"wheel"}, {}, {}, {}}), (Paths{"car/wheel", "car/wheel/tyre", "wheel"}));
+  EXPECT_EQ(drawn({{"car/wheel"}, {}, {}, {}}), (Paths{"car/wheel", "car/wheel/tyre"}));
+  EXPECT_EQ(drawn({{}, {"wheel"}, {}, {}}), (Paths{"car/body"}));
+  EXPECT_EQ(drawn({{}, {"car"}, {"tyre"}, {}}), (Paths{"car/wheel/tyre", "wheel"}));
+  EXPECT_EQ(drawn({{"car"}, {"body"}, {}, {}}), (Paths{"car/wheel", "car/wheel/tyre"}));
+  EXPECT_TRUE(drawn({{}, {"car", "wheel"}, {}, {}}).empty());
+}
+
+TEST(Objects, AreFaded) {
+  Scene scene = car();
+  ObjectChoice choice;
+  choice.fade = {{"car", 0.5F}, {"car/wheel", 0.25F}};
+  chooseObjects(scene, choice);
+  const std::vector<float> expected = {0.5F, 0.25F, 0.25F, 1.0F};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Material& material = scene.materials[scene.draws[i].material];
+    EXPECT_EQ(material.baseColor.a, expected[i]) << i;
+    EXPECT_EQ(material.alphaMode, expected[i] < 1.0F ? AlphaMode::Blend : AlphaMode::Opaque) << i;
+  }
 }
 
 TEST(Objects, ThatAreNotThereAreRefused) {
   try {
-    drawn({{}, {"door"}, {}});
+    drawn({{}, {"door"}, {}, {}});
     FAIL();
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),

@@ -288,7 +288,8 @@ TEST_P(ViewTest, AClickListsTheLayersUnderIt) {
 }
 
 TEST_P(ViewTest, ShowsAPartOfTheModel) {
-  View view(folder_, with({"--scene", "interlocked", "--hide", "pane 0", "--clip-plane=0,-1,0,-0.3"}));
+  View view(folder_,
+            with({"--scene", "interlocked", "--hide", "pane 0", "--fade", "ring 1=0.3", "--clip-plane=0,-1,0,-0.3"}));
   const Json shown = view.settled();
   ASSERT_FALSE(shown.is_null());
   expectSameAsRendered(view, shown["command"]);

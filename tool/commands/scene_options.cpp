@@ -32,6 +32,7 @@ constexpr std::string_view kSceneHelp =
                         its path (car/wheel); several times for several
   --hide NAME           leaves it out
   --show NAME           draws it although one above it is hidden
+  --fade NAME=A         makes its materials translucent, 0.004 to 1
 
 How to look at it:
   --size WxH            pixels (default 1280x720)
@@ -39,6 +40,16 @@ How to look at it:
   --point-size N        how many pixels the points of point clouds are across (default 3)
   --opacity A           X-ray: makes every material translucent, 0.004 to 1
   --background B        a colour as #rrggbb (sRGB), sky, or transparent (a picture with alpha))";
+
+ObjectChoice::Fade fadeOf(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  const auto opacity = equals == std::string::npos ? std::nullopt : numberOf<float>(text.substr(equals + 1));
+  if (!opacity || equals == 0 || !(*opacity >= 0.004F) || *opacity > 1.0F) {
+    throw CLI::ValidationError("--fade",
+                               fmt::format("'{}' is not NAME=A with an A from 0.004 to 1, such as wheel=0.25", text));
+  }
+  return {text.substr(0, equals), *opacity};
+}
 
 Background backgroundOf(const std::string& text) {
   Background background;
@@ -74,6 +85,14 @@ void addSceneOptions(CLI::App& command, SceneArguments& arguments) {
   command.add_option("--isolate", arguments.objects.isolate)->allow_extra_args(false);
   command.add_option("--hide", arguments.objects.hide)->allow_extra_args(false);
   command.add_option("--show", arguments.objects.show)->allow_extra_args(false);
+  command
+      .add_option_function<std::vector<std::string>>("--fade",
+                                                     [&arguments](const std::vector<std::string>& texts) {
+                                                       arguments.objects.fade.clear();
+                                                       for (const std::string& text : texts)
+                                                         arguments.objects.fade.push_back(fadeOf(text));
+                                                     })
+      ->allow_extra_args(false);
   command.add_option_function<std::string>(
       "--background", [&arguments](const std::string& text) { arguments.background = backgroundOf(text); });
 }

@@ -1,7 +1,9 @@
 #include "objects.h"
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -109,10 +111,37 @@ std::vector<bool> shownObjects(const ObjectTree& objects, const ObjectChoice& ch
   return shown;
 }
 
+std::vector<float> opacities(const ObjectTree& objects, const ObjectChoice& choice) {
+  std::vector<float> factors(objects.size(), 1.0F);
+  for (const ObjectChoice::Fade& fade : choice.fade) {
+    const std::vector<bool> marked = named(objects, fade.name);
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      if (marked[i]) factors[i] = fade.opacity;
+    }
+  }
+  return factors;
+}
+
 void chooseObjects(Scene& scene, const ObjectChoice& choice) {
   if (choice.isAll()) return;
   const std::vector<bool> shown = shownObjects(scene.objects, choice);
   std::erase_if(scene.draws, [&](const Draw& draw) { return !shown[draw.object]; });
+  if (choice.fade.empty()) return;
+  const std::vector<float> factors = opacities(scene.objects, choice);
+  std::map<std::pair<std::uint32_t, float>, std::uint32_t> made; // of a material and a factor
+  for (Draw& draw : scene.draws) {
+    const float factor = factors[draw.object];
+    if (factor == 1.0F) continue;
+    const auto [known, isNew] =
+        made.try_emplace({draw.material, factor}, static_cast<std::uint32_t>(scene.materials.size()));
+    if (isNew) {
+      Material faded = scene.materials[draw.material];
+      faded.alphaMode = AlphaMode::Blend;
+      faded.baseColor.a *= factor;
+      scene.materials.push_back(std::move(faded));
+    }
+    draw.material = known->second;
+  }
 }
 
 } // namespace vitrail::tool

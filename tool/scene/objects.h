@@ -47,8 +47,14 @@ struct ObjectChoice {
   std::vector<std::string> isolate; // these alone; none: all
   std::vector<std::string> hide;    // of those
   std::vector<std::string> show;    // of what was hidden
+  struct Fade {
+    std::string name;
+    float opacity = 1.0F; // its materials are blended with that factor, above 0 and at most 1
+    bool operator==(const Fade&) const = default;
+  };
+  std::vector<Fade> fade; // the last one of an object, or of one above it, counts
 
-  [[nodiscard]] bool isAll() const { return isolate.empty() && hide.empty() && show.empty(); }
+  [[nodiscard]] bool isAll() const { return isolate.empty() && hide.empty() && show.empty() && fade.empty(); }
   bool operator==(const ObjectChoice&) const = default;
 };
 
@@ -56,7 +62,11 @@ struct ObjectChoice {
 // are.
 std::vector<bool> shownObjects(const ObjectTree& objects, const ObjectChoice& choice);
 
-// Leaves out the draws that are not. The objects stay. Throws the same.
+// The factor of each object's opacity. Throws the same.
+std::vector<float> opacities(const ObjectTree& objects, const ObjectChoice& choice);
+
+// Leaves out the draws that are not, and gives those that are faded materials of their own. The objects stay. Throws
+// the same.
 void chooseObjects(Scene& scene, const ObjectChoice& choice);
 
 } // namespace vitrail::tool

@@ -71,6 +71,9 @@ void addScene(Words& words, const RenderArguments& arguments) {
   for (const std::string& name : arguments.objects.isolate) words.option("--isolate", name);
   for (const std::string& name : arguments.objects.hide) words.option("--hide", name);
   for (const std::string& name : arguments.objects.show) words.option("--show", name);
+  for (const auto& [name, opacity] : arguments.objects.fade) {
+    words.option("--fade", fmt::format("{}={}", name, opacity));
+  }
 }
 
 void addLook(Words& words, const RenderArguments& arguments) {

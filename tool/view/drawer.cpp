@@ -148,10 +148,11 @@ void Drawer::choose(const RenderArguments& arguments) {
   const ObjectChoice& choice = arguments.objects;
   if (choice == sceneArguments_.objects) return;
   const std::vector<bool> shown = shownObjects(scene_->objects, choice);
-  std::vector<Draw> draws = allDraws_;
-  std::erase_if(draws, [&](const Draw& draw) { return !shown[draw.object]; });
-  if (draws.empty()) throw std::runtime_error("all of it would be hidden");
-  scene_->draws = std::move(draws);
+  const auto isShown = [&](const Draw& draw) { return bool{shown[draw.object]}; };
+  if (std::ranges::none_of(allDraws_, isShown)) throw std::runtime_error("all of it would be hidden");
+  scene_->draws = allDraws_;
+  scene_->materials.resize(facts_->materials.size()); // without those of an earlier choice
+  chooseObjects(*scene_, choice);
   sceneArguments_.objects = choice;
   letGo();
 }

@@ -194,7 +194,8 @@ void showPicked(const PanelState& state) {
                        ImGuiColorEditFlags_NoTooltip, ImVec2(ImGui::GetFontSize(), ImGui::GetFontSize()));
     ImGui::SameLine();
     const std::string name(state.scene->objects.name(layer.object));
-    const std::string& material = state.scene->materials[layer.material];
+    const std::string material =
+        layer.material < state.scene->materials.size() ? state.scene->materials[layer.material] : "faded";
     ImGui::Text("%.5g  %s  %.0f%%", layer.distance, name.c_str(), 100.0 * static_cast<double>(layer.alpha));
     if (ImGui::IsItemHovered()) {
       ImGui::SetTooltip("%s\nmaterial %s\n%s", state.scene->objects.path(layer.object).c_str(), material.c_str(),

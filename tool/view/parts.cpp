@@ -20,6 +20,7 @@ void Parts::set(const std::shared_ptr<const SceneFacts>& scene, const ObjectChoi
   if (!scene_) return;
   const ObjectTree& objects = scene_->objects;
   shown_ = shownObjects(objects, choice);
+  opacities_ = opacities(objects, choice);
   if (!isOther) return;
   firstRoot_ = ObjectTree::none;
   firstChild_.assign(objects.size(), ObjectTree::none);
@@ -39,6 +40,12 @@ void Parts::show(ObjectChoice& choice, std::uint32_t object, bool shown) const {
   (shown ? choice.show : choice.hide).push_back(path);
 }
 
+void Parts::fade(ObjectChoice& choice, std::uint32_t object, float opacity) const {
+  const std::string path = scene_->objects.path(object);
+  std::erase_if(choice.fade, [&](const ObjectChoice::Fade& fade) { return fade.name == path; });
+  if (opacities(scene_->objects, choice)[object] != opacity) choice.fade.push_back({path, opacity});
+}
+
 bool Parts::drawObject(ObjectChoice& choice, std::uint32_t object) {
   bool changed = false;
   ImGui::PushID(static_cast<int>(object));
@@ -49,7 +56,16 @@ bool Parts::drawObject(ObjectChoice& choice, std::uint32_t object) {
   }
   ImGui::SameLine();
   if (ImGui::SmallButton("only")) {
-    choice = {{scene_->objects.path(object)}, {}, {}};
+    choice.isolate = {scene_->objects.path(object)};
+    choice.hide.clear();
+    choice.show.clear();
+    changed = true;
+  }
+  ImGui::SameLine();
+  float opacity = opacities_[object];
+  ImGui::SetNextItemWidth(4.0F * ImGui::GetFontSize());
+  if (ImGui::SliderFloat("##opacity", &opacity, 0.004F, 1.0F, "%.2f")) {
+    fade(choice, object, std::clamp(opacity, 0.004F, 1.0F));
     changed = true;
   }
   ImGui::SameLine();

@@ -22,12 +22,14 @@ class Parts {
   void show(ObjectChoice& choice, std::uint32_t object, bool shown) const;
 
  private:
+  void fade(ObjectChoice& choice, std::uint32_t object, float opacity) const;
   bool drawObject(ObjectChoice& choice, std::uint32_t object);
   bool drawAll(ObjectChoice& choice, std::uint32_t first);
 
   std::shared_ptr<const SceneFacts> scene_;
   ObjectChoice choice_;
   std::vector<bool> shown_;
+  std::vector<float> opacities_;
   // The tree from above; ObjectTree::none ends a list.
   std::uint32_t firstRoot_ = ObjectTree::none;
   std::vector<std::uint32_t> firstChild_;
