@@ -4,9 +4,10 @@
 
 namespace vitrail::tool {
 
-Counters::Counters(Gpu& gpu, std::uint64_t bytes, const std::string& name)
+Counters::Counters(Gpu& gpu, std::uint64_t bytes, const std::string& name, VkBufferUsageFlags usage)
     : buffer_(gpu, bytes,
-              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                  usage,
               MemoryKind::Device, name),
       readback_(gpu, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryKind::Readback, name + " readback") {}
 

@@ -13,7 +13,8 @@ namespace vitrail::tool {
 class Counters {
  public:
   Counters() = default;
-  Counters(Gpu& gpu, std::uint64_t bytes, const std::string& name);
+  // `usage` beside that of storage buffers.
+  Counters(Gpu& gpu, std::uint64_t bytes, const std::string& name, VkBufferUsageFlags usage = 0);
 
   const GpuBuffer& buffer() const { return buffer_; } // storage
   std::uint64_t bytes() const { return buffer_.size() + readback_.size(); }

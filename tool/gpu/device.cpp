@@ -368,6 +368,7 @@ void Gpu::Impl::createDevice(bool swapchain) {
   auto features12 = vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
   features12.pNext = &features13;
   features12.bufferDeviceAddress = features.bufferDeviceAddress ? VK_TRUE : VK_FALSE;
+  features12.shaderSampledImageArrayNonUniformIndexing = features.nonUniformTextures ? VK_TRUE : VK_FALSE;
   features12.shaderBufferInt64Atomics = features.int64Atomics ? VK_TRUE : VK_FALSE;
   auto interlock = vkStruct<VkPhysicalDeviceFragmentShaderInterlockFeaturesEXT>(
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FRAGMENT_SHADER_INTERLOCK_FEATURES_EXT);
@@ -381,6 +382,7 @@ void Gpu::Impl::createDevice(bool swapchain) {
   enabled.features.sampleRateShading = features.sampleRateShading ? VK_TRUE : VK_FALSE;
   enabled.features.geometryShader = features.primitiveNumbers ? VK_TRUE : VK_FALSE;
   enabled.features.shaderInt64 = features.int64Atomics ? VK_TRUE : VK_FALSE;
+  enabled.features.shaderSampledImageArrayDynamicIndexing = features.nonUniformTextures ? VK_TRUE : VK_FALSE;
   enabled.features.independentBlend = features.independentBlending ? VK_TRUE : VK_FALSE;
   enabled.features.shaderClipDistance = features.clipPlanes > 0 ? VK_TRUE : VK_FALSE;
   enabled.features.fullDrawIndexUint32 = supported.fullDrawIndexUint32; // for meshes beyond 16.7 M vertices

@@ -86,6 +86,8 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   result.independentBlending = features.features.independentBlend == VK_TRUE;
   result.floatBlending = blends(device, VK_FORMAT_R32_SFLOAT) && blends(device, VK_FORMAT_R32G32B32A32_SFLOAT);
   result.int64Atomics = features.features.shaderInt64 == VK_TRUE && features12.shaderBufferInt64Atomics == VK_TRUE;
+  result.nonUniformTextures = features.features.shaderSampledImageArrayDynamicIndexing == VK_TRUE &&
+                              features12.shaderSampledImageArrayNonUniformIndexing == VK_TRUE;
   result.fragmentInterlock = interlock.fragmentShaderPixelInterlock == VK_TRUE;
   if (features.features.shaderClipDistance == VK_TRUE) result.clipPlanes = limits.maxClipDistances;
   result.postDepthCoverage = hasDeviceExtension(device, VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME);

@@ -14,7 +14,8 @@ constexpr std::uint64_t kStagingBytes = std::uint64_t{16} << 20U;
 constexpr Access kNothing{};
 constexpr Access kTransferWrite{VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
 constexpr Access kTransferRead{VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
-constexpr Access kFragmentSample{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
+constexpr Access kShaderSample{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                               VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
 
 VkImageSubresourceRange level(std::uint32_t index) { return {VK_IMAGE_ASPECT_COLOR_BIT, index, 1, 0, 1}; }
 
@@ -32,7 +33,7 @@ void cmdCopyRows(VkCommandBuffer commands, VkBuffer staging, const GpuImage& ima
   vkCmdCopyBufferToImage(commands, staging, image.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
 }
 
-// Fills the levels below the base one and hands all of them to the fragment shaders.
+// Fills the levels below the base one and hands all of them to fragment and compute shaders.
 void cmdFillMipmaps(VkCommandBuffer commands, const GpuImage& image) {
   const std::uint32_t levels = image.info().mipLevels;
   for (std::uint32_t i = 1; i < levels; ++i) {
@@ -46,13 +47,13 @@ void cmdFillMipmaps(VkCommandBuffer commands, const GpuImage& image) {
     blit.dstOffsets[1] = corner(image.info().extent, i);
     vkCmdBlitImage(commands, image.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image.get(),
                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_LINEAR);
-    // The blit has read level i - 1 (its writer's data were made available before) -> fragment shaders sample it.
+    // The blit has read level i - 1 (its writer's data were made available before) -> shaders sample it.
     cmdImageBarrier(commands, image.get(), level(i - 1), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, kTransferRead,
-                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kFragmentSample);
+                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kShaderSample);
   }
-  // The copy or blit that wrote the last level -> fragment shaders sample it.
+  // The copy or blit that wrote the last level -> shaders sample it.
   cmdImageBarrier(commands, image.get(), level(levels - 1), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, kTransferWrite,
-                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kFragmentSample);
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kShaderSample);
 }
 
 } // namespace

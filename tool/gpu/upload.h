@@ -21,7 +21,7 @@ class Uploader {
   // Copies pixels, 4 bytes each or 8 in a format of 16-bit floats, rows top to bottom without padding, to the base
   // level of an image and fills its smaller levels, each from the one above it with a linear filter: what the image's
   // format calls linear (an sRGB one averages light, not codes). Afterwards the image is in SHADER_READ_ONLY_OPTIMAL,
-  // visible to fragment shaders. The image has transfer source and destination usage.
+  // visible to fragment and compute shaders. The image has transfer source and destination usage.
   void toImage(std::span<const std::byte> pixels, const GpuImage& image);
 
  private:

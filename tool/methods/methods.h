@@ -102,6 +102,7 @@ std::unique_ptr<Method> makeSorted(const MethodHost& host, const MethodOptions& 
 std::unique_ptr<Method> makeSortedTriangles(const MethodHost& host, const MethodOptions& options);
 std::unique_ptr<Method> makeStencilRouted(const MethodHost& host, const MethodOptions& options);
 std::unique_ptr<Method> makeStochastic(const MethodHost& host, const MethodOptions& options);
+std::unique_ptr<Method> makeTiles(const MethodHost& host, const MethodOptions& options);
 std::unique_ptr<Method> makeUnsorted(const MethodHost& host, const MethodOptions& options);
 std::unique_ptr<Method> makeWeighted(const MethodHost& host, const MethodOptions& options);
 std::unique_ptr<GlMethod> makeGlDepthPeeling(const GlMethodHost& host, const MethodOptions& options);

@@ -79,7 +79,7 @@ std::string toSummary(const FrameReport& report) {
     text += fmt::format("{} transparent fragments, {} deep, {}, ", shortCount(report.fragmentsStored), report.layersMax,
                         exactness(report));
   } else {
-    text += fmt::format("{}, not exact, ", report.method);
+    text += fmt::format("{}, {}, ", report.method, exactness(report));
   }
   if (report.tiles > 1) text += fmt::format("{} tiles, ", report.tiles);
   return text + fmt::format("{:.1f} ms on {}", report.frameMs, report.device);
@@ -99,7 +99,7 @@ std::string toSummary(std::span<const NamedFrame> frames) {
   std::string text = fmt::format("{} pictures of {}x{}, ", frames.size(), first.width, first.height);
   if (first.samples > 1) text += fmt::format("{} samples, ", first.samples);
   text += first.counted ? fmt::format("up to {} deep, {}, ", deepest, exactness(worst))
-                        : fmt::format("{}, not exact, ", first.method);
+                        : fmt::format("{}, {}, ", first.method, exactness(worst));
   return text + fmt::format("{:.1f} ms each on {}", milliseconds, first.device);
 }
 

@@ -26,14 +26,16 @@ class GpuScene : public SceneDraws {
   GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released = nullptr);
 
   const VertexStreams& streams() const { return *streams_; }
+  const GpuBuffer& instances() const { return instances_; } // kInstanceBytes each
   const GpuBuffer& indices() const { return indices_; }     // 32-bit
   const GpuBuffer& materials() const { return materials_; } // of shaders::MaterialData, a stride apart
   const GpuBuffer& lights() const { return lights_; }       // of shaders::LightData; one at least
   std::uint32_t lightCount() const { return lightCount_; }
   void cmdBindInstances(VkCommandBuffer commands) const;
   VkDescriptorSetLayout textureLayout() const { return textures_->layout(); }
-  // What a material samples.
+  // What a material samples, as a set, and slot by slot.
   VkDescriptorSet textures(std::uint32_t material) const { return textures_->set(material); }
+  const TextureSet& sampled(std::uint32_t material) const { return textures_->sampled(material); }
 
  private:
   void uploadMeshes(Uploader& uploader, const Scene& scene, Scene* released);

@@ -4,6 +4,7 @@
 
 #include "surface_shared.h"
 
+#ifndef SURFACE_OF_DRAWS
 CONSTANT(0, uint kFeatures, 0u)
 
 layout(BOUND(0, 0, 5), std140) uniform FrameBlock { FrameData frame; };
@@ -36,15 +37,27 @@ layout(location = 2) SURFACE_IN vec4 inTangent;
 layout(location = 3) SURFACE_IN vec4 inColor;
 layout(location = 4) SURFACE_IN vec4 inTexCoords[SLOT_PAIRS];
 
-const float PI = 3.14159265358979;
-
 bool has(uint feature) { return (kFeatures & feature) != 0u; }
-bool isSolid() { return (kFeatures & FEATURE_SOLID) == FEATURE_SOLID; }
-bool hasTexture(uint slot) { return has(1u << slot); }
 vec2 texCoord(uint slot) {
   vec4 two = inTexCoords[slot / 2u];
   return slot % 2u == 0u ? two.xy : two.zw;
 }
+
+// The normal of a flat triangle's plane, on one side or the other, not of unit length. Before any discard, which would
+// leave the derivatives undefined.
+vec3 planeNormal() { return has(FEATURE_FLAT) ? cross(dFdx(inPosition), dFdy(inPosition)) : vec3(0.0); }
+
+#define SURFACE_FRONT gl_FrontFacing
+#define SURFACE_DISCARD discard
+#define TEXEL(slot, image) (hasTexture(slot) ? texture(image, texCoord(slot)) : vec4(1.0))
+#else
+#include "surface_of_draws.glsl"
+#endif
+
+const float PI = 3.14159265358979;
+
+bool isSolid() { return has(FEATURE_LINES) && has(FEATURE_POINTS); }
+bool hasTexture(uint slot) { return has(1u << slot); }
 
 // Unit length; `fallback` for a vector without a direction.
 vec3 direction(vec3 v, vec3 fallback) {
@@ -57,15 +70,11 @@ vec3 viewDirection() {
   return frame.eye.w > 0.5 ? backward : direction(frame.eye.xyz - inPosition, backward);
 }
 
-// The normal of a flat triangle's plane, on one side or the other, not of unit length. Before any discard, which would
-// leave the derivatives undefined.
-vec3 planeNormal() { return has(FEATURE_FLAT) ? cross(dFdx(inPosition), dFdy(inPosition)) : vec3(0.0); }
-
 // The normal without the normal map, on the side that is seen. `v` points to the eye.
 vec3 smoothNormal(vec3 plane, vec3 v) {
   if (has(FEATURE_FLAT)) return direction(dot(plane, v) < 0.0 ? -plane : plane, v);
   vec3 normal = direction(inNormal, v);
-  return gl_FrontFacing ? normal : -normal;
+  return SURFACE_FRONT ? normal : -normal;
 }
 
 // The tangent that goes with a normal. Its bitangent is w times their cross product.
@@ -77,7 +86,7 @@ vec4 tangentOf(vec3 normal) {
 
 // The normal map's normal on the side that is seen, as the other one is. `sampled` is its texel.
 vec3 mappedNormal(vec3 smoothly, vec3 sampled) {
-  float side = gl_FrontFacing ? 1.0 : -1.0;
+  float side = SURFACE_FRONT ? 1.0 : -1.0;
   vec3 normal = side * smoothly;
   vec4 tangent = tangentOf(normal);
   vec3 bitangent = cross(normal, tangent.xyz) * tangent.w;
@@ -189,7 +198,7 @@ bool thickAsStated() {
 #ifdef SURFACE_TRUE_PATH
   if (isSolid()) return false;
 #endif
-  return has(FEATURE_VOLUME) && gl_FrontFacing;
+  return has(FEATURE_VOLUME) && SURFACE_FRONT;
 }
 
 // A surface at one pixel, as docs/shading.md states it.
@@ -220,7 +229,6 @@ struct Texels {
   float thickness;
 };
 
-#define TEXEL(slot, image) (hasTexture(slot) ? texture(image, texCoord(slot)) : vec4(1.0))
 Texels sampleTextures() {
   Texels t;
   t.base = TEXEL(SLOT_BASE_COLOR, baseColorTexture);
@@ -237,8 +245,7 @@ Texels sampleTextures() {
   t.clearcoatRoughness = TEXEL(SLOT_CLEARCOAT_ROUGHNESS, clearcoatRoughnessTexture).g;
   t.sheenColor = TEXEL(SLOT_SHEEN_COLOR, sheenColorTexture).rgb;
   t.sheenRoughness = TEXEL(SLOT_SHEEN_ROUGHNESS, sheenRoughnessTexture).a;
-  t.anisotropy = hasTexture(SLOT_ANISOTROPY) ? texture(anisotropyTexture, texCoord(SLOT_ANISOTROPY)).rgb
-                                             : vec3(1.0, 0.5, 1.0);
+  t.anisotropy = hasTexture(SLOT_ANISOTROPY) ? TEXEL(SLOT_ANISOTROPY, anisotropyTexture).rgb : vec3(1.0, 0.5, 1.0);
   t.iridescence = TEXEL(SLOT_IRIDESCENCE, iridescenceTexture).r;
   t.iridescenceThickness = TEXEL(SLOT_IRIDESCENCE_THICKNESS, iridescenceThicknessTexture).g;
   t.thickness = TEXEL(SLOT_THICKNESS, thicknessTexture).g;
@@ -287,7 +294,7 @@ Surface shadeSurface() {
   if (has(FEATURE_VERTEX_COLOR)) base *= inColor;
   base *= t.base;
   vec3 plane = planeNormal();
-  if (has(FEATURE_MASK) && base.a < material.alphaCutoff) discard;
+  if (has(FEATURE_MASK) && base.a < material.alphaCutoff) SURFACE_DISCARD;
   float alpha = material.opacity * mix(1.0, base.a, material.alphaFromBase);
   if (has(FEATURE_UNLIT)) return Surface(base.rgb, alpha, vec3(1.0), 0.0);
 

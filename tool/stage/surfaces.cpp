@@ -14,6 +14,9 @@ namespace vitrail::tool {
 
 namespace {
 
+constexpr VkShaderStageFlags kSurfaceStages =
+    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+
 Unique<VkPipelineLayout> makeLayout(const Surfaces& surfaces, const SurfaceProgram& program) {
   std::vector<VkDescriptorSetLayout> sets{surfaces.frameLayout(), surfaces.scene().textureLayout()};
   if (program.set != VK_NULL_HANDLE) sets.push_back(program.set);
@@ -68,9 +71,9 @@ Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
       viewBuffer_(gpu, sizeof(shaders::FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::Upload,
                   "frame data"),
       frameSet_(gpu,
-                {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT},
-                 {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT},
-                 {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_FRAGMENT_BIT}},
+                {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kSurfaceStages},
+                 {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, kSurfaceStages},
+                 {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSurfaceStages}},
                 "frame") {
   checkClipPlanes(gpu, scene);
   frameSet_.writeBuffer(0, viewBuffer_.get(), viewBuffer_.size());
@@ -83,10 +86,10 @@ void Surfaces::setView(const shaders::FrameData& view) {
   std::memcpy(viewBuffer_.mapped(), &list_.view(), sizeof(view));
 }
 
-void Surfaces::cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout) const {
+void Surfaces::cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout, VkPipelineBindPoint point) const {
   const VkDescriptorSet set = frameSet_.set();
   const std::uint32_t offset = 0; // of no draw
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set, 1, &offset);
+  vkCmdBindDescriptorSets(commands, point, layout, 0, 1, &set, 1, &offset);
 }
 
 // Runs of one draw that follow each other bind nothing anew.

@@ -65,8 +65,9 @@ class Surfaces {
   const shaders::FrameData& view() const { return list_.view(); }
 
   VkDescriptorSetLayout frameLayout() const { return frameSet_.layout(); } // set 0
-  // Binds set 0 for shaders that read the view alone.
-  void cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout) const;
+  // Binds set 0 for shaders that read the view and the lights alone.
+  void cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout,
+                   VkPipelineBindPoint point = VK_PIPELINE_BIND_POINT_GRAPHICS) const;
 
   // Draws runs of `draws` in their order in the present rendering scope. `set` is set 2 of the pipelines, null where
   // they have none. `indices` null: the scene's own.

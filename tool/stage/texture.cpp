@@ -40,21 +40,20 @@ MaterialTextures::MaterialTextures(Gpu& gpu, Uploader& uploader, const Scene& sc
   uploader.toImage(std::as_bytes(std::span(white)), white_);
   createLayout();
 
-  std::map<Combination, std::size_t> known;
-  std::vector<Combination> combinations;
+  std::map<TextureSet, std::size_t> known;
   for (const std::uint32_t material : draws.materials()) {
     const Material& source = scene.materials.at(material);
     const auto slots = slotsOf(source);
-    Combination combination;
+    TextureSet combination;
     for (std::uint32_t i = 0; i < shaders::SLOT_COUNT; ++i) {
       const Texels texels = texelsOf(source, i, draws.isPremultiplied(material));
       combination.at(i) = slotTexture(uploader, scene, *slots.at(i), texels);
     }
-    const auto [found, isNew] = known.try_emplace(combination, combinations.size());
-    if (isNew) combinations.push_back(combination);
+    const auto [found, isNew] = known.try_emplace(combination, combinations_.size());
+    if (isNew) combinations_.push_back(combination);
     setOfMaterial_[material] = found->second;
   }
-  createSets(combinations);
+  createSets(combinations_);
 }
 
 void MaterialTextures::createLayout() {
@@ -74,7 +73,7 @@ void MaterialTextures::createLayout() {
   setDebugName(gpu_.device(), VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, layout, "material textures");
 }
 
-void MaterialTextures::createSets(const std::vector<Combination>& combinations) {
+void MaterialTextures::createSets(const std::vector<TextureSet>& combinations) {
   if (combinations.empty()) return;
   const auto count = static_cast<std::uint32_t>(combinations.size());
   const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, count * shaders::SLOT_COUNT};

@@ -17,6 +17,9 @@
 
 namespace vitrail::tool {
 
+// The textures of a material's slots.
+using TextureSet = std::array<std::pair<VkImageView, VkSampler>, shaders::SLOT_COUNT>;
+
 class MaterialTextures {
  public:
   // Uploads what the materials of a scene's draws sample.
@@ -27,12 +30,11 @@ class MaterialTextures {
 
   // The set of a material that the draws have.
   VkDescriptorSet set(std::uint32_t material) const { return sets_.at(setOfMaterial_.at(material)); }
+  const TextureSet& sampled(std::uint32_t material) const { return combinations_.at(setOfMaterial_.at(material)); }
 
  private:
-  using Combination = std::array<std::pair<VkImageView, VkSampler>, shaders::SLOT_COUNT>;
-
   void createLayout();
-  void createSets(const std::vector<Combination>& combinations);
+  void createSets(const std::vector<TextureSet>& combinations);
   std::pair<VkImageView, VkSampler> slotTexture(Uploader& uploader, const Scene& scene, const TextureSlot& slot,
                                                 Texels texels);
   VkImageView view(Uploader& uploader, const Scene& scene, std::uint32_t image, Texels texels);
@@ -44,7 +46,8 @@ class MaterialTextures {
   std::vector<std::pair<Sampler, Unique<VkSampler>>> samplers_;
   Unique<VkDescriptorSetLayout> layout_;
   Unique<VkDescriptorPool> pool_;
-  std::vector<VkDescriptorSet> sets_;
+  std::vector<TextureSet> combinations_;
+  std::vector<VkDescriptorSet> sets_; // of each
   std::map<std::uint32_t, std::size_t> setOfMaterial_;
 };
 

@@ -6,7 +6,11 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr Access kVertexFetch{VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT, VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT};
+// By vertex shaders, and by compute shaders of methods that rasterise themselves.
+constexpr Access kVertexFetch{VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                              VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT};
+constexpr VkBufferUsageFlags kVertexUsage =
+    VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
 } // namespace
 
@@ -41,8 +45,7 @@ VertexStreams::VertexStreams(Gpu& gpu, const Scene& scene, const SceneDraws& dra
   const auto arrays = vertexArrays(values);
   for (std::size_t stream = 0; stream < kStreamCount; ++stream) {
     buffers_[stream] =
-        GpuBuffer(gpu, places_.bytes[stream], VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                  MemoryKind::Device, kStreamNames[stream]);
+        GpuBuffer(gpu, places_.bytes[stream], kVertexUsage, MemoryKind::Device, kStreamNames[stream]);
     uploader.toBuffer(arrays[stream], buffers_[stream], 0, kVertexFetch);
   }
 }

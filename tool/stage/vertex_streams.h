@@ -23,6 +23,10 @@ class VertexStreams {
   // Copies a mesh's vertices. `released`: the same mesh, whose arrays are let go of as they have been copied; or null.
   void upload(Uploader& uploader, const Mesh& mesh, std::size_t index, Mesh* released);
 
+  // Where they lie, for shaders that fetch vertices themselves.
+  const VertexPlace& place(std::size_t mesh) const { return places_.meshes[mesh]; }
+  const GpuBuffer& buffer(std::size_t stream) const { return buffers_[stream]; }
+
   // Binds a mesh's vertices, all bindings but the instances'.
   void cmdBind(VkCommandBuffer commands, std::size_t mesh) const;
 

@@ -1,0 +1,130 @@
+// Shades a record's surface at a pixel: what the vertex shader and interpolation hand to surface.glsl, from the vertices
+// of its triangle.
+#ifndef VITRAIL_TOOL_TILES_FRAGMENT_GLSL
+#define VITRAIL_TOOL_TILES_FRAGMENT_GLSL
+
+#include "geometry.glsl"
+
+#define SURFACE_OF_DRAWS
+#include "stage/surface.glsl"
+
+// Weights of a triangle's corners at a place, with perspective, from the corners' x, y and w in clip space after the
+// place has been moved to the origin (Olano and Greer, "Triangle scan conversion using 2D homogeneous coordinates",
+// 1997): right also where a corner lies behind the eye.
+vec3 weightsOf(vec2 a, vec2 b, vec2 c) {
+  vec3 e = vec3(b.x * c.y - b.y * c.x, c.x * a.y - c.y * a.x, a.x * b.y - a.y * b.x);
+  float sum = e.x + e.y + e.z;
+  return sum != 0.0 ? e / sum : vec3(1.0 / 3.0);
+}
+
+struct Corners {
+  uvec3 vertices;
+  vec3 clip[3]; // x, y, w
+};
+
+vec3 weightsAt(Corners c, vec2 ndc) {
+  return weightsOf(c.clip[0].xy - ndc * c.clip[0].z, c.clip[1].xy - ndc * c.clip[1].z, c.clip[2].xy - ndc * c.clip[2].z);
+}
+
+vec2 unpackOctahedral(uint packed) { return unpackSnorm2x16(packed); }
+
+vec3 fromOctahedral(vec2 p) {
+  vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+  float fold = max(-v.z, 0.0);
+  v.x -= v.x < 0.0 ? -fold : fold;
+  v.y -= v.y < 0.0 ? -fold : fold;
+  return normalize(v);
+}
+
+uint word(uint draw, uint stream, uint vertex) {
+  return draws[draw].firstWords[stream] + vertex * draws[draw].vertexWords[stream];
+}
+
+vec3 normalOf(uint draw, uint vertex) { return fromOctahedral(unpackOctahedral(normals[word(draw, 1u, vertex)])); }
+
+vec4 tangentOf(uint draw, uint vertex) {
+  uint packed = tangents[word(draw, 2u, vertex)];
+  ivec2 t = ivec2(int(packed << 16) >> 16, int(packed) >> 16);
+  return vec4(fromOctahedral(vec2(float(t.x) / 32767.0, float(t.y >> 1) / 16383.0)), (t.y & 1) != 0 ? -1.0 : 1.0);
+}
+
+vec4 colorOf(uint draw, uint vertex) {
+  uint at = word(draw, 5u, vertex);
+  return vec4(unpackHalf2x16(colors[at]), unpackHalf2x16(colors[at + 1u]));
+}
+
+vec4 texCoordsOf(uint draw, uint vertex) {
+  uint at0 = word(draw, 3u, vertex);
+  uint at1 = word(draw, 4u, vertex);
+  return vec4(texCoords0[at0], texCoords0[at0 + 1u], texCoords1[at1], texCoords1[at1 + 1u]);
+}
+
+// What of the vertices is interpolated for textures: both texture coordinates, here and a pixel to the right and down.
+void setTexCoords(uint draw, Corners corners, vec3 weights, ivec2 pixel, vec2 size) {
+  mat3x4 uv;
+  for (uint i = 0u; i < 3u; ++i) uv[i] = texCoordsOf(draw, corners.vertices[i]);
+  surfaceTexCoords = uv * weights;
+  // As the four pixels of a square tell each other: from the even one to the odd one.
+  bvec2 odd = equal(pixel & 1, ivec2(1));
+  vec2 step = mix(vec2(1.0), vec2(-1.0), odd);
+  vec2 middle = vec2(pixel) + 0.5;
+  vec4 right = uv * weightsAt(corners, vec2(middle.x + step.x, middle.y) * 2.0 / size - 1.0);
+  vec4 down = uv * weightsAt(corners, vec2(middle.x, middle.y + step.y) * 2.0 / size - 1.0);
+  surfaceTexCoordsRight = (right - surfaceTexCoords) * step.x;
+  surfaceTexCoordsDown = (down - surfaceTexCoords) * step.y;
+}
+
+// As surface.vert: normals turn by the cofactors.
+void setDirections(uint draw, InstancePlace place, Corners corners, vec3 weights) {
+  vec3 largest = max(max(abs(place.row0.xyz), abs(place.row1.xyz)), abs(place.row2.xyz));
+  float size = max(max(largest.x, largest.y), largest.z);
+  mat3 rows = mat3(place.row0.xyz, place.row1.xyz, place.row2.xyz) * (size > 0.0 ? 1.0 / size : 0.0);
+  mat3 cofactors = mat3(cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1]));
+  float volume = dot(rows[0], cofactors[0]);
+  float mirrored = volume < 0.0 ? -1.0 : 1.0;
+  if (!has(FEATURE_FLAT)) {
+    vec3 normal = vec3(0.0);
+    for (uint i = 0u; i < 3u; ++i) normal += weights[i] * normalOf(draw, corners.vertices[i]);
+    inNormal = mirrored * (normal * cofactors);
+  }
+  if (hasTexture(SLOT_NORMAL) || has(FEATURE_RARE)) {
+    vec4 tangent = vec4(0.0);
+    for (uint i = 0u; i < 3u; ++i) tangent += weights[i] * tangentOf(draw, corners.vertices[i]);
+    inTangent = vec4(tangent.xyz * rows, tangent.w * mirrored);
+  } else {
+    inTangent.w = mirrored;
+  }
+  if (has(FEATURE_VOLUME)) inTangent.w = abs(inTangent.w) * size * pow(abs(volume), 1.0 / 3.0) * sign(inTangent.w);
+}
+
+// `source`: the primitive, with the side in its highest bit, and the instance. `size`: of the picture.
+Surface shadeFragment(uvec2 source, ivec2 pixel, vec2 size) {
+  uint draw = drawOfInstance[2u * source.y];
+  surfaceFeatures = draws[draw].features;
+  surfaceMaterial = draws[draw].materialNumber;
+  surfaceDraw = draw;
+  surfaceFront = (source.x & 0x80000000u) != 0u;
+  surfaceCut = false;
+  InstancePlace place = placeOf(source.y);
+  Corners corners;
+  vec3 world[3];
+  uint first = draws[draw].firstIndex + 3u * (source.x & 0x7fffffffu);
+  for (uint i = 0u; i < 3u; ++i) {
+    corners.vertices[i] = indices[first + i];
+    vec4 local = vec4(positionOf(draw, corners.vertices[i]), 1.0);
+    world[i] = vec3(dot(place.row0, local), dot(place.row1, local), dot(place.row2, local));
+    corners.clip[i] = (frame.viewProjection * vec4(world[i], 1.0)).xyw;
+  }
+  vec3 weights = weightsAt(corners, (vec2(pixel) + 0.5) * 2.0 / size - 1.0);
+  inPosition = mat3(world[0], world[1], world[2]) * weights;
+  if (has(FEATURE_FLAT)) surfacePlane = cross(world[1] - world[0], world[2] - world[0]);
+  if (has(FEATURE_VERTEX_COLOR)) {
+    inColor = vec4(0.0);
+    for (uint i = 0u; i < 3u; ++i) inColor += weights[i] * colorOf(draw, corners.vertices[i]);
+  }
+  if (has(SURFACE_TEXTURES)) setTexCoords(draw, corners, weights, pixel, size);
+  if (!has(FEATURE_UNLIT)) setDirections(draw, place, corners, weights);
+  return shadeSurface();
+}
+
+#endif

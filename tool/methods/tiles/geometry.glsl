@@ -1,0 +1,47 @@
+// The scene's draws for compute shaders: indices, vertices, instances. Set 2 of the method tiles.
+#ifndef VITRAIL_TOOL_TILES_GEOMETRY_GLSL
+#define VITRAIL_TOOL_TILES_GEOMETRY_GLSL
+
+#include "tiles_shared.h"
+
+layout(set = 0, binding = 0, std140) uniform FrameBlock { FrameData frame; };
+
+layout(set = 2, binding = 0, std430) readonly buffer PositionBlock { float positions[]; };
+layout(set = 2, binding = 1, std430) readonly buffer NormalBlock { uint normals[]; };
+layout(set = 2, binding = 2, std430) readonly buffer TangentBlock { uint tangents[]; };
+layout(set = 2, binding = 3, std430) readonly buffer TexCoord0Block { float texCoords0[]; };
+layout(set = 2, binding = 4, std430) readonly buffer TexCoord1Block { float texCoords1[]; };
+layout(set = 2, binding = 5, std430) readonly buffer ColorBlock { uint colors[]; };
+layout(set = 2, binding = 6, std430) readonly buffer IndexBlock { uint indices[]; };
+layout(set = 2, binding = 7, std430) readonly buffer InstanceBlock { vec4 instanceRows[]; };
+layout(set = 2, binding = 8, std430) readonly buffer MaterialsBlock { TilesMaterial materials[]; };
+layout(set = 2, binding = 9, std430) readonly buffer DrawBlock { TilesDraw draws[]; };
+layout(set = 2, binding = 10, std430) readonly buffer InstanceDrawBlock { uint drawOfInstance[]; }; // and its source
+
+struct InstancePlace {
+  vec4 row0;
+  vec4 row1;
+  vec4 row2;
+};
+
+InstancePlace placeOf(uint instance) {
+  return InstancePlace(instanceRows[3u * instance], instanceRows[3u * instance + 1u], instanceRows[3u * instance + 2u]);
+}
+
+vec3 positionOf(uint draw, uint vertex) {
+  uint at = draws[draw].firstWords[0] + vertex * draws[draw].vertexWords[0];
+  return vec3(positions[at], positions[at + 1u], positions[at + 2u]);
+}
+
+// In the steps of surface.vert, each rounded as there.
+vec4 worldOf(InstancePlace place, vec3 local) {
+  vec4 position = vec4(local, 1.0);
+  precise vec4 world = vec4(dot(place.row0, position), dot(place.row1, position), dot(place.row2, position), 1.0);
+  return world;
+}
+vec4 clipOf(vec4 world) {
+  precise vec4 clip = frame.viewProjection * world;
+  return clip;
+}
+
+#endif

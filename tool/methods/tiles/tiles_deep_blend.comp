@@ -1,0 +1,67 @@
+// Blends the sorted fragments of deep tiles, a work group a tile and a thread a pixel, as many as a dispatch may take.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_nonuniform_qualifier : require
+#include "blending.glsl"
+#include "batch.glsl"
+#include "tiles_deep.glsl"
+
+layout(local_size_x = TILES_PIXELS) in;
+
+// What of a pixel is left for the next dispatch.
+struct PixelState {
+  vec3 color;
+  uint at; // the next fragment
+  vec4 transmittance;
+};
+layout(set = 3, binding = 16, std430) buffer StateBlock { PixelState states[]; };
+
+layout(push_constant) uniform SliceBlock {
+  uint slice;
+  uint inSorted; // where the fragments are
+  uint last;     // whether this is the last dispatch
+};
+
+uint alikeFirst; // of the surfaces that are blended
+
+uvec2 fragmentAt(uint i) { return inSorted != 0u ? sortedFragments[i] : fragments[i]; }
+uint alikeRecord(uint i) { return fragmentAt(alikeFirst + i).y; }
+
+void main() {
+  thread = gl_LocalInvocationIndex;
+  uint deep = flatGroup();
+  if (deep >= min(control.deep.count, tiles.deepCapacity)) return;
+  uint number = deep * TILES_PIXELS + thread;
+  uvec4 collected = deepPixels[number];
+  ivec2 pixel = firstPixel(deepTiles[deep].x) + ivec2(thread & 7u, thread >> 3);
+  if (collected.x == 0u || collected.y == NO_PLACE || !isInside(pixel)) return;
+  PixelState state = PixelState(vec3(0.0), 0u, vec4(1.0));
+  if (slice > 0u) state = states[number];
+  VitrailPair front = VitrailPair(state.color, state.transmittance);
+  vec4 behind = imageLoad(colorImage, pixel);
+  float most = max(tiles.lightMost, max(behind.r, max(behind.g, behind.b)));
+  uint at = state.at;
+  uint until = min(collected.x, at + TILES_SLICE);
+  while (at < until) {
+    alikeFirst = collected.y + at;
+    uint key = fragmentAt(alikeFirst).x;
+    if (key == NO_FRAGMENT) { // hidden, as all behind it
+      at = collected.x;
+      break;
+    }
+    uint alike = 1u;
+    if (at == 0u || fragmentAt(alikeFirst - 1u).x != key) { // else they are more than TILES_TIES, which come one by one
+      while (alike <= TILES_TIES && at + alike < collected.x && fragmentAt(alikeFirst + alike).x == key) ++alike;
+      if (alike > TILES_TIES) alike = 1u;
+    }
+    blendAlike(front, pixel, alike);
+    at += alike;
+    if (hasEnough(front, most)) at = collected.x;
+  }
+  if (at < until) atomicAdd(control.cutPixels, 1u); // the driver has ended the loop
+  if (last != 0u) {
+    blendOver(pixel, front);
+  } else {
+    states[number] = PixelState(front.color, at, front.transmittance);
+  }
+}

@@ -1,0 +1,51 @@
+// Gives each tile room for its pairs, and puts it on the list of its class.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "tiles_deep.glsl"
+
+layout(local_size_x = 256) in;
+
+layout(set = 3, binding = 17, std430) buffer ClassBlock { TilesClasses classes; };
+
+shared uint groupPairs;
+shared uint groupFirst;
+shared uint groupMost;
+shared uint groupCount[2];
+shared uint groupList[2];
+
+void main() {
+  uint thread = gl_LocalInvocationIndex;
+  if (thread < 2u) groupCount[thread] = 0u;
+  if (thread == 2u) groupPairs = groupMost = 0u;
+  barrier();
+  uint tile = flatGroup() * 256u + thread;
+  uint count = tile < tiles.tilesX * tiles.tilesY ? tileRecords[tile].x : 0u;
+  uint place = 0u;
+  uint number = 0u;
+  uint kind = count <= TILES_SHALLOW ? 0u : 1u;
+  if (count > 0u) {
+    place = atomicAdd(groupPairs, count);
+    atomicMax(groupMost, count);
+    if (count <= TILES_MIDDLING) number = atomicAdd(groupCount[kind], 1u);
+  }
+  barrier();
+  if (thread == 0u && groupPairs > 0u) {
+    groupFirst = atomicAdd(control.pairs, groupPairs);
+    atomicMax(control.mostRecords, groupMost);
+    if (groupCount[0] > 0u) {
+      RESERVE(classes.shallow, groupCount[0], groupList[0])
+    }
+    if (groupCount[1] > 0u) {
+      RESERVE(classes.middling, groupCount[1], groupList[1])
+    }
+  }
+  barrier();
+  if (count == 0u) return;
+  tileRecords[tile].y = groupFirst + place;
+  if (count > TILES_MIDDLING) {
+    addDeep(tile, count);
+  } else {
+    uint at = groupList[kind] + number;
+    tileList[kind == 0u ? at : tiles.tilesX * tiles.tilesY - 1u - at] = tile;
+  }
+}
