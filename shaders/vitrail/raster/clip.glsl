@@ -62,18 +62,22 @@ bool vitrailIsOutside(vec4 a, vec4 b, vec4 c) {
          all(greaterThan(y, w)) || all(lessThan(y, -w));
 }
 
-// A corner's place in subpixels, and its depth. Divide, scale, move, round, each rounded for itself.
-ivec2 vitrailPlace(VitrailViewport viewport, vec4 p, out float depth) {
+// A corner's place in pixels, and its depth. Divide, scale, move, each rounded for itself.
+vec2 vitrailPixels(VitrailViewport viewport, vec4 p, out float depth) {
   precise float inverse = 1.0 / p.w;
   vec2 middle = viewport.size * 0.5;
   precise vec2 unit = p.xy * inverse;
   precise vec2 scaled = unit * middle;
   precise vec2 pixels = scaled + middle;
-  const float most = 2.0 * 32767.0;
-  pixels = clamp(pixels, vec2(-most), vec2(most));
   precise float z = p.z * inverse;
   depth = z;
-  return ivec2(roundEven(pixels * 256.0));
+  return pixels;
+}
+
+// Pixels to subpixels: to the nearest, ties to even.
+ivec2 vitrailSnap(vec2 pixels) {
+  const float most = 2.0 * 32767.0;
+  return ivec2(roundEven(clamp(pixels, vec2(-most), vec2(most)) * 256.0));
 }
 
 // The corner between one that is inside a plane and one that is outside, always from the inside: both triangles at an
@@ -91,13 +95,8 @@ struct VitrailPolygon {
   int count;
 };
 
-// What is left of a triangle; nothing where that cannot be divided by its w.
-VitrailPolygon vitrailClip(VitrailViewport viewport, vec4 a, vec4 b, vec4 c) {
-  VitrailPolygon polygon;
-  polygon.corners[0] = a;
-  polygon.corners[1] = b;
-  polygon.corners[2] = c;
-  polygon.count = 3;
+// What is left of a triangle, or of a line as a polygon of two corners; nothing where that cannot be divided by its w.
+VitrailPolygon vitrailClip(VitrailViewport viewport, VitrailPolygon polygon) {
   for (int plane = 0; plane < 6 + VITRAIL_CLIP_PLANES; ++plane) {
     VitrailPolygon left;
     left.count = 0;
@@ -120,7 +119,6 @@ VitrailPolygon vitrailClip(VitrailViewport viewport, vec4 a, vec4 b, vec4 c) {
     bool hasPlace = p.w >= VITRAIL_LEAST_W && p.w <= VITRAIL_MOST_W && !any(isnan(p)) && !any(isinf(p));
     if (!hasPlace) polygon.count = 0;
   }
-  if (polygon.count < 3) polygon.count = 0;
   return polygon;
 }
 

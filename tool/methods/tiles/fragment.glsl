@@ -17,12 +17,25 @@ vec3 weightsOf(vec2 a, vec2 b, vec2 c) {
   return sum != 0.0 ? e / sum : vec3(1.0 / 3.0);
 }
 
+// Of a line, at the place nearest to another along the axis along which it is longer.
+vec2 weightsOf(vec3 a, vec3 b, vec2 ndc, vec2 size) {
+  vec2 way = abs((b.xy * a.z - a.xy * b.z) * size);
+  vec2 from = a.xy - ndc * a.z;
+  vec2 to = b.xy - ndc * b.z;
+  vec2 ends = way.y > way.x ? vec2(from.y, to.y) : vec2(from.x, to.x);
+  float t = ends.x != ends.y ? clamp(ends.x / (ends.x - ends.y), 0.0, 1.0) : 0.0;
+  return vec2(1.0 - t, t);
+}
+
 struct Corners {
+  uint count; // 2 of a line, 1 of a point, whose others are the first
   uvec3 vertices;
   vec3 clip[3]; // x, y, w
 };
 
-vec3 weightsAt(Corners c, vec2 ndc) {
+vec3 weightsAt(Corners c, vec2 ndc, vec2 size) {
+  if (c.count == 1u) return vec3(1.0, 0.0, 0.0);
+  if (c.count == 2u) return vec3(weightsOf(c.clip[0], c.clip[1], ndc, size), 0.0);
   return weightsOf(c.clip[0].xy - ndc * c.clip[0].z, c.clip[1].xy - ndc * c.clip[1].z, c.clip[2].xy - ndc * c.clip[2].z);
 }
 
@@ -68,8 +81,8 @@ void setTexCoords(uint draw, Corners corners, vec3 weights, ivec2 pixel, vec2 si
   bvec2 odd = equal(pixel & 1, ivec2(1));
   vec2 step = mix(vec2(1.0), vec2(-1.0), odd);
   vec2 middle = vec2(pixel) + 0.5;
-  vec4 right = uv * weightsAt(corners, vec2(middle.x + step.x, middle.y) * 2.0 / size - 1.0);
-  vec4 down = uv * weightsAt(corners, vec2(middle.x, middle.y + step.y) * 2.0 / size - 1.0);
+  vec4 right = uv * weightsAt(corners, vec2(middle.x + step.x, middle.y) * 2.0 / size - 1.0, size);
+  vec4 down = uv * weightsAt(corners, vec2(middle.x, middle.y + step.y) * 2.0 / size - 1.0, size);
   surfaceTexCoordsRight = (right - surfaceTexCoords) * step.x;
   surfaceTexCoordsDown = (down - surfaceTexCoords) * step.y;
 }
@@ -108,14 +121,15 @@ Surface shadeFragment(uvec2 source, ivec2 pixel, vec2 size) {
   InstancePlace place = placeOf(source.y);
   Corners corners;
   vec3 world[3];
-  uint first = draws[draw].firstIndex + 3u * (source.x & 0x7fffffffu);
+  corners.count = (kAnyFeatures & FEATURE_SOLID) == 0u ? 3u : cornersOf(surfaceFeatures);
+  uint first = firstIndexOf(draw, corners.count, source.x & 0x7fffffffu);
   for (uint i = 0u; i < 3u; ++i) {
-    corners.vertices[i] = indices[first + i];
+    corners.vertices[i] = indices[first + (i < corners.count ? i : 0u)];
     vec4 local = vec4(positionOf(draw, corners.vertices[i]), 1.0);
     world[i] = vec3(dot(place.row0, local), dot(place.row1, local), dot(place.row2, local));
     corners.clip[i] = (frame.viewProjection * vec4(world[i], 1.0)).xyw;
   }
-  vec3 weights = weightsAt(corners, (vec2(pixel) + 0.5) * 2.0 / size - 1.0);
+  vec3 weights = weightsAt(corners, (vec2(pixel) + 0.5) * 2.0 / size - 1.0, size);
   inPosition = mat3(world[0], world[1], world[2]) * weights;
   if (has(FEATURE_FLAT)) surfacePlane = cross(world[1] - world[0], world[2] - world[0]);
   if (has(FEATURE_VERTEX_COLOR)) {

@@ -44,4 +44,14 @@ vec4 clipOf(vec4 world) {
   return clip;
 }
 
+// What a draw consists of: 3 corners a triangle, 2 a line, 1 a point. Lines and points are drawn as two triangles each.
+uint cornersOf(uint features) {
+  uint kind = features & FEATURE_SOLID;
+  return kind == FEATURE_LINES ? 2u : kind == FEATURE_POINTS ? 1u : 3u;
+}
+// Where the indices of one of its triangles begin.
+uint firstIndexOf(uint draw, uint corners, uint primitive) {
+  return draws[draw].firstIndex + (corners == 3u ? 3u * primitive : corners * (primitive / 2u));
+}
+
 #endif

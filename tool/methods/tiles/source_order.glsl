@@ -12,9 +12,11 @@ bool sourceBefore(uint a, uint b) {
   uint sourceS = drawOfInstance[2u * s.y + 1u];
   uint sourceT = drawOfInstance[2u * t.y + 1u];
   if (sourceS != sourceT) return sourceS < sourceT;
-  uint firstS = draws[drawOfInstance[2u * s.y]].firstIndex + 3u * (s.x & 0x7fffffffu);
-  uint firstT = draws[drawOfInstance[2u * t.y]].firstIndex + 3u * (t.x & 0x7fffffffu);
-  for (uint i = 0u; i < 3u; ++i) {
+  uint draw = drawOfInstance[2u * s.y]; // one source is of one draw
+  uint corners = cornersOf(draws[draw].features);
+  uint firstS = firstIndexOf(draw, corners, s.x & 0x7fffffffu);
+  uint firstT = firstIndexOf(draw, corners, t.x & 0x7fffffffu);
+  for (uint i = 0u; i < corners; ++i) {
     uint u = indices[firstS + i];
     uint v = indices[firstT + i];
     if (u != v) return u < v;

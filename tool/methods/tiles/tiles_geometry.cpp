@@ -50,7 +50,10 @@ void TilesGeometry::listDraws(const Surfaces& surfaces) {
   std::uint64_t groups = 0;
   for (const GpuDraw& draw : scene.transparentDraws()) {
     shaders::TilesDraw item{};
-    item.triangles = draw.indexCount / 3;
+    const std::uint32_t kind = draw.features & shaders::FEATURE_SOLID;
+    item.triangles = kind == shaders::FEATURE_LINES    ? draw.indexCount / 2 * 2
+                     : kind == shaders::FEATURE_POINTS ? draw.indexCount * 2
+                                                       : draw.indexCount / 3;
     if (item.triangles == 0) continue;
     item.firstGroup = static_cast<std::uint32_t>(groups);
     item.firstIndex = draw.firstIndex;

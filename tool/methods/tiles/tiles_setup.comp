@@ -47,12 +47,56 @@ VitrailViewport viewportOf() {
 
 Triangle triangleOf(VitrailViewport viewport, vec4 a, vec4 b, vec4 c, uvec2 source) {
   Triangle t;
-  t.p0 = vitrailPlace(viewport, a, t.depths.x);
-  t.p1 = vitrailPlace(viewport, b, t.depths.y);
-  t.p2 = vitrailPlace(viewport, c, t.depths.z);
+  t.p0 = vitrailSnap(vitrailPixels(viewport, a, t.depths.x));
+  t.p1 = vitrailSnap(vitrailPixels(viewport, b, t.depths.y));
+  t.p2 = vitrailSnap(vitrailPixels(viewport, c, t.depths.z));
   t.primitive = source.x;
   t.instance = source.y;
   return t;
+}
+
+// One of the two triangles of a line, a pixel wide across the axis along which it is longer, or of a point, where both
+// ends are the same.
+Triangle halfOf(VitrailViewport viewport, vec4 a, vec4 b, uint corners, uvec2 source) {
+  float depthA, depthB;
+  vec2 from = vitrailPixels(viewport, a, depthA);
+  vec2 to = vitrailPixels(viewport, b, depthB);
+  bool isSteep = abs(to.y - from.y) > abs(to.x - from.x);
+  vec2 across = isSteep ? vec2(0.5, 0.0) : vec2(0.0, 0.5);
+  vec2 along = vec2(0.0);
+  if (corners == 1u) {
+    across = vec2(0.0, 0.5 * tiles.pointSize);
+    along = vec2(0.5 * tiles.pointSize, 0.0);
+  }
+  bool second = (source.x & 1u) != 0u;
+  Triangle t;
+  t.p0 = vitrailSnap(from - along - across);
+  t.p1 = vitrailSnap(to + along + (second ? across : -across));
+  t.p2 = vitrailSnap((second ? from - along : to + along) + across);
+  t.depths = vec3(depthA, depthB, second ? depthA : depthB);
+  t.primitive = source.x;
+  t.instance = source.y;
+  return t;
+}
+
+// The corners of a triangle, line or point in clip space.
+VitrailPolygon polygonOf(uint draw, uint corners, uvec2 source) {
+  InstancePlace place = placeOf(source.y);
+  uint first = firstIndexOf(draw, corners, source.x);
+  VitrailPolygon polygon;
+  for (uint i = 0u; i < corners; ++i) {
+    vec4 clip = clipOf(worldOf(place, positionOf(draw, indices[first + i])));
+    if (corners == 2u) clip.xy += clip.w * frame.depth.zw; // as surface.vert
+    polygon.corners[i] = clip;
+  }
+  polygon.count = int(corners);
+  return polygon;
+}
+
+bool needsClipping(VitrailViewport viewport, VitrailPolygon polygon) {
+  bool needs = false;
+  for (int i = 0; i < polygon.count; ++i) needs = needs || vitrailNeedsClipping(viewport, polygon.corners[i]);
+  return needs;
 }
 
 // Tiles from `low` up to and without `high` that a triangle may touch, within the given ones. Pixels whose middle is on
@@ -74,8 +118,10 @@ bool share(uint thread, Triangle t, ivec2 low, ivec2 high) {
   if (turn == 0) return false;
   VitrailPlane plane = vitrailPlane(t.p0, t.p1, t.p2, t.depths);
   float nearest = max(t.depths.x, max(t.depths.y, t.depths.z));
-  bool mirrored = draws[drawOfInstance[2u * t.instance]].mirrored != 0u;
+  uint draw = drawOfInstance[2u * t.instance];
+  bool mirrored = draws[draw].mirrored != 0u;
   bool front = (turn < 0) != mirrored; // counter-clockwise in the picture
+  if (cornersOf(draws[draw].features) < 3u) front = true;
   sharedCorners[thread] = turn > 0 ? ivec4(t.p0, t.p1) : ivec4(t.p0, t.p2);
   sharedTile[thread] = ivec4(turn > 0 ? t.p2 : t.p1, low);
   sharedPlane[thread] = vec4(plane.depth, nearest);
@@ -162,20 +208,20 @@ void putAside(uvec2 source) {
 
 // How many tiles the thread's triangle may touch, which is shared then.
 uint setUp(uint draw, uvec2 source) {
-  InstancePlace place = placeOf(source.y);
-  vec4 corners[3];
-  for (uint i = 0u; i < 3u; ++i) {
-    uint vertex = indices[draws[draw].firstIndex + 3u * source.x + i];
-    corners[i] = clipOf(worldOf(place, positionOf(draw, vertex)));
-  }
-  if (vitrailIsOutside(corners[0], corners[1], corners[2])) return 0u;
+  uint corners = cornersOf(draws[draw].features);
+  VitrailPolygon p = polygonOf(draw, corners, source);
+  if (corners == 3u && vitrailIsOutside(p.corners[0], p.corners[1], p.corners[2])) return 0u;
   VitrailViewport viewport = viewportOf();
-  if (vitrailNeedsClipping(viewport, corners[0]) || vitrailNeedsClipping(viewport, corners[1]) ||
-      vitrailNeedsClipping(viewport, corners[2])) {
+  if (needsClipping(viewport, p)) {
     putAside(source);
     return 0u;
   }
-  Triangle t = triangleOf(viewport, corners[0], corners[1], corners[2], source);
+  Triangle t;
+  if (corners == 3u) {
+    t = triangleOf(viewport, p.corners[0], p.corners[1], p.corners[2], source);
+  } else {
+    t = halfOf(viewport, p.corners[0], p.corners[corners - 1u], corners, source);
+  }
   ivec2 low, high;
   uint count = candidates(t, ivec2(0), ivec2(0x7fffffff), low, high);
   if (count > TILES_LARGE) {
@@ -207,25 +253,29 @@ void blockOf(out ivec2 low, out ivec2 high) {
   high = ivec2(min(first + int(TILES_LARGE_BLOCK), int(tiles.tilesX)), row + 1);
 }
 
-VitrailPolygon polygonOf(VitrailViewport viewport, uvec2 source) {
-  uint draw = drawOfInstance[2u * source.y];
-  InstancePlace place = placeOf(source.y);
-  vec4 corners[3];
-  for (uint i = 0u; i < 3u; ++i) {
-    uint vertex = indices[draws[draw].firstIndex + 3u * source.x + i];
-    corners[i] = clipOf(worldOf(place, positionOf(draw, vertex)));
+// What is left of a triangle or line; of a point all or nothing.
+VitrailPolygon clippedOf(VitrailViewport viewport, uint draw, uint corners, uvec2 source) {
+  VitrailPolygon whole = polygonOf(draw, corners, source);
+  if (!needsClipping(viewport, whole)) return whole;
+  if (corners == 1u) {
+    whole.count = 0;
+    return whole;
   }
-  if (vitrailNeedsClipping(viewport, corners[0]) || vitrailNeedsClipping(viewport, corners[1]) ||
-      vitrailNeedsClipping(viewport, corners[2])) {
-    return vitrailClip(viewport, corners[0], corners[1], corners[2]);
+  VitrailPolygon left = vitrailClip(viewport, whole);
+  if (corners == 3u || left.count < 2) return left;
+  // The ends of what is left of a line, which may have been added twice.
+  vec4 way = whole.corners[1] - whole.corners[0];
+  VitrailPolygon ends = left;
+  for (int i = 0; i < left.count; ++i) {
+    vec4 p = left.corners[i];
+    if (dot(p - ends.corners[0], way) < 0.0) ends.corners[0] = p;
+    if (dot(p - ends.corners[1], way) > 0.0) ends.corners[1] = p;
   }
-  VitrailPolygon whole;
-  for (int i = 0; i < 3; ++i) whole.corners[i] = corners[i];
-  whole.count = 3;
-  return whole;
+  ends.count = 2;
+  return ends;
 }
 
-// The triangles of a fan: of most polygons one.
+// A polygon is a fan of triangles, most often one.
 void main() {
   uint thread = gl_LocalInvocationIndex;
   VitrailViewport viewport = viewportOf();
@@ -239,18 +289,25 @@ void main() {
     uvec2 source = mine ? large[first + thread] : uvec2(0u);
     VitrailPolygon polygon;
     polygon.count = 0;
-    if (mine) polygon = polygonOf(viewport, source);
+    uint draw = drawOfInstance[2u * source.y];
+    uint corners = cornersOf(draws[draw].features);
+    if (mine) polygon = clippedOf(viewport, draw, corners, source);
+    int fan = corners == 3u ? polygon.count - 2 : min(polygon.count, 1);
     barrier(); // all have left the last turn
     if (thread == 0u) sharedPieces = 0u;
     barrier();
-    if (polygon.count > 2) atomicMax(sharedPieces, uint(polygon.count - 2));
+    if (fan > 0) atomicMax(sharedPieces, uint(fan));
     barrier();
     uint pieces = sharedPieces;
     for (uint piece = 0u; piece < pieces; ++piece) {
       uint tilesOfMine = 0u;
-      if (int(piece) < polygon.count - 2) {
-        Triangle t = triangleOf(viewport, polygon.corners[0], polygon.corners[piece + 1u], polygon.corners[piece + 2u],
-                                source);
+      if (int(piece) < fan) {
+        Triangle t;
+        if (corners == 3u) {
+          t = triangleOf(viewport, polygon.corners[0], polygon.corners[piece + 1u], polygon.corners[piece + 2u], source);
+        } else {
+          t = halfOf(viewport, polygon.corners[0], polygon.corners[corners - 1u], corners, source);
+        }
         ivec2 low, high;
         tilesOfMine = candidates(t, least, most, low, high);
         if (tilesOfMine > 0u && !share(thread, t, low, high)) tilesOfMine = 0u;
