@@ -79,7 +79,7 @@ const std::vector<MethodRow>& vulkanRows() {
        .exact = Exact::Everywhere,
        .orderFree = true,
        .options = {"--nodes", "--resolve", "--msaa-resolve", "--layers", "--memory-budget"}},
-      {.name = "tiles", .exact = Exact::Everywhere, .orderFree = true, .severalSamples = false, .options = {}},
+      {.name = "tiles", .exact = Exact::Everywhere, .orderFree = true, .severalSamples = false, .options = {"--memory-budget"}},
       {.name = "cpu", .exact = Exact::Everywhere, .orderFree = true, .options = {"--memory-budget"}},
       {.name = "unsorted", .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "sorted", .exact = Exact::ParallelPanes, .options = {}, .wrongWhereSurfacesCross = true},

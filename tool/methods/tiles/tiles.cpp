@@ -16,8 +16,10 @@
 // (TILES_STOP).
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -46,6 +48,7 @@
 #include "shaders/tiles_scatter.comp.h"
 #include "shaders/tiles_setup.comp.h"
 #include "shaders/tiles_setup_clipped.comp.h"
+#include "most_light.h"
 #include "tiles_geometry.h"
 #include "tiles_memory.h"
 
@@ -106,7 +109,7 @@ class Tiles final : public Method {
   void blend(Frame& frame);
   void blendDeep(Frame& frame);
   void takeNote();
-  void splitBands();
+  void splitBands(double excess);
   void cmdDispatch(VkCommandBuffer commands, const Unique<VkPipeline>& pipeline, std::uint32_t groups) const;
   void cmdPush(VkCommandBuffer commands, const std::array<std::uint32_t, 3>& words) const;
   void cmdIndirect(VkCommandBuffer commands, const Unique<VkPipeline>& pipeline, VkBuffer buffer,
@@ -118,6 +121,7 @@ class Tiles final : public Method {
   Gpu& gpu_;
   const Surfaces& surfaces_;
   TilesGeometry geometry_;
+  float mostLight_;
   SingleSet set_;
   TilesMemory memory_;
   GpuBuffer frameBuffer_; // shaders::TilesFrame
@@ -132,6 +136,7 @@ class Tiles final : public Method {
   Unique<VkPipeline> middling_;
   std::optional<DeepPipelines> deep_;
   VkExtent2D extent_{};
+  std::uint64_t budget_ = 0;
   std::uint32_t bandTiles_ = 0; // rows of tiles in a band
   TilesNeeds wanted_;           // by the frame that was drawn last
   bool deepPlanned_ = false;    // whether frames have the passes of deep tiles, and how many of some
@@ -145,6 +150,7 @@ Tiles::Tiles(const MethodHost& host)
     : gpu_(host.gpu),
       surfaces_(host.surfaces),
       geometry_(host),
+      mostLight_(mostLight(host.scene, host.surfaces.scene())),
       set_(makeSet(gpu_)),
       memory_(gpu_, set_),
       frameBuffer_(gpu_, sizeof(shaders::TilesFrame),
@@ -209,12 +215,23 @@ void Tiles::planDeep() {
 void Tiles::setTarget(const MethodTarget& target) {
   set_.writeImage(9, target.color, VK_IMAGE_LAYOUT_GENERAL);
   set_.writeImage(10, target.depth, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
-  if (bandTiles_ > 0) return; // released where the size changes
+  const std::uint64_t budget = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
+  if (bandTiles_ > 0 && budget == budget_) return; // released where the size changes
+  releaseTarget();
+  budget_ = budget;
   extent_ = target.extent;
   bandTiles_ = tilesOf(extent_.height);
-  memory_.setTiles(tilesOf(extent_.width) * bandTiles_);
-  TilesNeeds guess{.records = 65536, .large = 1024, .deep = 1, .blocks = 1, .fragments = 1, .chunks = 1};
-  memory_.grow(guess);
+  memory_.setTiles(tilesOf(extent_.width) * bandTiles_, budget);
+  // Most models' triangles are each in a tile or two; what pictures need is known after the first.
+  const std::uint64_t guess = std::clamp<std::uint64_t>(geometry_.triangles() * 2, 4096, 1U << 20U);
+  constexpr TilesNeeds kLeast{.records = 1, .large = 1, .deep = 1, .blocks = 1, .fragments = 1, .chunks = 1};
+  TilesNeeds needs = kLeast;
+  needs.records = guess;
+  needs.large = 256;
+  if (memory_.grow(needs) > 0.0 && memory_.grow(kLeast) > 0.0) {
+    throw GpuError(fmt::format("a memory budget of {} bytes has no room for the tiles of a picture of {}x{} pixels",
+                               budget, extent_.width, extent_.height));
+  }
 }
 
 void Tiles::releaseTarget() {
@@ -240,7 +257,7 @@ shaders::TilesFrame Tiles::frameOf(const Band& band) const {
   data.fragmentCapacity = static_cast<std::uint32_t>(capacity.fragments);
   data.chunkCapacity = static_cast<std::uint32_t>(capacity.chunks);
   data.pointSize = surfaces_.pointSize();
-  data.lightMost = 1.0F;
+  data.lightMost = mostLight_;
   const glm::dmat4 toWorld = glm::inverse(glm::dmat4(surfaces_.view().viewProjection));
   for (std::uint32_t i = 0; i < shaders::CLIP_PLANE_COUNT; ++i) {
     data.clipPlanes[i] = glm::vec4(glm::dvec4(surfaces_.view().clipPlanes[i]) * toWorld);
@@ -404,18 +421,19 @@ bool Tiles::finish() {
   mergePasses_ = std::max(mergePasses_, passes);
   slices_ = std::max(slices_, slices);
   if (fits) return true;
-  if (!memory_.grow(wanted_)) splitBands();
+  if (const double excess = memory_.grow(wanted_); excess > 0.0) splitBands(excess);
   return false;
 }
 
-// The picture needs more than the device lets shaders reach: it is drawn in bands of half as many tiles.
-void Tiles::splitBands() {
+// The picture needs more than there may be: it is drawn in bands of fewer tiles.
+void Tiles::splitBands(double excess) {
   if (bandTiles_ == 1) {
-    throw GpuError(fmt::format("the method tiles needs room for {} triangles in a row of tiles, and for {} fragments "
-                               "of deep tiles, more than shaders of {} reach: use linked-list, or a smaller --size",
-                               wanted_.records, wanted_.fragments, gpu_.properties().deviceName));
+    throw GpuError(fmt::format("the method tiles has no room on {} for the {} triangles in a row of tiles, and for {} "
+                               "fragments of deep tiles: use linked-list, a larger --memory-budget or a smaller --size",
+                               gpu_.properties().deviceName, wanted_.records, wanted_.fragments));
   }
-  bandTiles_ = (bandTiles_ + 1) / 2;
+  const double parts = std::max(2.0, std::ceil(excess * 1.1));
+  bandTiles_ = std::max(1U, static_cast<std::uint32_t>(bandTiles_ / parts));
 }
 
 FrameStats Tiles::stats() const {
@@ -424,6 +442,7 @@ FrameStats Tiles::stats() const {
   stats.cutPixels = cutPixels_;
   stats.complete = cutPixels_ == 0;
   stats.errorBound = 0.5 + shaders::TILES_STOP + 0.05;
+  stats.tiles = bandTiles_ > 0 ? (tilesOf(extent_.height) + bandTiles_ - 1) / bandTiles_ : 1;
   stats.totalBytes = memory_.bytes() + frameBuffer_.size() + classes_.size() + control_.bytes();
   return stats;
 }

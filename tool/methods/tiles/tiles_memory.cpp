@@ -9,6 +9,12 @@ namespace {
 // Of set 3, whose other bindings are images and what all frames have.
 constexpr std::array<std::uint32_t, 13> kBindings{2, 3, 4, 5, 6, 7, 8, 11, 12, 13, 14, 15, 16};
 
+// Bytes of each, in all buffers together.
+constexpr std::uint64_t kRecordBytes = 32 + 12 + 8;
+constexpr std::uint64_t kFragmentBytes = 2 * 8;
+constexpr std::uint64_t kDeepPixelBytes = 64 * 32;
+constexpr std::uint64_t kDeepBytes = 16 + 64 * 16 + kDeepPixelBytes;
+
 std::uint64_t withSpare(std::uint64_t wanted) { return wanted + wanted / 8; }
 
 } // namespace
@@ -22,49 +28,81 @@ void TilesMemory::make(std::uint32_t binding, std::uint64_t bytes, const char* n
   set_.writeBuffer(binding, buffer.get(), buffer.size());
 }
 
-void TilesMemory::setTiles(std::uint32_t tiles) {
+void TilesMemory::setTiles(std::uint32_t tiles, std::uint64_t budget) {
+  tiles_ = tiles;
+  budget_ = budget;
   make(2, std::uint64_t{tiles} * 8, "tiles records of tiles");
   make(7, std::uint64_t{tiles} * 4, "tiles lists");
 }
 
-bool TilesMemory::grow(const TilesNeeds& needs) {
-  const std::uint64_t reach = std::min<std::uint64_t>(gpu_.properties().limits.maxStorageBufferRange,
-                                                      gpu_.maxAllocation());
-  bool fits = true;
-  // Whether there is room for `wanted` of `bytes` each now, and whether it had to be made.
-  const auto grown = [&](std::uint64_t wanted, std::uint64_t& capacity, std::uint64_t bytes) {
-    if (wanted <= capacity) return false;
-    const std::uint64_t most = std::min<std::uint64_t>(reach / bytes, UINT32_MAX);
-    if (wanted > most) {
-      fits = false;
-      return false;
-    }
-    capacity = std::min(withSpare(wanted), most);
-    return true;
+double TilesMemory::excess(const TilesNeeds& needs) const {
+  const auto reach = static_cast<double>(
+      std::min<std::uint64_t>(gpu_.properties().limits.maxStorageBufferRange, gpu_.maxAllocation()));
+  double most = 0.0;
+  double all = static_cast<double>(tiles_) * 12.0;
+  const auto add = [&](std::uint64_t count, std::uint64_t largest, std::uint64_t together) {
+    // Numbers have 32 bits, and what is done in strides must not pass their end.
+    most = std::max({most, static_cast<double>(count * largest) / reach, static_cast<double>(count) / 2e9});
+    all += static_cast<double>(count * together);
   };
-  if (grown(needs.records, capacity_.records, 32)) {
-    make(3, capacity_.records * 32, "tiles records");
-    make(4, capacity_.records * 12, "tiles places");
-    make(5, capacity_.records * 8, "tiles pairs");
+  add(needs.records, 32, kRecordBytes);
+  add(needs.large, 8, 8);
+  add(needs.deep, kDeepPixelBytes, kDeepBytes);
+  add(needs.blocks, 8, 8);
+  add(needs.fragments, 8, kFragmentBytes);
+  add(needs.chunks, 8, 8);
+  return std::max(most, all / static_cast<double>(budget_));
+}
+
+double TilesMemory::grow(const TilesNeeds& needs) {
+  // With some to spare; without; and without what earlier pictures needed more of.
+  enum class Room { Spare, Enough, Least };
+  TilesNeeds next;
+  for (const Room room : {Room::Spare, Room::Enough, Room::Least}) {
+    const auto sized = [room](std::uint64_t wanted, std::uint64_t had) {
+      wanted = std::max<std::uint64_t>(wanted, 1);
+      if (room == Room::Least) return wanted;
+      return wanted > had ? room == Room::Spare ? withSpare(wanted) : wanted : had;
+    };
+    next = {.records = sized(needs.records, capacity_.records),
+            .large = sized(needs.large, capacity_.large),
+            .deep = sized(needs.deep, capacity_.deep),
+            .blocks = sized(needs.blocks, capacity_.blocks),
+            .fragments = sized(needs.fragments, capacity_.fragments),
+            .chunks = sized(needs.chunks, capacity_.chunks)};
+    const double over = excess(next);
+    if (over <= 1.0) break;
+    if (room == Room::Least) return over;
   }
-  if (grown(needs.large, capacity_.large, 8)) make(6, capacity_.large * 8, "tiles large triangles");
-  if (grown(needs.deep, capacity_.deep, 64 * 32)) {
-    make(8, capacity_.deep * 16, "tiles deep tiles");
-    make(11, capacity_.deep * 64 * 16, "tiles deep pixels");
-    make(16, capacity_.deep * 64 * 32, "tiles states of pixels");
+  resize(next);
+  return 0.0;
+}
+
+void TilesMemory::resize(const TilesNeeds& next) {
+  if (next.records != capacity_.records) {
+    make(3, next.records * 32, "tiles records");
+    make(4, next.records * 12, "tiles places");
+    make(5, next.records * 8, "tiles pairs");
   }
-  if (grown(needs.blocks, capacity_.blocks, 8)) make(12, capacity_.blocks * 8, "tiles blocks of records");
-  if (grown(needs.fragments, capacity_.fragments, 8)) {
-    make(13, capacity_.fragments * 8, "tiles fragments");
-    make(14, capacity_.fragments * 8, "tiles sorted fragments");
+  if (next.large != capacity_.large) make(6, next.large * 8, "tiles large triangles");
+  if (next.deep != capacity_.deep) {
+    make(8, next.deep * 16, "tiles deep tiles");
+    make(11, next.deep * 64 * 16, "tiles deep pixels");
+    make(16, next.deep * kDeepPixelBytes, "tiles states of pixels");
   }
-  if (grown(needs.chunks, capacity_.chunks, 8)) make(15, capacity_.chunks * 8, "tiles chunks of fragments");
-  return fits;
+  if (next.blocks != capacity_.blocks) make(12, next.blocks * 8, "tiles blocks of records");
+  if (next.fragments != capacity_.fragments) {
+    make(13, next.fragments * 8, "tiles fragments");
+    make(14, next.fragments * 8, "tiles sorted fragments");
+  }
+  if (next.chunks != capacity_.chunks) make(15, next.chunks * 8, "tiles chunks of fragments");
+  capacity_ = next;
 }
 
 void TilesMemory::release() {
   for (GpuBuffer& buffer : buffers_) buffer = GpuBuffer();
   capacity_ = {};
+  tiles_ = 0;
 }
 
 std::uint64_t TilesMemory::bytes() const {

@@ -25,11 +25,13 @@ class TilesMemory {
   // Points the set's bindings from kFirst on at its buffers. Both outlive it.
   TilesMemory(Gpu& gpu, SingleSet& set) : gpu_(gpu), set_(set) {}
 
-  // Makes room for a band of so many tiles. No frame is pending, for this and the next ones. Throws GpuError.
-  void setTiles(std::uint32_t tiles);
-  // Makes room for what is needed and not there, with some to spare. False: one of them is more than a shader reaches.
-  // Throws GpuError where the device has no memory for it.
-  bool grow(const TilesNeeds& needs);
+  // Makes room for bands of at most so many tiles. No frame is pending, for this and the next ones. `budget` in bytes.
+  // Throws GpuError.
+  void setTiles(std::uint32_t tiles, std::uint64_t budget);
+  // Makes room for what is needed and not there, with some to spare, and says by how many times that is too much: for
+  // what a shader reaches, or for the budget. Where it is (1 and more) it makes none. Throws GpuError where the device
+  // has no memory for it.
+  double grow(const TilesNeeds& needs);
   void release();
 
   const TilesNeeds& capacity() const { return capacity_; }
@@ -38,10 +40,14 @@ class TilesMemory {
   std::uint64_t bytes() const;
 
  private:
+  double excess(const TilesNeeds& needs) const;
+  void resize(const TilesNeeds& next);
   void make(std::uint32_t binding, std::uint64_t bytes, const char* name);
 
   Gpu& gpu_;
   SingleSet& set_;
+  std::uint64_t budget_ = 0;
+  std::uint32_t tiles_ = 0;
   TilesNeeds capacity_;
   std::array<GpuBuffer, 13> buffers_; // of the bindings of kBindings
 };
