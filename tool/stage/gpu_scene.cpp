@@ -44,8 +44,8 @@ GpuBuffer uploadUniforms(Gpu& gpu, Uploader& uploader, const std::vector<Data>& 
   std::vector<std::byte> bytes(data.size() * stride);
   for (std::size_t i = 0; i < data.size(); ++i) std::memcpy(&bytes[i * stride], &data[i], sizeof(Data));
   // One at least, so that a scene without any has something to bind.
-  GpuBuffer buffer(gpu, std::max<std::size_t>(bytes.size(), stride),
-                   VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | kStorageUsage, MemoryKind::Device, name);
+  GpuBuffer buffer(gpu, std::max<std::size_t>(bytes.size(), stride), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | kStorageUsage,
+                   MemoryKind::Device, name);
   uploader.toBuffer(bytes, buffer, 0, kShaderRead);
   return buffer;
 }
@@ -68,8 +68,8 @@ GpuScene::GpuScene(Gpu& gpu, const Scene& scene, std::optional<float> opacity, D
 
 void GpuScene::uploadMeshes(Uploader& uploader, const Scene& scene, Scene* released) {
   streams_.emplace(gpu_, scene, *this);
-  indices_ = GpuBuffer(gpu_, indexBytes(), VK_BUFFER_USAGE_INDEX_BUFFER_BIT | kStorageUsage, MemoryKind::Device,
-                       "indices");
+  indices_ =
+      GpuBuffer(gpu_, indexBytes(), VK_BUFFER_USAGE_INDEX_BUFFER_BIT | kStorageUsage, MemoryKind::Device, "indices");
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     if (!usesMesh(i)) continue;
     streams_->upload(uploader, scene.meshes[i], i, released != nullptr ? &released->meshes[i] : nullptr);
@@ -91,17 +91,15 @@ void GpuScene::uploadLights(Uploader& uploader, const Scene& scene) {
   std::vector<shaders::LightData> data = makeLightData(scene, origin());
   lightCount_ = static_cast<std::uint32_t>(data.size());
   if (data.empty()) data.emplace_back(); // something to bind
-  lights_ =
-      GpuBuffer(gpu_, data.size() * sizeof(shaders::LightData), kStorageUsage, MemoryKind::Device, "lights");
+  lights_ = GpuBuffer(gpu_, data.size() * sizeof(shaders::LightData), kStorageUsage, MemoryKind::Device, "lights");
   uploader.toBuffer(std::as_bytes(std::span(data)), lights_, 0,
                     {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT});
 }
 
 void GpuScene::uploadInstances(Uploader& uploader, const Scene& scene) {
-  instances_ =
-      GpuBuffer(gpu_, std::max<std::uint64_t>(instanceBytes(), kInstanceBytes),
-                VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | kStorageUsage, MemoryKind::Device, "instances");
+  instances_ = GpuBuffer(gpu_, std::max<std::uint64_t>(instanceBytes(), kInstanceBytes),
+                         VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | kStorageUsage, MemoryKind::Device, "instances");
   giveInstances(scene, [&](std::uint64_t offset, std::span<const std::byte> bytes) {
     uploader.toBuffer(bytes, instances_, offset, kInstanceFetch);
   });

@@ -44,8 +44,7 @@ VertexStreams::VertexStreams(Gpu& gpu, const Scene& scene, const SceneDraws& dra
   const Mesh values = defaultVertex();
   const auto arrays = vertexArrays(values);
   for (std::size_t stream = 0; stream < kStreamCount; ++stream) {
-    buffers_[stream] =
-        GpuBuffer(gpu, places_.bytes[stream], kVertexUsage, MemoryKind::Device, kStreamNames[stream]);
+    buffers_[stream] = GpuBuffer(gpu, places_.bytes[stream], kVertexUsage, MemoryKind::Device, kStreamNames[stream]);
     uploader.toBuffer(arrays[stream], buffers_[stream], 0, kVertexFetch);
   }
 }

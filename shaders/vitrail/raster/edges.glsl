@@ -35,7 +35,7 @@ int vitrailSumOfProducts(ivec2 a, ivec2 b, int bias) {
   return clamp(lower, -most, most);
 }
 
-// Of corners that run clockwise in the picture (y is down), as vitrailIsClockwise() says.
+// Of corners that run clockwise in the picture (y is down): whose area is positive.
 VitrailEdges vitrailEdges(ivec2 p0, ivec2 p1, ivec2 p2) {
   VitrailEdges e;
   e.right = ivec3(p1.y - p2.y, p2.y - p0.y, p0.y - p1.y);
@@ -44,17 +44,20 @@ VitrailEdges vitrailEdges(ivec2 p0, ivec2 p1, ivec2 p2) {
   return e;
 }
 
-// The sign of twice the area: 1 where the corners run clockwise in the picture, -1 where they do not, 0 where there is
-// none.
-int vitrailTurn(ivec2 p0, ivec2 p1, ivec2 p2) {
+// Twice the area in square subpixels, rounded to a float: positive where the corners run clockwise in the picture, 0
+// only where there is none.
+float vitrailArea(ivec2 p0, ivec2 p1, ivec2 p2) {
   ivec2 a = p1 - p0;
   ivec2 b = p2 - p0;
   int high0, high1;
   int low0, low1;
   imulExtended(a.x, b.y, high0, low0);
   imulExtended(a.y, b.x, high1, low1);
-  if (high0 == high1 && low0 == low1) return 0;
-  return high0 > high1 || (high0 == high1 && uint(low0) > uint(low1)) ? 1 : -1;
+  uint borrow;
+  uint low = usubBorrow(uint(low0), uint(low1), borrow);
+  int high = high0 - high1 - int(borrow);
+  if (high == int(low) >> 31) return float(int(low));
+  return float(high) * 4294967296.0 + float(low);
 }
 
 // The edge functions at a place, in units of 256 squared subpixels: not negative inside.
@@ -115,13 +118,20 @@ struct VitrailPlane {
   vec3 depth; // at the place; right; down
 };
 
-VitrailPlane vitrailPlane(ivec2 p0, ivec2 p1, ivec2 p2, vec3 depths) {
+// `area` is vitrailArea(), not 0. A triangle so thin that its plane would be nothing but rounding is as deep as its
+// corners in the mean.
+VitrailPlane vitrailPlane(ivec2 p0, ivec2 p1, ivec2 p2, vec3 depths, float area) {
   vec2 a = vec2(p1 - p0);
   vec2 b = vec2(p2 - p0);
-  float inverse = float(VITRAIL_SUBPIXELS) / (a.x * b.y - b.x * a.y);
   vec2 rise = depths.yz - depths.x;
   VitrailPlane plane;
   plane.place = vec2(p0);
+  float longest = max(max(abs(a.x) + abs(a.y), abs(b.x) + abs(b.y)), abs(a.x - b.x) + abs(a.y - b.y));
+  if (4.0 * abs(area) < longest) {
+    plane.depth = vec3((depths.x + depths.y + depths.z) / 3.0, 0.0, 0.0);
+    return plane;
+  }
+  float inverse = float(VITRAIL_SUBPIXELS) / area;
   plane.depth = vec3(depths.x, (rise.x * b.y - rise.y * a.y) * inverse, (rise.y * a.x - rise.x * b.x) * inverse);
   return plane;
 }

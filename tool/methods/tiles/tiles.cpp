@@ -4,13 +4,14 @@
 // rasterization" (SIGGRAPH 1988). docs/notes/tiles.md has the design.
 //
 // Each triangle is set up and makes a record in every tile in which it covers a pixel; a tile's records are sorted by
-// their nearest depths and walked in that order, while each pixel keeps what it has met in a short sorted list and shades
-// the nearest once nothing can come before it. Tiles with very many records, and those whose surfaces cross each other
-// more than the list holds, collect their fragments and sort them all.
+// their nearest depths and walked in that order, while each pixel keeps what it has met in a short sorted list and
+// shades the nearest once nothing can come before it. Tiles with very many records, and those whose surfaces cross each
+// other more than the list holds, collect their fragments and sort them all.
 //
 // Cost: nothing is stored per fragment but in such deep tiles, and no fragment that is hidden is shaded. Memory: 52
-// bytes for a triangle in a tile, 12 bytes a tile; 16 bytes a fragment in deep tiles. A picture that needs more than the
-// last ones had room for is drawn again, in bands of tiles where the device cannot hold all of it. One sample a pixel.
+// bytes for a triangle in a tile, 12 bytes a tile; 16 bytes a fragment in deep tiles. A picture that needs more than
+// the last ones had room for is drawn again, in bands of tiles where the device cannot hold all of it. One sample a
+// pixel.
 //
 // What it gets wrong: nothing. Colours are not rounded before they are blended; what a pixel hardly shows is left out
 // (TILES_STOP).
@@ -33,6 +34,7 @@
 #include "../../gpu/pipeline.h"
 #include "../method.h"
 #include "../methods.h"
+#include "most_light.h"
 #include "shaders/tiles_blend.comp.h"
 #include "shaders/tiles_blend_constant.comp.h"
 #include "shaders/tiles_deep_blend.comp.h"
@@ -48,7 +50,6 @@
 #include "shaders/tiles_scatter.comp.h"
 #include "shaders/tiles_setup.comp.h"
 #include "shaders/tiles_setup_clipped.comp.h"
-#include "most_light.h"
 #include "tiles_geometry.h"
 #include "tiles_memory.h"
 
@@ -156,16 +157,17 @@ Tiles::Tiles(const MethodHost& host)
       frameBuffer_(gpu_, sizeof(shaders::TilesFrame),
                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryKind::Device,
                    "tiles frame"),
-      classes_(gpu_, sizeof(shaders::TilesClasses),
-               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-               MemoryKind::Device, "tiles classes"),
+      classes_(
+          gpu_, sizeof(shaders::TilesClasses),
+          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+          MemoryKind::Device, "tiles classes"),
       control_(gpu_, sizeof(shaders::TilesControl), "tiles control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT) {
   set_.writeBuffer(0, frameBuffer_.get(), frameBuffer_.size());
   set_.writeBuffer(1, control_.buffer().get(), control_.buffer().size());
   set_.writeBuffer(17, classes_.get(), classes_.size());
-  layout_ = makePipelineLayout(
-      gpu_, {surfaces_.frameLayout(), geometry_.textureLayout(), geometry_.layout(), set_.layout()},
-      {VK_SHADER_STAGE_COMPUTE_BIT, 3 * sizeof(std::uint32_t)}, "tiles");
+  layout_ =
+      makePipelineLayout(gpu_, {surfaces_.frameLayout(), geometry_.textureLayout(), geometry_.layout(), set_.layout()},
+                         {VK_SHADER_STAGE_COMPUTE_BIT, 3 * sizeof(std::uint32_t)}, "tiles");
   if (geometry_.groups() > 0) makePipelines();
 }
 
@@ -181,14 +183,14 @@ Unique<VkPipeline> Tiles::makePipeline(std::span<const std::uint32_t> code, cons
 void Tiles::makePipelines() {
   using Code = std::span<const std::uint32_t>;
   const bool clipped = surfaces_.list().isClipped();
-  setup_ = makePipeline(clipped ? Code(shaders::tiles_setup_clipped_comp) : Code(shaders::tiles_setup_comp),
-                        "tiles setup");
-  large_ = makePipeline(clipped ? Code(shaders::tiles_large_clipped_comp) : Code(shaders::tiles_large_comp),
-                        "tiles large");
+  setup_ =
+      makePipeline(clipped ? Code(shaders::tiles_setup_clipped_comp) : Code(shaders::tiles_setup_comp), "tiles setup");
+  large_ =
+      makePipeline(clipped ? Code(shaders::tiles_large_clipped_comp) : Code(shaders::tiles_large_comp), "tiles large");
   plan_ = makePipeline(shaders::tiles_plan_comp, "tiles plan");
   scatter_ = makePipeline(shaders::tiles_scatter_comp, "tiles scatter");
-  const Code blend = geometry_.constantTextures() ? Code(shaders::tiles_blend_constant_comp)
-                                                  : Code(shaders::tiles_blend_comp);
+  const Code blend =
+      geometry_.constantTextures() ? Code(shaders::tiles_blend_constant_comp) : Code(shaders::tiles_blend_comp);
   PipelineConstants constants = shadingConstants();
   constants.insert(constants.end(), {{3, shaders::TILES_SHALLOW}, {4, 16}, {5, VK_FALSE}});
   shallow_ = makePipeline(blend, "tiles blend", constants);
@@ -345,8 +347,9 @@ void Tiles::rasterise(Frame& frame, const Band& band) {
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, scatter_.get());
   vkCmdDispatch(commands, shaders::TILES_SCATTER, 1, 1);
   // Records and lists of tiles -> they are blended, and the counts say how many.
-  cmdMemoryBarrier(commands, kComputeWrite,
-                   {kComputeReadWrite.stages | kIndirectRead.stages, kComputeReadWrite.accesses | kIndirectRead.accesses});
+  cmdMemoryBarrier(
+      commands, kComputeWrite,
+      {kComputeReadWrite.stages | kIndirectRead.stages, kComputeReadWrite.accesses | kIndirectRead.accesses});
   frame.endPass("bin");
 }
 
@@ -428,9 +431,10 @@ bool Tiles::finish() {
 // The picture needs more than there may be: it is drawn in bands of fewer tiles.
 void Tiles::splitBands(double excess) {
   if (bandTiles_ == 1) {
-    throw GpuError(fmt::format("the method tiles has no room on {} for the {} triangles in a row of tiles, and for {} "
-                               "fragments of deep tiles: use linked-list, a larger --memory-budget or a smaller --size",
-                               gpu_.properties().deviceName, wanted_.records, wanted_.fragments));
+    throw GpuError(
+        fmt::format("the method tiles has no room on {} for the {} triangles in a row of tiles, and for {} "
+                    "fragments of deep tiles: use linked-list, a larger --memory-budget or a smaller --size",
+                    gpu_.properties().deviceName, wanted_.records, wanted_.fragments));
   }
   const double parts = std::max(2.0, std::ceil(excess * 1.1));
   bandTiles_ = std::max(1U, static_cast<std::uint32_t>(bandTiles_ / parts));

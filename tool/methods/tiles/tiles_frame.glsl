@@ -35,7 +35,7 @@ uint keyOf(float depth) { return 0x3f800000u - floatBitsToUint(min(max(depth, 0.
 
 // What fragments are sorted by: a depth on a record's plane in a pixel of its tile.
 float depthOn(vec4 plane, ivec2 inTile) {
-  return min(fma(plane.y, float(inTile.x), fma(plane.z, float(inTile.y), plane.x)), plane.w);
+  return max(min(fma(plane.y, float(inTile.x), fma(plane.z, float(inTile.y), plane.x)), plane.w), 0.0);
 }
 
 // How far apart the depths of two surfaces in one plane may be at a pixel: hardware may take corners as they are or

@@ -37,8 +37,9 @@ void checkReach(const Gpu& gpu, const GpuBuffer& buffer, const char* what) {
 
 TilesGeometry::TilesGeometry(const MethodHost& host)
     : gpu_(host.gpu),
-      set_(gpu_, std::vector(kGeometryBindings, std::pair(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                                          VkShaderStageFlags{VK_SHADER_STAGE_COMPUTE_BIT})),
+      set_(gpu_,
+           std::vector(kGeometryBindings,
+                       std::pair(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VkShaderStageFlags{VK_SHADER_STAGE_COMPUTE_BIT})),
            "tiles geometry") {
   listDraws(host.surfaces);
   makeTextures(host.surfaces);
@@ -76,9 +77,10 @@ void TilesGeometry::listDraws(const Surfaces& surfaces) {
   }
   // The primitive has 31 bits, and the number of a thread 32.
   if (triangles_ > std::numeric_limits<std::uint32_t>::max() / 2) {
-    throw GpuError(fmt::format("the method tiles draws at most {} transparent triangles, and the model has {}: use "
-                               "--method linked-list",
-                               std::numeric_limits<std::uint32_t>::max() / 2, triangles_));
+    throw GpuError(
+        fmt::format("the method tiles draws at most {} transparent triangles, and the model has {}: use "
+                    "--method linked-list",
+                    std::numeric_limits<std::uint32_t>::max() / 2, triangles_));
   }
   groups_ = static_cast<std::uint32_t>(groups);
   draws_ = static_cast<std::uint32_t>(list_.size());
@@ -104,14 +106,15 @@ void TilesGeometry::makeTextures(const Surfaces& surfaces) {
   textureCount_ = std::max<std::uint32_t>(static_cast<std::uint32_t>(table_.size()), 1);
   constantTextures_ = !gpu_.features().nonUniformTextures;
   const VkPhysicalDeviceLimits& limits = gpu_.properties().limits;
-  const std::uint32_t most = constantTextures_ ? shaders::TILES_CONSTANT_TEXTURES
-                                               : std::min({limits.maxPerStageDescriptorSampledImages - 1,
-                                                           limits.maxPerStageDescriptorSamplers,
-                                                           limits.maxDescriptorSetSampledImages});
+  const std::uint32_t most =
+      constantTextures_ ? shaders::TILES_CONSTANT_TEXTURES
+                        : std::min({limits.maxPerStageDescriptorSampledImages - 1, limits.maxPerStageDescriptorSamplers,
+                                    limits.maxDescriptorSetSampledImages});
   if (textureCount_ > most) {
-    throw GpuError(fmt::format("the method tiles reaches all {} textures of transparent surfaces at once, and {} lets a "
-                               "shader reach {}: use --method linked-list",
-                               textureCount_, gpu_.properties().deviceName, most));
+    throw GpuError(
+        fmt::format("the method tiles reaches all {} textures of transparent surfaces at once, and {} lets a "
+                    "shader reach {}: use --method linked-list",
+                    textureCount_, gpu_.properties().deviceName, most));
   }
   const std::uint32_t places = constantTextures_ ? shaders::TILES_CONSTANT_TEXTURES : textureCount_;
   const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, places,

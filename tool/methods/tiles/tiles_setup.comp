@@ -114,16 +114,16 @@ uint candidates(Triangle t, ivec2 least, ivec2 most, out ivec2 low, out ivec2 hi
 
 // Puts a triangle where all threads find it. False: it covers nothing.
 bool share(uint thread, Triangle t, ivec2 low, ivec2 high) {
-  int turn = vitrailTurn(t.p0, t.p1, t.p2);
-  if (turn == 0) return false;
-  VitrailPlane plane = vitrailPlane(t.p0, t.p1, t.p2, t.depths);
+  float area = vitrailArea(t.p0, t.p1, t.p2);
+  if (area == 0.0) return false;
+  VitrailPlane plane = vitrailPlane(t.p0, t.p1, t.p2, t.depths, area);
   float nearest = max(t.depths.x, max(t.depths.y, t.depths.z));
   uint draw = drawOfInstance[2u * t.instance];
   bool mirrored = draws[draw].mirrored != 0u;
-  bool front = (turn < 0) != mirrored; // counter-clockwise in the picture
+  bool front = (area < 0.0) != mirrored; // counter-clockwise in the picture
   if (cornersOf(draws[draw].features) < 3u) front = true;
-  sharedCorners[thread] = turn > 0 ? ivec4(t.p0, t.p1) : ivec4(t.p0, t.p2);
-  sharedTile[thread] = ivec4(turn > 0 ? t.p2 : t.p1, low);
+  sharedCorners[thread] = area > 0.0 ? ivec4(t.p0, t.p1) : ivec4(t.p0, t.p2);
+  sharedTile[thread] = ivec4(area > 0.0 ? t.p2 : t.p1, low);
   sharedPlane[thread] = vec4(plane.depth, nearest);
   sharedSource[thread] = uvec4(t.primitive | (front ? 0x80000000u : 0u), t.instance, high.x - low.x, 0u);
   return true;

@@ -8,21 +8,21 @@
 
 VITRAIL_SHARED_BEGIN
 
-const uint TILES_GROUP = 128u;      // threads of the rasteriser's work groups, a triangle each
-const uint TILES_PIXELS = 64u;      // of a tile, a thread each
-const uint TILES_ROW = 32768u;      // work groups in a row of a dispatch
-const uint TILES_LARGE = 64u;       // a triangle that may touch more tiles is left to a pass of its own
-const uint TILES_LARGE_BLOCK = 64u; // tiles of a row that a work group of that pass looks after
-const uint TILES_SHALLOW = 256u;    // records of a tile that are sorted in shared memory: of most tiles
-const uint TILES_MIDDLING = 1024u;  // and of some
-const uint TILES_SCATTER = 1024u;   // work groups of passes over all records
-const uint TILES_BLOCK = 4096u;     // records of a deep tile that a work group looks after
-const uint TILES_CHUNK = 1024u;     // fragments that a work group sorts at once
-const uint TILES_SLICE = 2048u;     // fragments of a pixel that a dispatch blends
-const uint TILES_TIES = 16u;        // surfaces at one depth whose order their colours decide
-const float TILES_STOP = 0.35f;     // of 1/255: what may be left out of a pixel that hardly shows it
+const uint TILES_GROUP = 128u;            // threads of the rasteriser's work groups, a triangle each
+const uint TILES_PIXELS = 64u;            // of a tile, a thread each
+const uint TILES_ROW = 32768u;            // work groups in a row of a dispatch
+const uint TILES_LARGE = 64u;             // a triangle that may touch more tiles is left to a pass of its own
+const uint TILES_LARGE_BLOCK = 64u;       // tiles of a row that a work group of that pass looks after
+const uint TILES_SHALLOW = 256u;          // records of a tile that are sorted in shared memory: of most tiles
+const uint TILES_MIDDLING = 1024u;        // and of some
+const uint TILES_SCATTER = 1024u;         // work groups of passes over all records
+const uint TILES_BLOCK = 4096u;           // records of a deep tile that a work group looks after
+const uint TILES_CHUNK = 1024u;           // fragments that a work group sorts at once
+const uint TILES_SLICE = 2048u;           // fragments of a pixel that a dispatch blends
+const uint TILES_TIES = 16u;              // surfaces at one depth whose order their colours decide
+const float TILES_STOP = 0.35f;           // of 1/255: what may be left out of a pixel that hardly shows it
 const uint TILES_CONSTANT_TEXTURES = 32u; // where only constants choose a texture (surface_of_draws.glsl)
-const uint TILES_STREAMS = 6u;      // arrays of vertices (vertex_places.h)
+const uint TILES_STREAMS = 6u;            // arrays of vertices (vertex_places.h)
 
 // Instances of one mesh with one material (std430).
 struct TilesDraw {
@@ -54,15 +54,15 @@ struct TilesFrame {
   uint top;    // the band's first row of pixels, and the one behind its last
   uint bottom;
   uint draws;
-  uint largeBlocks;     // TILES_LARGE_BLOCKs in a row
+  uint largeBlocks; // TILES_LARGE_BLOCKs in a row
   uint recordCapacity;
   uint largeCapacity;
-  uint deepCapacity;    // deep tiles
-  uint blockCapacity;   // TILES_BLOCKs of them
+  uint deepCapacity;  // deep tiles
+  uint blockCapacity; // TILES_BLOCKs of them
   uint fragmentCapacity;
-  uint chunkCapacity;   // TILES_CHUNKs of them
+  uint chunkCapacity; // TILES_CHUNKs of them
   float pointSize;
-  float lightMost;      // that one surface sends to the eye
+  float lightMost;                   // that one surface sends to the eye
   vec4 clipPlanes[CLIP_PLANE_COUNT]; // of clip space
 };
 
