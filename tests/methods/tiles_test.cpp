@@ -396,7 +396,7 @@ TEST_F(TilesTest, BudgetsDoNotChangeABit) {
   BuiltinOptions options;
   options.count = 32;
   const Scene spheres = makeBuiltinScene("spheres", options);
-  const Scene deep = sheets(600, 0.001953125F);
+  const Scene deep = sheets(1100, 0.001953125F);
   RenderOptions deepPicture;
   deepPicture.width = 8;
   deepPicture.height = 24;

@@ -33,7 +33,7 @@ constexpr std::array kMethods{
     MethodTraits{.name = "tiles",
                  .help = "a rasteriser in compute shaders, a tile at a time",
                  .make = makeTiles,
-                 .options = kTakesMemoryBudget,
+                 .options = kTakesSamples | kTakesMemoryBudget,
                  .orderIndependent = true},
     MethodTraits{.name = kCpuMethod,
                  .help = "on the processor, without Vulkan; lists of any length",

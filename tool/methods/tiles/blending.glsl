@@ -11,7 +11,33 @@
 #include "opaque_depth.glsl"
 #include "source_order.glsl"
 
+#ifdef TILES_MSAA
+layout(set = 3, binding = 9, rgba16f) uniform writeonly image2D colorImage;
+layout(set = 3, binding = 18) uniform texture2DMS opaqueImage;
+
+vec4 colorBehind(ivec2 pixel, uint sample_) { return texelFetch(opaqueImage, pixel, int(sample_)); }
+#else
 layout(set = 3, binding = 9, rgba16f) uniform image2D colorImage;
+
+vec4 colorBehind(ivec2 pixel, uint sample_) { return imageLoad(colorImage, pixel); }
+#endif
+
+#ifdef TILES_MSAA
+#define EACH_SAMPLE(what) what(0) what(1) what(2) what(3) what(4) what(5) what(6) what(7)
+#else
+#define EACH_SAMPLE(what) what(0)
+#endif
+
+// What there is at each sample of a pixel: of fragments so far, and of the opaque surface.
+struct PixelLight {
+#ifdef TILES_MSAA
+  VitrailPair fronts[TILES_MOST_SAMPLES];
+  float depths[TILES_MOST_SAMPLES];
+#else
+  VitrailPair fronts[1];
+#endif
+  float most; // the most light that anything behind the fragments may send
+};
 
 const VitrailLayout kTilesNodes = VitrailLayout(VITRAIL_FORMAT_HDR, 1u, true);
 
@@ -42,22 +68,70 @@ SurfaceFragments fragmentsOf(uint record, ivec2 pixel) {
   return f;
 }
 
-void put(inout VitrailPair front, vec4 color, uint blend) {
+PixelLight lightBehind(ivec2 pixel) {
+  PixelLight light;
+  light.most = tiles.lightMost;
+#ifdef TILES_MSAA
+#define SET_DEPTH(i) light.depths[i] = i < kSamples ? opaqueDepth(pixel, i) : 0.0;
+  EACH_SAMPLE(SET_DEPTH)
+#endif
+#define SET_SAMPLE(i) \
+  light.fronts[i] = VitrailPair(vec3(0.0), vec4(1.0)); \
+  if (i < kSamples) { \
+    vec4 behind = colorBehind(pixel, i); \
+    light.most = max(light.most, max(behind.r, max(behind.g, behind.b))); \
+  }
+  EACH_SAMPLE(SET_SAMPLE)
+  return light;
+}
+
+// The samples at which a record's fragment shows, a bit each. `thread`: the pixel in its tile.
+uint visibleSamples(PixelLight light, uint record, ivec2 pixel, uint thread) {
+#ifdef TILES_MSAA
+  vec4 plane = uintBitsToFloat(records[2u * record + 1u]);
+  float depth = fma(plane.y, float(thread & 7u), fma(plane.z, float(thread >> 3), plane.x)) + depthSlack(plane, pixel);
+  uint visible = 0u;
+#define SEE_SAMPLE(i) \
+  if (i < kSamples) { \
+    uvec2 mask = sampleMasks[record * kSamples + i]; \
+    bool covers = ((thread < 32u ? mask.x : mask.y) >> (thread & 31u) & 1u) != 0u; \
+    float there = depth + dot(plane.yz, vec2(samplePlace(i) - 8)) / 16.0; \
+    if (covers && there >= light.depths[i]) visible |= 1u << i; \
+  }
+  EACH_SAMPLE(SEE_SAMPLE)
+  return visible;
+#else
+  return 1u;
+#endif
+}
+
+void put(inout PixelLight light, vec4 color, uint blend, uint visible) {
   VitrailPair pair = vitrailPairOf(color, blend);
-  front.color += front.transmittance.rgb * pair.color;
-  front.transmittance *= pair.transmittance;
+#define PUT_SAMPLE(i) \
+  if ((visible & (1u << i)) != 0u) { \
+    light.fronts[i].color += light.fronts[i].transmittance.rgb * pair.color; \
+    light.fronts[i].transmittance *= pair.transmittance; \
+  }
+  EACH_SAMPLE(PUT_SAMPLE)
 }
 
 // Whether what is farther away than some fragments may be left out: whether that changes the picture by less than
 // TILES_STOP of 1/255. What is left out is light of at most `most` together, or hides so much of what is behind. On the
 // sRGB curve it counts most in the dark. Surfaces that add light without hiding as much have no such bound.
-bool hasEnough(VitrailPair front, float most) {
+bool hasEnoughAt(VitrailPair front, float most) {
   float through = max(max(front.transmittance.r, front.transmittance.g),
                       max(front.transmittance.b, front.transmittance.a));
   if ((kAnyFeatures & (FEATURE_ADDITIVE | FEATURE_TRANSMISSION)) != 0u) return through <= 0.0;
   float darkest = min(front.color.r, min(front.color.g, front.color.b));
   float steepness = darkest > 0.0031308 ? 0.43958 * pow(darkest, -0.58333) : 12.92;
   return through * most * steepness * 255.0 < TILES_STOP;
+}
+
+bool hasEnough(PixelLight light) {
+  bool enough = true;
+#define ASK_SAMPLE(i) if (i < kSamples) enough = enough && hasEnoughAt(light.fronts[i], light.most);
+  EACH_SAMPLE(ASK_SAMPLE)
+  return enough;
 }
 
 // The order at one depth: by what fragments are, as in fragment lists.
@@ -78,38 +152,49 @@ uint alikeRecord(uint i);
 
 // Blends them. Up to TILES_TIES are in the order of what they are: each turn finds the next fragment, of which a surface
 // has two at most. More are in the order in which they are at hand, that of sourceBefore().
-void blendAlike(inout VitrailPair front, ivec2 pixel, uint alike) {
+void blendAlike(inout PixelLight light, ivec2 pixel, uint thread, uint alike) {
   bool byColor = alike > 1u && alike <= TILES_TIES;
   uint turns = byColor ? 2u * alike : alike;
   uvec4 last = uvec4(0u);
   for (uint turn = 0u; turn < turns; ++turn) {
     uvec4 best = uvec4(0xffffffffu);
     vec4 bestColor = vec4(0.0);
+    uint bestVisible = 0u;
     for (uint i = 0u; i < (byColor ? alike : 1u); ++i) {
-      SurfaceFragments f = fragmentsOf(alikeRecord(byColor ? i : turn), pixel);
+      uint record = alikeRecord(byColor ? i : turn);
+      uint visible = visibleSamples(light, record, pixel, thread);
+      if (visible == 0u) continue;
+      SurfaceFragments f = fragmentsOf(record, pixel);
       for (uint k = 0u; k < f.count; ++k) {
         if (!byColor) {
-          put(front, f.colors[k], f.blends[k]);
+          put(light, f.colors[k], f.blends[k], visible);
           continue;
         }
         uvec4 order = tieKey(f.colors[k], f.blends[k], 2u * i + k + 1u);
         if (lessKey(last, order) && lessKey(order, best)) {
           best = order;
           bestColor = f.colors[k];
+          bestVisible = visible;
         }
       }
     }
     if (!byColor) continue;
     if (best.w == 0xffffffffu) break;
-    put(front, bestColor, best.x);
+    put(light, bestColor, best.x, bestVisible);
     last = best;
   }
 }
 
-void blendOver(ivec2 pixel, VitrailPair front) {
-  vec4 behind = imageLoad(colorImage, pixel);
-  imageStore(colorImage, pixel,
-             vec4(front.color, 1.0 - front.transmittance.a) + front.transmittance * behind);
+// Puts what there is over the opaque surface.
+void blendOver(ivec2 pixel, PixelLight light) {
+  vec4 sum = vec4(0.0);
+#define ADD_SAMPLE(i) \
+  if (i < kSamples) { \
+    VitrailPair front = light.fronts[i]; \
+    sum += vec4(front.color, 1.0 - front.transmittance.a) + front.transmittance * colorBehind(pixel, i); \
+  }
+  EACH_SAMPLE(ADD_SAMPLE)
+  imageStore(colorImage, pixel, sum / float(kSamples));
 }
 
 #endif

@@ -2,9 +2,32 @@
 #ifndef VITRAIL_TOOL_TILES_OPAQUE_DEPTH_GLSL
 #define VITRAIL_TOOL_TILES_OPAQUE_DEPTH_GLSL
 
-layout(set = 3, binding = 10) uniform texture2D depthImage;
+#include "samples.glsl"
+#include "tiles_frame.glsl"
+
+#ifdef TILES_MSAA
+layout(set = 3, binding = 10) uniform texture2DMS depthImage;
 
 // The nearest opaque surface's.
-float opaqueDepth(ivec2 pixel) { return texelFetch(depthImage, pixel, 0).r; }
+float opaqueDepth(ivec2 pixel, uint sample_) { return texelFetch(depthImage, pixel, int(sample_)).r; }
+#else
+layout(set = 3, binding = 10) uniform texture2D depthImage;
+
+float opaqueDepth(ivec2 pixel, uint sample_) { return texelFetch(depthImage, pixel, 0).r; }
+#endif
+
+// The farthest of a pixel.
+float farthestDepth(ivec2 pixel) {
+  float farthest = opaqueDepth(pixel, 0u);
+  for (uint i = 1u; i < kSamples; ++i) farthest = min(farthest, opaqueDepth(pixel, i));
+  return farthest;
+}
+
+// Whether a fragment of that depth is behind the opaque surfaces at all samples, of which the farthest is given.
+bool isHidden(vec4 plane, float depth, ivec2 pixel, float farthest) {
+  float nearest = depth + depthSlack(plane, pixel);
+  if (kSamples > 1u) nearest += 0.5 * (abs(plane.y) + abs(plane.z));
+  return nearest < farthest;
+}
 
 #endif

@@ -10,8 +10,8 @@
 //
 // Cost: nothing is stored per fragment but in such deep tiles, and no fragment that is hidden is shaded. Memory: 52
 // bytes for a triangle in a tile, 12 bytes a tile; 16 bytes a fragment in deep tiles. A picture that needs more than
-// the last ones had room for is drawn again, in bands of tiles where the device cannot hold all of it. One sample a
-// pixel.
+// the last ones had room for is drawn again, in bands of tiles where the device cannot hold all of it. With several
+// samples 8 bytes more for each of them and each triangle in a tile.
 //
 // What it gets wrong: nothing. Colours are not rounded before they are blended; what a pixel hardly shows is left out
 // (TILES_STOP).
@@ -37,15 +37,21 @@
 #include "most_light.h"
 #include "shaders/tiles_blend.comp.h"
 #include "shaders/tiles_blend_constant.comp.h"
+#include "shaders/tiles_blend_msaa.comp.h"
+#include "shaders/tiles_blend_msaa_constant.comp.h"
 #include "shaders/tiles_deep_blend.comp.h"
 #include "shaders/tiles_deep_blend_constant.comp.h"
+#include "shaders/tiles_deep_blend_msaa.comp.h"
+#include "shaders/tiles_deep_blend_msaa_constant.comp.h"
 #include "shaders/tiles_deep_collect.comp.h"
 #include "shaders/tiles_deep_fill.comp.h"
+#include "shaders/tiles_deep_fill_msaa.comp.h"
 #include "shaders/tiles_deep_merge.comp.h"
 #include "shaders/tiles_deep_place.comp.h"
 #include "shaders/tiles_deep_sort.comp.h"
 #include "shaders/tiles_large.comp.h"
 #include "shaders/tiles_large_clipped.comp.h"
+#include "shaders/tiles_mean.comp.h"
 #include "shaders/tiles_plan.comp.h"
 #include "shaders/tiles_scatter.comp.h"
 #include "shaders/tiles_setup.comp.h"
@@ -64,16 +70,17 @@ std::uint32_t tilesOf(std::uint32_t pixels) { return (pixels + kSide - 1) / kSid
 
 SingleSet makeSet(Gpu& gpu) {
   std::vector<std::pair<VkDescriptorType, VkShaderStageFlags>> bindings(
-      18, {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT});
+      20, {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT});
   bindings[0].first = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   bindings[9].first = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
   bindings[10].first = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+  bindings[18].first = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
   return {gpu, bindings, "tiles"};
 }
 
 class Tiles final : public Method {
  public:
-  explicit Tiles(const MethodHost& host);
+  Tiles(const MethodHost& host, std::uint32_t samples);
 
   ImageNeeds needs() const override { return {.depthUsage = VK_IMAGE_USAGE_SAMPLED_BIT}; }
   void setTarget(const MethodTarget& target) override;
@@ -99,12 +106,16 @@ class Tiles final : public Method {
   };
 
   void makePipelines();
+  std::span<const std::uint32_t> blendCode() const;
+  std::span<const std::uint32_t> deepBlendCode() const;
   void planDeep();
   Unique<VkPipeline> makePipeline(std::span<const std::uint32_t> code, const char* name,
                                   const PipelineConstants& constants = {}) const;
   PipelineConstants shadingConstants() const;
   shaders::TilesFrame frameOf(const Band& band) const;
   void drawBand(Frame& frame, const Band& band);
+  void drawNothing(Frame& frame);
+  void takeMean(VkCommandBuffer commands, const Band& band);
   void clear(VkCommandBuffer commands, const Band& band);
   void rasterise(Frame& frame, const Band& band);
   void blend(Frame& frame);
@@ -121,6 +132,7 @@ class Tiles final : public Method {
 
   Gpu& gpu_;
   const Surfaces& surfaces_;
+  std::uint32_t samples_;
   TilesGeometry geometry_;
   float mostLight_;
   SingleSet set_;
@@ -133,6 +145,7 @@ class Tiles final : public Method {
   Unique<VkPipeline> large_;
   Unique<VkPipeline> plan_;
   Unique<VkPipeline> scatter_;
+  Unique<VkPipeline> mean_; // of several samples
   Unique<VkPipeline> shallow_;
   Unique<VkPipeline> middling_;
   std::optional<DeepPipelines> deep_;
@@ -147,13 +160,14 @@ class Tiles final : public Method {
   std::uint32_t cutPixels_ = 0;
 };
 
-Tiles::Tiles(const MethodHost& host)
+Tiles::Tiles(const MethodHost& host, std::uint32_t samples)
     : gpu_(host.gpu),
       surfaces_(host.surfaces),
+      samples_(samples),
       geometry_(host),
       mostLight_(mostLight(host.scene, host.surfaces.scene())),
       set_(makeSet(gpu_)),
-      memory_(gpu_, set_),
+      memory_(gpu_, set_, samples),
       frameBuffer_(gpu_, sizeof(shaders::TilesFrame),
                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryKind::Device,
                    "tiles frame"),
@@ -169,10 +183,29 @@ Tiles::Tiles(const MethodHost& host)
       makePipelineLayout(gpu_, {surfaces_.frameLayout(), geometry_.textureLayout(), geometry_.layout(), set_.layout()},
                          {VK_SHADER_STAGE_COMPUTE_BIT, 3 * sizeof(std::uint32_t)}, "tiles");
   if (geometry_.groups() > 0) makePipelines();
+  if (samples_ > 1) mean_ = makePipeline(shaders::tiles_mean_comp, "tiles mean", {{6, samples_}});
 }
 
 PipelineConstants Tiles::shadingConstants() const {
-  return {{0, geometry_.anyFeatures()}, {1, geometry_.allFeatures()}, {2, geometry_.textureCount()}};
+  return {{0, geometry_.anyFeatures()}, {1, geometry_.allFeatures()}, {2, geometry_.textureCount()}, {6, samples_}};
+}
+
+std::span<const std::uint32_t> Tiles::blendCode() const {
+  if (geometry_.constantTextures()) {
+    if (samples_ > 1) return shaders::tiles_blend_msaa_constant_comp;
+    return shaders::tiles_blend_constant_comp;
+  }
+  if (samples_ > 1) return shaders::tiles_blend_msaa_comp;
+  return shaders::tiles_blend_comp;
+}
+
+std::span<const std::uint32_t> Tiles::deepBlendCode() const {
+  if (geometry_.constantTextures()) {
+    if (samples_ > 1) return shaders::tiles_deep_blend_msaa_constant_comp;
+    return shaders::tiles_deep_blend_constant_comp;
+  }
+  if (samples_ > 1) return shaders::tiles_deep_blend_msaa_comp;
+  return shaders::tiles_deep_blend_comp;
 }
 
 Unique<VkPipeline> Tiles::makePipeline(std::span<const std::uint32_t> code, const char* name,
@@ -183,14 +216,14 @@ Unique<VkPipeline> Tiles::makePipeline(std::span<const std::uint32_t> code, cons
 void Tiles::makePipelines() {
   using Code = std::span<const std::uint32_t>;
   const bool clipped = surfaces_.list().isClipped();
-  setup_ =
-      makePipeline(clipped ? Code(shaders::tiles_setup_clipped_comp) : Code(shaders::tiles_setup_comp), "tiles setup");
-  large_ =
-      makePipeline(clipped ? Code(shaders::tiles_large_clipped_comp) : Code(shaders::tiles_large_comp), "tiles large");
+  const PipelineConstants samples{{6, samples_}};
+  setup_ = makePipeline(clipped ? Code(shaders::tiles_setup_clipped_comp) : Code(shaders::tiles_setup_comp),
+                        "tiles setup", samples);
+  large_ = makePipeline(clipped ? Code(shaders::tiles_large_clipped_comp) : Code(shaders::tiles_large_comp),
+                        "tiles large", samples);
   plan_ = makePipeline(shaders::tiles_plan_comp, "tiles plan");
   scatter_ = makePipeline(shaders::tiles_scatter_comp, "tiles scatter");
-  const Code blend =
-      geometry_.constantTextures() ? Code(shaders::tiles_blend_constant_comp) : Code(shaders::tiles_blend_comp);
+  const Code blend = blendCode();
   PipelineConstants constants = shadingConstants();
   constants.insert(constants.end(), {{3, shaders::TILES_SHALLOW}, {4, 16}, {5, VK_FALSE}});
   shallow_ = makePipeline(blend, "tiles blend", constants);
@@ -203,20 +236,20 @@ void Tiles::makePipelines() {
 void Tiles::planDeep() {
   deepPlanned_ = true;
   if (deep_) return;
-  const auto blend = geometry_.constantTextures()
-                         ? std::span<const std::uint32_t>(shaders::tiles_deep_blend_constant_comp)
-                         : std::span<const std::uint32_t>(shaders::tiles_deep_blend_comp);
+  const auto fill = samples_ > 1 ? std::span<const std::uint32_t>(shaders::tiles_deep_fill_msaa_comp)
+                                 : std::span<const std::uint32_t>(shaders::tiles_deep_fill_comp);
   deep_.emplace(DeepPipelines{makePipeline(shaders::tiles_deep_collect_comp, "tiles deep count"),
                               makePipeline(shaders::tiles_deep_place_comp, "tiles deep place"),
-                              makePipeline(shaders::tiles_deep_fill_comp, "tiles deep fill"),
+                              makePipeline(fill, "tiles deep fill", {{6, samples_}}),
                               makePipeline(shaders::tiles_deep_sort_comp, "tiles deep sort"),
                               makePipeline(shaders::tiles_deep_merge_comp, "tiles deep merge"),
-                              makePipeline(blend, "tiles deep blend", shadingConstants())});
+                              makePipeline(deepBlendCode(), "tiles deep blend", shadingConstants())});
 }
 
 void Tiles::setTarget(const MethodTarget& target) {
   set_.writeImage(9, target.color, VK_IMAGE_LAYOUT_GENERAL);
   set_.writeImage(10, target.depth, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+  if (samples_ > 1) set_.writeImage(18, target.opaque, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   const std::uint64_t budget = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
   if (bandTiles_ > 0 && budget == budget_) return; // released where the size changes
   releaseTarget();
@@ -270,11 +303,7 @@ shaders::TilesFrame Tiles::frameOf(const Band& band) const {
 void Tiles::draw(Frame& frame) {
   wanted_ = {};
   mostFragments_ = cutPixels_ = 0;
-  if (geometry_.groups() == 0) {
-    frame.images().cmdToComputeResolve(frame.commands());
-    frame.endPass("blend");
-    return;
-  }
+  if (geometry_.groups() == 0) return drawNothing(frame);
   const std::uint32_t step = bandTiles_ * kSide;
   for (std::uint32_t top = 0; top < extent_.height; top += step) {
     drawBand(frame, {top, std::min(top + step, extent_.height)});
@@ -296,6 +325,24 @@ void Tiles::cmdIndirect(VkCommandBuffer commands, const Unique<VkPipeline>& pipe
   vkCmdDispatchIndirect(commands, buffer, offset);
 }
 
+void Tiles::drawNothing(Frame& frame) {
+  VkCommandBuffer commands = frame.commands();
+  frame.images().cmdToComputeResolve(commands);
+  const Band whole{0, extent_.height};
+  clear(commands, whole);
+  frame.endPass("clear");
+  if (samples_ > 1) takeMean(commands, whole);
+  frame.endPass("blend");
+}
+
+// Several samples: the picture where nothing transparent is.
+void Tiles::takeMean(VkCommandBuffer commands, const Band& band) {
+  const VkDescriptorSet set = set_.set();
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 3, 1, &set, 0, nullptr);
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, mean_.get());
+  vkCmdDispatch(commands, tilesOf(extent_.width), tilesOf(band.bottom - band.top), 1);
+}
+
 // The passes of a band, from its triangles to its pixels.
 void Tiles::drawBand(Frame& frame, const Band& band) {
   VkCommandBuffer commands = frame.commands();
@@ -305,6 +352,7 @@ void Tiles::drawBand(Frame& frame, const Band& band) {
   surfaces_.cmdBindView(commands, layout_.get(), VK_PIPELINE_BIND_POINT_COMPUTE);
   const std::array<VkDescriptorSet, 3> sets{geometry_.textures(), geometry_.set(), set_.set()};
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 1, 3, sets.data(), 0, nullptr);
+  if (samples_ > 1) takeMean(commands, band); // the blend writes over it, after barriers of the passes between
   rasterise(frame, band);
   blend(frame);
   if (deepPlanned_) blendDeep(frame);
@@ -453,8 +501,8 @@ FrameStats Tiles::stats() const {
 
 } // namespace
 
-std::unique_ptr<Method> makeTiles(const MethodHost& host, const MethodOptions& /*options*/) {
-  return std::make_unique<Tiles>(host);
+std::unique_ptr<Method> makeTiles(const MethodHost& host, const MethodOptions& options) {
+  return std::make_unique<Tiles>(host, options.samples);
 }
 
 } // namespace vitrail::tool

@@ -80,11 +80,11 @@ void insert(uint key, uint record) {
 uint alikeRecord(uint i) { return pendingRecords[ringAt(i)]; }
 
 // Blends the nearest fragments of the list, all that have one depth.
-void blendNearest(inout VitrailPair front, ivec2 pixel) {
+void blendNearest(inout PixelLight light, ivec2 pixel) {
   uint key = pendingKeys[ringAt(0u)];
   uint alike = 1u;
   while (alike < pending && pendingKeys[ringAt(alike)] == key) ++alike;
-  blendAlike(front, pixel, alike);
+  blendAlike(light, pixel, thread, alike);
   head += alike;
   pending -= alike;
 }
@@ -100,13 +100,9 @@ void main() {
   bool inside = isInside(pixel);
   if (thread == 0u) sharedTooShort = 0u;
   sortRecords(count, tileRecords[tile].y);
-  float opaque = inside ? opaqueDepth(pixel) : 2.0;
-  float most = tiles.lightMost;
-  if (inside) {
-    vec4 behind = imageLoad(colorImage, pixel);
-    most = max(most, max(behind.r, max(behind.g, behind.b)));
-  }
-  VitrailPair front = VitrailPair(vec3(0.0), vec4(1.0));
+  float farthest = inside ? farthestDepth(pixel) : 2.0;
+  PixelLight light = lightBehind(inside ? pixel : ivec2(0));
+  bool isEmpty = true;
   bool ended = !inside;
   bool tooShort = false;
   uint batches = (count + TILES_PIXELS - 1u) / TILES_PIXELS;
@@ -123,7 +119,7 @@ void main() {
         uint i = takeBit(bits);
         vec4 plane = sharedPlanes[i];
         float depth = depthOn(plane, inTile);
-        if (depth + depthSlack(plane, pixel) < opaque) continue;
+        if (isHidden(plane, depth, pixel, farthest)) continue;
         insert(keyOf(depth), sharedRecords[batch * TILES_PIXELS + i]);
       }
       bool more = (bits.x | bits.y) != 0u;
@@ -131,9 +127,10 @@ void main() {
       uint horizon = more ? sharedKeys[batch * TILES_PIXELS + i] : next;
       bool blended = false;
       while (pending > 0u && pendingKeys[ringAt(0u)] < horizon) {
-        blendNearest(front, pixel);
+        blendNearest(light, pixel);
         blended = true;
-        if (hasEnough(front, most)) {
+        isEmpty = false;
+        if (hasEnough(light)) {
           ended = true;
           break;
         }
@@ -152,5 +149,5 @@ void main() {
     if (thread == 0u) addDeep(tile, count);
     return;
   }
-  if (inside && (front.transmittance != vec4(1.0) || front.color != vec3(0.0))) blendOver(pixel, front);
+  if (inside && !isEmpty) blendOver(pixel, light);
 }

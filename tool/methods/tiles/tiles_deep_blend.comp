@@ -14,7 +14,7 @@ struct PixelState {
   uint at; // the next fragment
   vec4 transmittance;
 };
-layout(set = 3, binding = 16, std430) buffer StateBlock { PixelState states[]; };
+layout(set = 3, binding = 16, std430) buffer StateBlock { PixelState states[]; }; // of each sample
 
 layout(push_constant) uniform SliceBlock {
   uint slice;
@@ -35,12 +35,17 @@ void main() {
   uvec4 collected = deepPixels[number];
   ivec2 pixel = firstPixel(deepTiles[deep].x) + ivec2(thread & 7u, thread >> 3);
   if (collected.x == 0u || collected.y == NO_PLACE || !isInside(pixel)) return;
-  PixelState state = PixelState(vec3(0.0), 0u, vec4(1.0));
-  if (slice > 0u) state = states[number];
-  VitrailPair front = VitrailPair(state.color, state.transmittance);
-  vec4 behind = imageLoad(colorImage, pixel);
-  float most = max(tiles.lightMost, max(behind.r, max(behind.g, behind.b)));
-  uint at = state.at;
+  PixelLight light = lightBehind(pixel);
+  uint at = 0u;
+#define LOAD_STATE(i) \
+  if (i < kSamples) { \
+    PixelState state = states[number * kSamples + i]; \
+    light.fronts[i] = VitrailPair(state.color, state.transmittance); \
+    at = state.at; \
+  }
+  if (slice > 0u) {
+    EACH_SAMPLE(LOAD_STATE)
+  }
   uint until = min(collected.x, at + TILES_SLICE);
   while (at < until) {
     alikeFirst = collected.y + at;
@@ -54,14 +59,17 @@ void main() {
       while (alike <= TILES_TIES && at + alike < collected.x && fragmentAt(alikeFirst + alike).x == key) ++alike;
       if (alike > TILES_TIES) alike = 1u;
     }
-    blendAlike(front, pixel, alike);
+    blendAlike(light, pixel, thread, alike);
     at += alike;
-    if (hasEnough(front, most)) at = collected.x;
+    if (hasEnough(light)) at = collected.x;
   }
   if (at < until) atomicAdd(control.cutPixels, 1u); // the driver has ended the loop
   if (last != 0u) {
-    blendOver(pixel, front);
+    blendOver(pixel, light);
   } else {
-    states[number] = PixelState(front.color, at, front.transmittance);
+#define STORE_STATE(i) \
+    if (i < kSamples) \
+      states[number * kSamples + i] = PixelState(light.fronts[i].color, at, light.fronts[i].transmittance);
+    EACH_SAMPLE(STORE_STATE)
   }
 }

@@ -24,7 +24,7 @@ void main() {
   ivec2 pixel = firstPixel(tile) + inTile;
   bool inside = isInside(pixel);
 #ifdef TILES_FILL
-  float opaque = inside ? opaqueDepth(pixel) : 2.0;
+  float farthest = inside ? farthestDepth(pixel) : 2.0;
   uint place = deepPixels[pixelNumber].y;
 #else
   uint count = 0u;
@@ -45,7 +45,7 @@ void main() {
       uint k = takeBit(bits);
       vec4 plane = sharedPlanes[k];
       float depth = depthOn(plane, inTile);
-      bool hidden = depth + depthSlack(plane, pixel) < opaque;
+      bool hidden = isHidden(plane, depth, pixel, farthest);
       fragments[at++] = hidden ? uvec2(NO_FRAGMENT) : uvec2(keyOf(depth), pairs[pairsFirst + i + k].y);
     }
 #endif

@@ -7,17 +7,18 @@ namespace vitrail::tool {
 namespace {
 
 // Of set 3, whose other bindings are images and what all frames have.
-constexpr std::array<std::uint32_t, 13> kBindings{2, 3, 4, 5, 6, 7, 8, 11, 12, 13, 14, 15, 16};
+constexpr std::array<std::uint32_t, 14> kBindings{2, 3, 4, 5, 6, 7, 8, 11, 12, 13, 14, 15, 16, 19};
 
 // Bytes of each, in all buffers together.
-constexpr std::uint64_t kRecordBytes = 32 + 12 + 8;
+constexpr std::uint64_t kRecordBytes = 32 + 12 + 8; // and the masks of several samples
 constexpr std::uint64_t kFragmentBytes = 2 * 8;
-constexpr std::uint64_t kDeepPixelBytes = 64 * 32;
-constexpr std::uint64_t kDeepBytes = 16 + 64 * 16 + kDeepPixelBytes;
+constexpr std::uint64_t kDeepBytes = 16 + 64 * 16; // and the states of their pixels
 
 std::uint64_t withSpare(std::uint64_t wanted) { return wanted + wanted / 8; }
 
 } // namespace
+
+TilesMemory::TilesMemory(Gpu& gpu, SingleSet& set, std::uint32_t samples) : gpu_(gpu), set_(set), samples_(samples) {}
 
 void TilesMemory::make(std::uint32_t binding, std::uint64_t bytes, const char* name) {
   const auto place = static_cast<std::size_t>(std::ranges::find(kBindings, binding) - kBindings.begin());
@@ -45,9 +46,9 @@ double TilesMemory::excess(const TilesNeeds& needs) const {
     most = std::max({most, static_cast<double>(count * largest) / reach, static_cast<double>(count) / 2e9});
     all += static_cast<double>(count * together);
   };
-  add(needs.records, 32, kRecordBytes);
+  add(needs.records, std::max<std::uint64_t>(32, maskBytes()), kRecordBytes + maskBytes());
   add(needs.large, 8, 8);
-  add(needs.deep, kDeepPixelBytes, kDeepBytes);
+  add(needs.deep, stateBytes(), kDeepBytes + stateBytes());
   add(needs.blocks, 8, 8);
   add(needs.fragments, 8, kFragmentBytes);
   add(needs.chunks, 8, 8);
@@ -83,12 +84,13 @@ void TilesMemory::resize(const TilesNeeds& next) {
     make(3, next.records * 32, "tiles records");
     make(4, next.records * 12, "tiles places");
     make(5, next.records * 8, "tiles pairs");
+    make(19, next.records * maskBytes(), "tiles samples");
   }
   if (next.large != capacity_.large) make(6, next.large * 8, "tiles large triangles");
   if (next.deep != capacity_.deep) {
     make(8, next.deep * 16, "tiles deep tiles");
     make(11, next.deep * 64 * 16, "tiles deep pixels");
-    make(16, next.deep * kDeepPixelBytes, "tiles states of pixels");
+    make(16, next.deep * stateBytes(), "tiles states of pixels");
   }
   if (next.blocks != capacity_.blocks) make(12, next.blocks * 8, "tiles blocks of records");
   if (next.fragments != capacity_.fragments) {

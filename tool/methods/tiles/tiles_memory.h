@@ -23,7 +23,7 @@ struct TilesNeeds {
 class TilesMemory {
  public:
   // Points the set's bindings from kFirst on at its buffers. Both outlive it.
-  TilesMemory(Gpu& gpu, SingleSet& set) : gpu_(gpu), set_(set) {}
+  TilesMemory(Gpu& gpu, SingleSet& set, std::uint32_t samples);
 
   // Makes room for bands of at most so many tiles. No frame is pending, for this and the next ones. `budget` in bytes.
   // Throws GpuError.
@@ -42,14 +42,17 @@ class TilesMemory {
  private:
   double excess(const TilesNeeds& needs) const;
   void resize(const TilesNeeds& next);
+  std::uint64_t maskBytes() const { return samples_ > 1 ? samples_ * 8 : 0; }    // of a record
+  std::uint64_t stateBytes() const { return std::uint64_t{samples_} * 64 * 32; } // of a deep tile
   void make(std::uint32_t binding, std::uint64_t bytes, const char* name);
 
   Gpu& gpu_;
   SingleSet& set_;
+  std::uint32_t samples_;
   std::uint64_t budget_ = 0;
   std::uint32_t tiles_ = 0;
   TilesNeeds capacity_;
-  std::array<GpuBuffer, 13> buffers_; // of the bindings of kBindings
+  std::array<GpuBuffer, 14> buffers_; // of the bindings of kBindings
 };
 
 } // namespace vitrail::tool

@@ -13,6 +13,7 @@
 #include "vitrail/raster/clip.glsl"
 
 #include "geometry.glsl"
+#include "samples.glsl"
 #include "tiles_frame.glsl"
 
 layout(local_size_x = TILES_GROUP) in;
@@ -99,11 +100,12 @@ bool needsClipping(VitrailViewport viewport, VitrailPolygon polygon) {
   return needs;
 }
 
-// Tiles from `low` up to and without `high` that a triangle may touch, within the given ones. Pixels whose middle is on
-// the box count.
+// Tiles from `low` up to and without `high` that a triangle may touch, within the given ones.
 uint candidates(Triangle t, ivec2 least, ivec2 most, out ivec2 low, out ivec2 high) {
-  ivec2 first = (min(t.p0, min(t.p1, t.p2)) + 127) >> 8;
-  ivec2 last = (max(t.p0, max(t.p1, t.p2)) - 128) >> 8;
+  const int middle = kSamples == 1u ? VITRAIL_SUBPIXELS / 2 : 0; // samples are anywhere
+  const int behind = kSamples == 1u ? VITRAIL_SUBPIXELS / 2 - 1 : 0;
+  ivec2 first = (min(t.p0, min(t.p1, t.p2)) + behind) >> 8;
+  ivec2 last = (max(t.p0, max(t.p1, t.p2)) - middle) >> 8;
   first = max(first, ivec2(0, int(tiles.top)));
   last = min(last, ivec2(tiles.width, tiles.bottom) - 1);
   low = max(first >> 3, least);
@@ -137,12 +139,18 @@ void cover(uint thread, uint number, uint place) {
   ivec2 tile = rest.zw + ivec2(number % source.z, number / source.z);
   ivec2 pixel = tile * VITRAIL_TILE_SIDE;
   ivec2 middle = pixel * VITRAIL_SUBPIXELS + VITRAIL_SUBPIXELS / 2;
+  if (place >= tiles.recordCapacity) return;
   VitrailEdges edges = vitrailEdges(corners.xy, corners.zw, rest.xy);
-  uvec2 covered = vitrailTileCoverage(edges, vitrailEdgesAt(edges, corners.xy, corners.zw, rest.xy, middle));
   ivec2 end = ivec2(tiles.width, tiles.bottom);
-  if (any(greaterThan(pixel + VITRAIL_TILE_SIDE, end))) covered &= vitrailTileWindow(ivec2(0), end - pixel);
-  bool fits = place < tiles.recordCapacity;
-  if (!fits) return;
+  bool isCut = any(greaterThan(pixel + VITRAIL_TILE_SIDE, end));
+  uvec2 window = isCut ? vitrailTileWindow(ivec2(0), end - pixel) : uvec2(0xffffffffu);
+  uvec2 covered = uvec2(0u);
+  for (uint i = 0u; i < kSamples; ++i) {
+    ivec2 at = pixel * VITRAIL_SUBPIXELS + samplePlace(i) * (VITRAIL_SUBPIXELS / 16);
+    uvec2 samples = window & vitrailTileCoverage(edges, vitrailEdgesAt(edges, corners.xy, corners.zw, rest.xy, at));
+    if (kSamples > 1u) sampleMasks[place * kSamples + i] = samples;
+    covered |= samples;
+  }
   uint at = NO_TILE;
   if ((covered.x | covered.y) != 0u) {
     at = uint(tile.y - int(tiles.top) / VITRAIL_TILE_SIDE) * tiles.tilesX + uint(tile.x);
@@ -150,7 +158,9 @@ void cover(uint thread, uint number, uint place) {
     VitrailPlane plane = VitrailPlane(vec2(corners.xy), shared_.xyz);
     vec3 depth = vitrailPlaneAt(plane, middle);
     float steps = float(VITRAIL_TILE_SIDE - 1);
-    float nearest = min(shared_.w, depth.x + (max(depth.y, 0.0) + max(depth.z, 0.0)) * steps);
+    // At the middle of a pixel of which another part is covered a plane may be nearer than any corner.
+    float nearest = depth.x + (max(depth.y, 0.0) + max(depth.z, 0.0)) * steps;
+    if (kSamples == 1u) nearest = min(shared_.w, nearest);
     records[2u * place] = uvec4(covered, source.xy);
     records[2u * place + 1u] = floatBitsToUint(vec4(depth, nearest));
     places[3u * place + 1u] = atomicAdd(tileRecords[at].x, 1u);
