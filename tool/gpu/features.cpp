@@ -40,6 +40,27 @@ VkSampleCountFlags middleSampleCounts(VkPhysicalDevice device) {
   return range[0] <= 0.5F && range[1] >= 0.5F ? locations.sampleLocationSampleCounts : 0;
 }
 
+struct SubgroupProperties {
+  bool shuffles = false;
+  std::uint32_t least = 0; // threads
+};
+
+// Of compute shaders.
+SubgroupProperties subgroupProperties(VkPhysicalDevice device) {
+  auto properties13 =
+      vkStruct<VkPhysicalDeviceVulkan13Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES);
+  auto properties11 =
+      vkStruct<VkPhysicalDeviceVulkan11Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES);
+  properties11.pNext = &properties13;
+  auto properties = vkStruct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
+  properties.pNext = &properties11;
+  vkGetPhysicalDeviceProperties2(device, &properties);
+  const bool shuffles = (properties11.subgroupSupportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT) != 0 &&
+                        (properties11.subgroupSupportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0;
+  const std::uint32_t fixed = properties11.subgroupSize; // where it does not vary
+  return {shuffles, properties13.minSubgroupSize > 0 ? properties13.minSubgroupSize : fixed};
+}
+
 // What a picture's images, and the scopes that draw into them, can have.
 VkSampleCountFlags pictureSampleCounts(VkPhysicalDevice device, const VkPhysicalDeviceLimits& limits) {
   constexpr VkSampleCountFlags kUsed =
@@ -86,6 +107,9 @@ GpuFeatures supportedFeatures(VkPhysicalDevice device) {
   result.independentBlending = features.features.independentBlend == VK_TRUE;
   result.floatBlending = blends(device, VK_FORMAT_R32_SFLOAT) && blends(device, VK_FORMAT_R32G32B32A32_SFLOAT);
   result.int64Atomics = features.features.shaderInt64 == VK_TRUE && features12.shaderBufferInt64Atomics == VK_TRUE;
+  const SubgroupProperties subgroups = subgroupProperties(device);
+  result.subgroupShuffles = subgroups.shuffles;
+  result.wideSubgroups = subgroups.least >= 32;
   result.nonUniformTextures = features.features.shaderSampledImageArrayDynamicIndexing == VK_TRUE &&
                               features12.shaderSampledImageArrayNonUniformIndexing == VK_TRUE;
   result.fragmentInterlock = interlock.fragmentShaderPixelInterlock == VK_TRUE;

@@ -22,6 +22,8 @@ struct GpuFeatures {
   bool floatBlending = false;           // 32-bit float colour attachments blend
   bool int64Atomics = false;            // minima of 64-bit integers in buffers
   bool nonUniformTextures = false;      // threads side by side choose different textures of an array
+  bool subgroupShuffles = false;        // threads of a subgroup of compute shaders hand each other words
+  bool wideSubgroups = false;           // whose subgroups have 32 threads or more
   bool fragmentInterlock = false;       // VK_EXT_fragment_shader_interlock, of pixels
   bool postDepthCoverage = false;       // VK_EXT_post_depth_coverage
   VkSampleCountFlags middleSamples = 0; // counts of samples that can all be in the middle (VK_EXT_sample_locations)

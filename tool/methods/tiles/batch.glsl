@@ -1,5 +1,6 @@
 // Records of a tile, TILES_PIXELS at a time, by a work group with a thread for each pixel: a thread finds out which of
 // them cover its pixel.
+#extension GL_KHR_shader_subgroup_shuffle : require
 #ifndef VITRAIL_TOOL_TILES_BATCH_GLSL
 #define VITRAIL_TOOL_TILES_BATCH_GLSL
 
@@ -23,9 +24,28 @@ void loadBatch(bool any_, uint record) {
   sharedMasks[1][thread] = mask.y;
 }
 
-// Those that cover the thread's pixel, a bit each.
+// Whether threads are side by side in subgroups of at least 32 that can hand each other words.
+layout(constant_id = 7) const bool kShuffles = false;
+
+// Turns 32 words of a subgroup by the diagonal: bit i of word k is bit k of word i (Warren, "Hacker's Delight", 7-3).
+uint transposed(uint word) {
+  uint lane = thread & 31u;
+  uint low = 0xffffu;
+  for (uint step = 16u; step != 0u; step >>= 1) {
+    uint other = subgroupShuffleXor(word, step);
+    word = (lane & step) == 0u ? (word & low) | (other & low) << step : (other >> step & low) | (word & ~low);
+    low ^= low << (step >> 1);
+  }
+  return word;
+}
+
+// Those that cover the thread's pixel, a bit each. All threads together.
 uvec2 covering() {
   uint half_ = thread >> 5;
+  if (kShuffles) {
+    uint lane = thread & 31u;
+    return uvec2(transposed(sharedMasks[half_][lane]), transposed(sharedMasks[half_][32u + lane]));
+  }
   uint bit = thread & 31u;
   uvec2 bits = uvec2(0u);
   for (uint i = 0u; i < 32u; ++i) {

@@ -105,6 +105,7 @@ class Tiles final : public Method {
     Unique<VkPipeline> blend;
   };
 
+  std::uint32_t shuffles() const { return gpu_.features().wideSubgroups ? VK_TRUE : VK_FALSE; } // batch.glsl
   void makePipelines();
   std::span<const std::uint32_t> blendCode() const;
   std::span<const std::uint32_t> deepBlendCode() const;
@@ -176,6 +177,10 @@ Tiles::Tiles(const MethodHost& host, std::uint32_t samples)
           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
           MemoryKind::Device, "tiles classes"),
       control_(gpu_, sizeof(shaders::TilesControl), "tiles control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT) {
+  if (!gpu_.features().subgroupShuffles) {
+    throw GpuError(fmt::format("{} lacks subgroup shuffles, which the method tiles needs: use linked-list",
+                               gpu_.properties().deviceName));
+  }
   set_.writeBuffer(0, frameBuffer_.get(), frameBuffer_.size());
   set_.writeBuffer(1, control_.buffer().get(), control_.buffer().size());
   set_.writeBuffer(17, classes_.get(), classes_.size());
@@ -187,7 +192,11 @@ Tiles::Tiles(const MethodHost& host, std::uint32_t samples)
 }
 
 PipelineConstants Tiles::shadingConstants() const {
-  return {{0, geometry_.anyFeatures()}, {1, geometry_.allFeatures()}, {2, geometry_.textureCount()}, {6, samples_}};
+  return {{0, geometry_.anyFeatures()},
+          {1, geometry_.allFeatures()},
+          {2, geometry_.textureCount()},
+          {6, samples_},
+          {7, shuffles()}};
 }
 
 std::span<const std::uint32_t> Tiles::blendCode() const {
@@ -238,9 +247,9 @@ void Tiles::planDeep() {
   if (deep_) return;
   const auto fill = samples_ > 1 ? std::span<const std::uint32_t>(shaders::tiles_deep_fill_msaa_comp)
                                  : std::span<const std::uint32_t>(shaders::tiles_deep_fill_comp);
-  deep_.emplace(DeepPipelines{makePipeline(shaders::tiles_deep_collect_comp, "tiles deep count"),
+  deep_.emplace(DeepPipelines{makePipeline(shaders::tiles_deep_collect_comp, "tiles deep count", {{7, shuffles()}}),
                               makePipeline(shaders::tiles_deep_place_comp, "tiles deep place"),
-                              makePipeline(fill, "tiles deep fill", {{6, samples_}}),
+                              makePipeline(fill, "tiles deep fill", {{6, samples_}, {7, shuffles()}}),
                               makePipeline(shaders::tiles_deep_sort_comp, "tiles deep sort"),
                               makePipeline(shaders::tiles_deep_merge_comp, "tiles deep merge"),
                               makePipeline(deepBlendCode(), "tiles deep blend", shadingConstants())});

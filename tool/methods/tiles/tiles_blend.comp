@@ -30,9 +30,26 @@ uint pending = 0u; // fragments in it
 
 uint ringAt(uint i) { return ((head + i) & (kPending - 1u)) * TILES_PIXELS + thread; }
 
-// Sorts the tile's records (Batcher, "Sorting networks and their applications", 1968).
+// Sorts the tile's records: few by counting for each how many are nearer, which needs no steps, more by a network
+// (Batcher, "Sorting networks and their applications", 1968).
 void sortRecords(uint count, uint first) {
-  uint size = 64u;
+  if (count <= TILES_PIXELS) {
+    uvec2 mine = thread < count ? pairs[first + thread] : uvec2(0xffffffffu);
+    pendingKeys[thread] = mine.x; // nothing is pending yet
+    barrier();
+    uint place = 0u;
+    for (uint i = 0u; i < count; ++i) {
+      uint other = pendingKeys[i];
+      place += other < mine.x || (other == mine.x && i < thread) ? 1u : 0u;
+    }
+    if (thread < count) {
+      sharedKeys[place] = mine.x;
+      sharedRecords[place] = mine.y;
+    }
+    barrier();
+    return;
+  }
+  uint size = 2u * TILES_PIXELS;
   while (size < count) size *= 2u;
   for (uint i = thread; i < size; i += TILES_PIXELS) {
     uvec2 pair = i < count ? pairs[first + i] : uvec2(0xffffffffu);
@@ -112,7 +129,8 @@ void main() {
     loadBatch(number_ < count, number_ < count ? sharedRecords[number_] : 0u);
     barrier();
     if (!ended) sharedGoesOn[batch & 1u] = 1u;
-    uvec2 bits = ended ? uvec2(0u) : covering();
+    uvec2 bits = covering();
+    if (ended) bits = uvec2(0u);
     uint next = batch + 1u < batches ? sharedKeys[(batch + 1u) * TILES_PIXELS] : 0xffffffffu;
     while (!ended) {
       while ((bits.x | bits.y) != 0u && pending < kPending) {

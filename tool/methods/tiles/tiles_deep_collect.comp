@@ -34,7 +34,8 @@ void main() {
     barrier(); // all have left the last batch
     loadBatch(any_, any_ ? pairs[pairsFirst + i + thread].y : 0u);
     barrier();
-    uvec2 bits = inside ? covering() : uvec2(0u);
+    uvec2 bits = covering();
+    if (!inside) bits = uvec2(0u);
 #ifndef TILES_FILL
     count += uint(bitCount(bits.x) + bitCount(bits.y));
 #else
