@@ -10,8 +10,9 @@ namespace vitrail::tool {
 
 namespace {
 
-// Most frames that count something are followed by one that fits. With tiles each step's room may be known only when the
-// one before it had enough, and it may go on in ever smaller bands. More are never needed unless a device counts wrong.
+// Most frames that count something are followed by one that fits. With tiles each step's room may be known only when
+// the one before it had enough, and it may go on in ever smaller bands. More are never needed unless a device counts
+// wrong.
 constexpr int kMaxAttempts = 24;
 
 } // namespace
