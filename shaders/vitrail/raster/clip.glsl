@@ -1,6 +1,6 @@
-// Corners of clip space: which need clipping, where the others lie, and what is left of a triangle that is clipped. What
-// src/raster/clip.h says in C++, step by step, so that both get the same bits. Pure functions: no resources. Before the
-// include a shader defines VITRAIL_CLIP_PLANES, how many planes of its own cut triangles, or leaves it out.
+// Corners of clip space: which need clipping, where the others lie, and what is left of a triangle that is clipped.
+// What src/raster/clip.h says in C++, step by step, so that both get the same bits. Pure functions: no resources.
+// Before the include a shader defines VITRAIL_CLIP_PLANES, how many planes of its own cut triangles, or leaves it out.
 #ifndef VITRAIL_RASTER_CLIP_GLSL
 #define VITRAIL_RASTER_CLIP_GLSL
 

@@ -150,8 +150,8 @@ bool lessKey(uvec4 a, uvec4 b) {
 // The record of the i-th surface of those that have one depth, which the including shader has at hand.
 uint alikeRecord(uint i);
 
-// Blends them. Up to TILES_TIES are in the order of what they are: each turn finds the next fragment, of which a surface
-// has two at most. More are in the order in which they are at hand, that of sourceBefore().
+// Blends them. Up to TILES_TIES are in the order of what they are: each turn finds the next fragment, of which a
+// surface has two at most. More are in the order in which they are at hand, that of sourceBefore().
 void blendAlike(inout PixelLight light, ivec2 pixel, uint thread, uint alike) {
   bool byColor = alike > 1u && alike <= TILES_TIES;
   uint turns = byColor ? 2u * alike : alike;

@@ -1,5 +1,5 @@
-// Shades a record's surface at a pixel: what the vertex shader and interpolation hand to surface.glsl, from the vertices
-// of its triangle.
+// Shades a record's surface at a pixel: what the vertex shader and interpolation hand to surface.glsl, from the
+// vertices of its triangle.
 #ifndef VITRAIL_TOOL_TILES_FRAGMENT_GLSL
 #define VITRAIL_TOOL_TILES_FRAGMENT_GLSL
 
@@ -36,7 +36,8 @@ struct Corners {
 vec3 weightsAt(Corners c, vec2 ndc, vec2 size) {
   if (c.count == 1u) return vec3(1.0, 0.0, 0.0);
   if (c.count == 2u) return vec3(weightsOf(c.clip[0], c.clip[1], ndc, size), 0.0);
-  return weightsOf(c.clip[0].xy - ndc * c.clip[0].z, c.clip[1].xy - ndc * c.clip[1].z, c.clip[2].xy - ndc * c.clip[2].z);
+  return weightsOf(c.clip[0].xy - ndc * c.clip[0].z, c.clip[1].xy - ndc * c.clip[1].z,
+                   c.clip[2].xy - ndc * c.clip[2].z);
 }
 
 vec2 unpackOctahedral(uint packed) { return unpackSnorm2x16(packed); }

@@ -1,4 +1,4 @@
-// Several samples a pixel (TILES_MSAA, kSamples): where they are, and what each of a pixel's has. A surface is shaded and
+// Several samples a pixel (TILES_MSAA, kSamples): where they are, and which a triangle covers. A surface is shaded and
 // sorted once, at the middle of the pixel, for all the samples that it covers.
 #ifndef VITRAIL_TOOL_TILES_SAMPLES_GLSL
 #define VITRAIL_TOOL_TILES_SAMPLES_GLSL

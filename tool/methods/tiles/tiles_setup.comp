@@ -1,9 +1,9 @@
-// Sets up triangles and makes a record for each tile in which one covers a pixel. One thread takes a triangle; the tiles
-// that the triangles of a work group may touch are then shared by all its threads, so that a few larger ones among many
-// small ones keep nobody waiting.
+// Sets up triangles and makes a record for each tile in which one covers a pixel. One thread takes a triangle; the
+// tiles that the triangles of a work group may touch are then shared by all its threads, so that a few larger ones
+// among many small ones keep nobody waiting.
 //
-// As it stands it takes all triangles, and puts aside those that may touch very many tiles and those that need clipping.
-// With TILES_OF_LARGE it takes those, for a part of a row of tiles.
+// As it stands it takes all triangles, and puts aside those that may touch very many tiles and those that need
+// clipping. With TILES_OF_LARGE it takes those, for a part of a row of tiles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef TILES_CLIPPED
@@ -314,7 +314,8 @@ void main() {
       if (int(piece) < fan) {
         Triangle t;
         if (corners == 3u) {
-          t = triangleOf(viewport, polygon.corners[0], polygon.corners[piece + 1u], polygon.corners[piece + 2u], source);
+          t = triangleOf(viewport, polygon.corners[0], polygon.corners[piece + 1u], polygon.corners[piece + 2u],
+                         source);
         } else {
           t = halfOf(viewport, polygon.corners[0], polygon.corners[corners - 1u], corners, source);
         }
