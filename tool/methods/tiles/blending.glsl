@@ -165,17 +165,20 @@ void blendAlike(inout PixelLight light, ivec2 pixel, uint thread, uint alike) {
       uint visible = visibleSamples(light, record, pixel, thread);
       if (visible == 0u) continue;
       SurfaceFragments f = fragmentsOf(record, pixel);
-      for (uint k = 0u; k < f.count; ++k) {
-        if (!byColor) {
-          put(light, f.colors[k], f.blends[k], visible);
-          continue;
-        }
-        uvec4 order = tieKey(f.colors[k], f.blends[k], 2u * i + k + 1u);
-        if (lessKey(last, order) && lessKey(order, best)) {
-          best = order;
-          bestColor = f.colors[k];
-          bestVisible = visible;
-        }
+      // No loop: arrays stay in registers where their indices are constants.
+#define TAKE_FRAGMENT(k) \
+  if (f.count > k && !byColor) put(light, f.colors[k], f.blends[k], visible); \
+  if (f.count > k && byColor) { \
+    uvec4 order = tieKey(f.colors[k], f.blends[k], 2u * i + k + 1u); \
+    if (lessKey(last, order) && lessKey(order, best)) { \
+      best = order; \
+      bestColor = f.colors[k]; \
+      bestVisible = visible; \
+    } \
+  }
+      TAKE_FRAGMENT(0u)
+      if ((kAnyFeatures & FEATURE_TRANSMISSION) != 0u) {
+        TAKE_FRAGMENT(1u)
       }
     }
     if (!byColor) continue;
