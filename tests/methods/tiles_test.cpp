@@ -357,7 +357,7 @@ Scene onePlane(std::uint32_t count) {
 }
 
 TEST_F(TilesTest, SurfacesInOnePlaneHaveAnOrderOfTheirOwn) {
-  for (const std::uint32_t count : {3U, 10U, 40U}) {
+  for (const std::uint32_t count : {3U, 10U, 40U, 80U}) {
     SCOPED_TRACE(std::to_string(count) + " panes");
     RenderOptions picture;
     picture.width = 48;

@@ -24,57 +24,128 @@ shared uint pendingKeys[kPending * TILES_PIXELS];
 shared uint pendingRecords[kPending * TILES_PIXELS];
 shared uint sharedGoesOn[2]; // in turns
 shared uint sharedTooShort;
+shared uint sharedNearest; // of the records that are sorted
+shared uint sharedFarthest;
+shared uint sharedCrowded; // whether some bucket holds many
+
+const int BUCKET_BITS = 8;
+const uint BUCKETS_OF_THREAD = (1u << BUCKET_BITS) / TILES_PIXELS;
+const uint MANY_IN_BUCKET = 24u;
 
 uint head = 0u;    // where in the ring the nearest fragment is
 uint pending = 0u; // fragments in it
 
 uint ringAt(uint i) { return ((head + i) & (kPending - 1u)) * TILES_PIXELS + thread; }
 
-// Sorts the tile's records: few by counting for each how many are nearer, which needs no steps, more by a network
-// (Batcher, "Sorting networks and their applications", 1968).
-void sortRecords(uint count, uint first) {
-  if (count <= TILES_PIXELS) {
-    uvec2 mine = thread < count ? pairs[first + thread] : uvec2(0xffffffffu);
-    pendingKeys[thread] = mine.x; // nothing is pending yet
-    barrier();
-    uint place = 0u;
-    for (uint i = 0u; i < count; ++i) {
-      uint other = pendingKeys[i];
-      place += other < mine.x || (other == mine.x && i < thread) ? 1u : 0u;
-    }
-    if (thread < count) {
-      sharedKeys[place] = mine.x;
-      sharedRecords[place] = mine.y;
-    }
-    barrier();
-    return;
+// Few records are sorted by counting for each how many are nearer, which needs no steps.
+void sortFew(uint count, uint first) {
+  uvec2 mine = thread < count ? pairs[first + thread] : uvec2(0xffffffffu);
+  pendingKeys[thread] = mine.x; // nothing is pending yet
+  barrier();
+  uint place = 0u;
+  for (uint i = 0u; i < count; ++i) {
+    uint other = pendingKeys[i];
+    place += other < mine.x || (other == mine.x && i < thread) ? 1u : 0u;
   }
+  if (thread < count) {
+    sharedKeys[place] = mine.x;
+    sharedRecords[place] = mine.y;
+  }
+  barrier();
+}
+
+void exchange(uint low, uint high) {
+  uint key = sharedKeys[low];
+  uint record = sharedRecords[low];
+  sharedKeys[low] = sharedKeys[high];
+  sharedRecords[low] = sharedRecords[high];
+  sharedKeys[high] = key;
+  sharedRecords[high] = record;
+}
+
+// Any records that are in shared memory, by a network (Batcher, "Sorting networks and their applications", 1968).
+void sortByNetwork(uint count) {
   uint size = 2u * TILES_PIXELS;
   while (size < count) size *= 2u;
-  for (uint i = thread; i < size; i += TILES_PIXELS) {
-    uvec2 pair = i < count ? pairs[first + i] : uvec2(0xffffffffu);
-    sharedKeys[i] = pair.x;
-    sharedRecords[i] = pair.y;
-  }
+  for (uint i = count + thread; i < size; i += TILES_PIXELS) sharedKeys[i] = 0xffffffffu;
   barrier();
   for (uint run = 2u; run <= size; run *= 2u) {
     for (uint step = run / 2u; step > 0u; step /= 2u) {
       for (uint i = thread; i < size / 2u; i += TILES_PIXELS) {
         uint low = 2u * i - (i & (step - 1u));
-        uint high = low + step;
         uint a = sharedKeys[low];
-        uint b = sharedKeys[high];
-        if ((a > b) == ((low & run) == 0u) && a != b) {
-          sharedKeys[low] = b;
-          sharedKeys[high] = a;
-          uint record = sharedRecords[low];
-          sharedRecords[low] = sharedRecords[high];
-          sharedRecords[high] = record;
-        }
+        uint b = sharedKeys[low + step];
+        if ((a > b) == ((low & run) == 0u) && a != b) exchange(low, low + step);
       }
       barrier();
     }
   }
+}
+
+// Sorts a bucket, if it holds only a few. False: it holds many.
+bool sortBucket(uint begin, uint end) {
+  if (end - begin > MANY_IN_BUCKET) return false;
+  for (uint i = begin + 1u; i < end; ++i) {
+    for (uint k = i; k > begin && sharedKeys[k - 1u] > sharedKeys[k]; --k) exchange(k - 1u, k);
+  }
+  return true;
+}
+
+// Sorts the tile's records: by their depths into buckets, most of which then hold one or two; where one holds many, all
+// by a network. Where the buckets are counted, nothing is pending yet.
+void sortRecords(uint count, uint first) {
+  if (count <= TILES_PIXELS) {
+    sortFew(count, first);
+    return;
+  }
+  if (thread == 0u) {
+    sharedNearest = 0xffffffffu;
+    sharedFarthest = sharedCrowded = 0u;
+  }
+  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) pendingKeys[BUCKETS_OF_THREAD * thread + i] = 0u;
+  barrier();
+  uint nearest = 0xffffffffu;
+  uint farthest = 0u;
+  for (uint i = thread; i < count; i += TILES_PIXELS) {
+    uint key = pairs[first + i].x;
+    nearest = min(nearest, key);
+    farthest = max(farthest, key);
+  }
+  atomicMin(sharedNearest, nearest);
+  atomicMax(sharedFarthest, farthest);
+  barrier();
+  nearest = sharedNearest;
+  int digits = findMSB(sharedFarthest - nearest) + 1;
+  int shift = max(digits - BUCKET_BITS, 0);
+  for (uint i = thread; i < count; i += TILES_PIXELS) {
+    atomicAdd(pendingKeys[(pairs[first + i].x - nearest) >> shift], 1u);
+  }
+  barrier();
+  uint sum = 0u;
+  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) sum += pendingKeys[BUCKETS_OF_THREAD * thread + i];
+  pendingRecords[thread] = sum;
+  barrier();
+  uint begin = 0u;
+  for (uint i = 0u; i < thread; ++i) begin += pendingRecords[i];
+  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) {
+    uint inBucket = pendingKeys[BUCKETS_OF_THREAD * thread + i];
+    pendingKeys[BUCKETS_OF_THREAD * thread + i] = begin;
+    begin += inBucket;
+  }
+  barrier();
+  for (uint i = thread; i < count; i += TILES_PIXELS) {
+    uvec2 pair = pairs[first + i];
+    uint place = atomicAdd(pendingKeys[(pair.x - nearest) >> shift], 1u);
+    sharedKeys[place] = pair.x;
+    sharedRecords[place] = pair.y;
+  }
+  barrier();
+  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) { // each now ends where the next began
+    uint bucket = i * TILES_PIXELS + thread;
+    if (!sortBucket(bucket > 0u ? pendingKeys[bucket - 1u] : 0u, pendingKeys[bucket])) sharedCrowded = 1u;
+  }
+  barrier();
+  if (sharedCrowded != 0u) sortByNetwork(count);
 }
 
 void insert(uint key, uint record) {
