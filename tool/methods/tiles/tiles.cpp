@@ -66,6 +66,11 @@ namespace {
 constexpr std::uint32_t kSide = 8; // of a tile
 constexpr Access kIndirectRead{VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT};
 
+// Records of a tile that are taken in slabs, each of which goes through all. A CPU driver ends loops that it takes for
+// endless.
+constexpr std::uint32_t kMostWalked = 16384;
+constexpr std::uint32_t kMostWalkedOnCpu = 2500;
+
 std::uint32_t tilesOf(std::uint32_t pixels) { return (pixels + kSide - 1) / kSide; }
 
 SingleSet makeSet(Gpu& gpu) {
@@ -136,6 +141,7 @@ class Tiles final : public Method {
   std::uint32_t samples_;
   TilesGeometry geometry_;
   float mostLight_;
+  std::uint32_t mostWalked_;
   SingleSet set_;
   TilesMemory memory_;
   GpuBuffer frameBuffer_; // shaders::TilesFrame
@@ -167,6 +173,7 @@ Tiles::Tiles(const MethodHost& host, std::uint32_t samples)
       samples_(samples),
       geometry_(host),
       mostLight_(mostLight(host.scene, host.surfaces.scene())),
+      mostWalked_(gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? kMostWalkedOnCpu : kMostWalked),
       set_(makeSet(gpu_)),
       memory_(gpu_, set_, samples),
       frameBuffer_(gpu_, sizeof(shaders::TilesFrame),
@@ -302,6 +309,7 @@ shaders::TilesFrame Tiles::frameOf(const Band& band) const {
   data.chunkCapacity = static_cast<std::uint32_t>(capacity.chunks);
   data.pointSize = surfaces_.pointSize();
   data.lightMost = mostLight_;
+  data.mostWalked = mostWalked_;
   const glm::dmat4 toWorld = glm::inverse(glm::dmat4(surfaces_.view().viewProjection));
   for (std::uint32_t i = 0; i < shaders::CLIP_PLANE_COUNT; ++i) {
     data.clipPlanes[i] = glm::vec4(glm::dvec4(surfaces_.view().clipPlanes[i]) * toWorld);

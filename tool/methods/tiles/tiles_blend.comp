@@ -2,7 +2,8 @@
 // their nearest depths and then walked: a thread keeps the fragments that it has met in a short list, in order, and
 // shades the nearest once no record that is still to come can be before it. So a pixel ends where enough is hidden, and
 // of records that do not cross each other the list holds only a few. Where it is too short, the tile is left to
-// tiles_deep_*.comp.
+// tiles_deep_*.comp. More records than there is room for are taken in slabs, from the front: those behind where all
+// pixels end are counted, but never sorted.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_nonuniform_qualifier : require
@@ -24,13 +25,17 @@ shared uint pendingKeys[kPending * TILES_PIXELS];
 shared uint pendingRecords[kPending * TILES_PIXELS];
 shared uint sharedGoesOn[2]; // in turns
 shared uint sharedTooShort;
-shared uint sharedNearest; // of the records that are sorted
-shared uint sharedFarthest;
-shared uint sharedCrowded; // whether some bucket holds many
-
 const int BUCKET_BITS = 8;
-const uint BUCKETS_OF_THREAD = (1u << BUCKET_BITS) / TILES_PIXELS;
+const uint BUCKETS = 1u << BUCKET_BITS;
+const uint BUCKETS_OF_THREAD = BUCKETS / TILES_PIXELS;
 const uint MANY_IN_BUCKET = 24u;
+
+shared uint sharedBuckets[BUCKETS]; // of depths: how many records, or where they begin or end
+shared uint sharedSums[TILES_PIXELS];
+shared uint sharedNearest; // of the records that are left
+shared uint sharedFarthest;
+shared uint sharedTaken;   // buckets of a slab
+shared uint sharedCrowded; // whether some bucket holds many
 
 uint head = 0u;    // where in the ring the nearest fragment is
 uint pending = 0u; // fragments in it
@@ -40,11 +45,11 @@ uint ringAt(uint i) { return ((head + i) & (kPending - 1u)) * TILES_PIXELS + thr
 // Few records are sorted by counting for each how many are nearer, which needs no steps.
 void sortFew(uint count, uint first) {
   uvec2 mine = thread < count ? pairs[first + thread] : uvec2(0xffffffffu);
-  pendingKeys[thread] = mine.x; // nothing is pending yet
+  sharedSums[thread] = mine.x;
   barrier();
   uint place = 0u;
   for (uint i = 0u; i < count; ++i) {
-    uint other = pendingKeys[i];
+    uint other = sharedSums[i];
     place += other < mine.x || (other == mine.x && i < thread) ? 1u : 0u;
   }
   if (thread < count) {
@@ -91,61 +96,96 @@ bool sortBucket(uint begin, uint end) {
   return true;
 }
 
-// Sorts the tile's records: by their depths into buckets, most of which then hold one or two; where one holds many, all
-// by a network. Where the buckets are counted, nothing is pending yet.
-void sortRecords(uint count, uint first) {
-  if (count <= TILES_PIXELS) {
-    sortFew(count, first);
-    return;
-  }
+// Finds the nearest and the farthest of the records whose keys are not below `from`.
+void findRange(uint count, uint first, uint from) {
   if (thread == 0u) {
     sharedNearest = 0xffffffffu;
-    sharedFarthest = sharedCrowded = 0u;
+    sharedFarthest = 0u;
   }
-  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) pendingKeys[BUCKETS_OF_THREAD * thread + i] = 0u;
   barrier();
   uint nearest = 0xffffffffu;
   uint farthest = 0u;
   for (uint i = thread; i < count; i += TILES_PIXELS) {
     uint key = pairs[first + i].x;
+    if (key < from) continue;
     nearest = min(nearest, key);
     farthest = max(farthest, key);
   }
   atomicMin(sharedNearest, nearest);
   atomicMax(sharedFarthest, farthest);
   barrier();
-  nearest = sharedNearest;
-  int digits = findMSB(sharedFarthest - nearest) + 1;
-  int shift = max(digits - BUCKET_BITS, 0);
+}
+
+// Counts the records of a range of keys in buckets of 2^shift, and says how many of these, from the front, are no more
+// than there is room for. Each then begins where its number says.
+uint countBuckets(uint count, uint first, uvec2 range, int shift) {
+  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) sharedBuckets[BUCKETS_OF_THREAD * thread + i] = 0u;
+  if (thread == 0u) sharedTaken = sharedCrowded = 0u;
+  barrier();
   for (uint i = thread; i < count; i += TILES_PIXELS) {
-    atomicAdd(pendingKeys[(pairs[first + i].x - nearest) >> shift], 1u);
+    uint key = pairs[first + i].x;
+    if (key >= range.x && key <= range.y) atomicAdd(sharedBuckets[(key - range.x) >> shift], 1u);
   }
   barrier();
   uint sum = 0u;
-  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) sum += pendingKeys[BUCKETS_OF_THREAD * thread + i];
-  pendingRecords[thread] = sum;
+  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) sum += sharedBuckets[BUCKETS_OF_THREAD * thread + i];
+  sharedSums[thread] = sum;
   barrier();
   uint begin = 0u;
-  for (uint i = 0u; i < thread; ++i) begin += pendingRecords[i];
+  for (uint i = 0u; i < thread; ++i) begin += sharedSums[i];
+  uint taken = 0u;
   for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) {
-    uint inBucket = pendingKeys[BUCKETS_OF_THREAD * thread + i];
-    pendingKeys[BUCKETS_OF_THREAD * thread + i] = begin;
+    uint bucket = BUCKETS_OF_THREAD * thread + i;
+    uint inBucket = sharedBuckets[bucket];
+    sharedBuckets[bucket] = begin;
     begin += inBucket;
+    if (begin <= kRecords) taken = bucket + 1u;
   }
+  atomicMax(sharedTaken, taken);
   barrier();
+  return sharedTaken;
+}
+
+// The nearest records of those that are left, sorted: by their depths into buckets, most of which then hold one or two;
+// where one holds many, all by a network.
+struct Slab {
+  uint count; // of its records; 0: too many have one depth
+  uint end;   // the key behind it, from which the others are
+};
+
+Slab sortSlab(uint count, uint first, uint from) {
+  if (count <= TILES_PIXELS) {
+    sortFew(count, first);
+    return Slab(count, 0xffffffffu);
+  }
+  findRange(count, first, from);
+  uvec2 range = uvec2(sharedNearest, sharedFarthest);
+  int shift = max(findMSB(range.y - range.x) + 1 - BUCKET_BITS, 0);
+  uint taken = countBuckets(count, first, range, shift);
+  while (taken == 0u && shift > 0) { // the first alone is too much
+    range.y = min(range.y, range.x + (1u << shift) - 1u);
+    shift = max(shift - BUCKET_BITS, 0);
+    taken = countBuckets(count, first, range, shift);
+  }
+  if (taken == 0u) return Slab(0u, from);
+  uint end = min(range.x + (taken << shift), range.y + 1u);
   for (uint i = thread; i < count; i += TILES_PIXELS) {
     uvec2 pair = pairs[first + i];
-    uint place = atomicAdd(pendingKeys[(pair.x - nearest) >> shift], 1u);
+    if (pair.x < range.x || pair.x >= end) continue;
+    uint place = atomicAdd(sharedBuckets[(pair.x - range.x) >> shift], 1u);
     sharedKeys[place] = pair.x;
     sharedRecords[place] = pair.y;
   }
   barrier();
   for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) { // each now ends where the next began
     uint bucket = i * TILES_PIXELS + thread;
-    if (!sortBucket(bucket > 0u ? pendingKeys[bucket - 1u] : 0u, pendingKeys[bucket])) sharedCrowded = 1u;
+    if (bucket >= taken) continue;
+    if (!sortBucket(bucket > 0u ? sharedBuckets[bucket - 1u] : 0u, sharedBuckets[bucket])) sharedCrowded = 1u;
   }
+  uint inSlab = sharedBuckets[taken - 1u];
   barrier();
-  if (sharedCrowded != 0u) sortByNetwork(count);
+  if (sharedCrowded != 0u) sortByNetwork(inSlab);
+  return Slab(inSlab, end > sharedFarthest ? 0xffffffffu : end);
 }
 
 void insert(uint key, uint record) {
@@ -177,66 +217,104 @@ void blendNearest(inout PixelLight light, ivec2 pixel) {
   pending -= alike;
 }
 
+// What a thread knows of its pixel.
+struct Walk {
+  PixelLight light;
+  ivec2 inTile;
+  ivec2 pixel;
+  float farthest; // opaque depth
+  bool isEmpty;   // nothing has been blended
+  bool ended;     // nothing farther away is needed
+  bool tooShort;  // the list was
+};
+
+// Goes through a batch of sorted records, of which `bits` cover the pixel. No record behind has a key below `next`.
+void walkBatch(inout Walk walk, uvec2 bits, uint batch, uint next) {
+  while (!walk.ended) {
+    while ((bits.x | bits.y) != 0u && pending < kPending) {
+      uint i = takeBit(bits);
+      vec4 plane = sharedPlanes[i];
+      float depth = depthOn(plane, walk.inTile);
+      if (isHidden(plane, depth, walk.pixel, walk.farthest)) continue;
+      insert(keyOf(depth), sharedRecords[batch * TILES_PIXELS + i]);
+    }
+    bool more = (bits.x | bits.y) != 0u;
+    uint horizon = more ? sharedKeys[batch * TILES_PIXELS + firstBit(bits)] : next;
+    bool blended = false;
+    while (pending > 0u && pendingKeys[ringAt(0u)] < horizon) {
+      blendNearest(walk.light, walk.pixel);
+      blended = true;
+      walk.isEmpty = false;
+      if (hasEnough(walk.light)) {
+        walk.ended = true;
+        break;
+      }
+    }
+    if (!more) return;
+    if (!blended && pending == kPending) walk.tooShort = walk.ended = true;
+  }
+  if (walk.ended) return;
+  walk.tooShort = walk.ended = true; // the driver has ended the loop
+}
+
+// Goes through a slab. Whether some pixel has not ended.
+bool walkSlab(inout Walk walk, Slab slab) {
+  uint batches = (slab.count + TILES_PIXELS - 1u) / TILES_PIXELS;
+  uint batch = 0u;
+  bool goesOn = true;
+  for (; batch < batches && goesOn; ++batch) {
+    if (thread == 0u) sharedGoesOn[batch & 1u] = 0u;
+    uint number = batch * TILES_PIXELS + thread;
+    loadBatch(number < slab.count, number < slab.count ? sharedRecords[number] : 0u);
+    barrier();
+    if (!walk.ended) sharedGoesOn[batch & 1u] = 1u;
+    uvec2 bits = covering();
+    uint next = batch + 1u < batches ? sharedKeys[(batch + 1u) * TILES_PIXELS] : slab.end;
+    walkBatch(walk, bits, batch, next);
+    barrier();
+    goesOn = sharedGoesOn[batch & 1u] != 0u;
+  }
+  if (goesOn && batch < batches) walk.tooShort = walk.ended = true; // as above
+  return goesOn;
+}
+
 void main() {
   thread = gl_LocalInvocationIndex;
   uint number = flatGroup();
   if (number >= (kSecondClass ? classes.middling.count : classes.shallow.count)) return;
   uint tile = tileList[kSecondClass ? tiles.tilesX * tiles.tilesY - 1u - number : number];
   uint count = tileRecords[tile].x;
-  ivec2 inTile = ivec2(thread & 7u, thread >> 3);
-  ivec2 pixel = firstPixel(tile) + inTile;
-  bool inside = isInside(pixel);
+  Walk walk;
+  walk.inTile = ivec2(thread & 7u, thread >> 3);
+  walk.pixel = firstPixel(tile) + walk.inTile;
+  bool inside = isInside(walk.pixel);
+  if (!inside) walk.pixel = ivec2(0);
+  walk.light = lightBehind(walk.pixel);
+  walk.farthest = farthestDepth(walk.pixel);
+  walk.isEmpty = true;
+  walk.ended = !inside;
+  walk.tooShort = false;
   if (thread == 0u) sharedTooShort = 0u;
-  sortRecords(count, tileRecords[tile].y);
-  float farthest = inside ? farthestDepth(pixel) : 2.0;
-  PixelLight light = lightBehind(inside ? pixel : ivec2(0));
-  bool isEmpty = true;
-  bool ended = !inside;
-  bool tooShort = false;
-  uint batches = (count + TILES_PIXELS - 1u) / TILES_PIXELS;
-  for (uint batch = 0u; batch < batches; ++batch) {
-    if (thread == 0u) sharedGoesOn[batch & 1u] = 0u;
-    uint number_ = batch * TILES_PIXELS + thread;
-    loadBatch(number_ < count, number_ < count ? sharedRecords[number_] : 0u);
-    barrier();
-    if (!ended) sharedGoesOn[batch & 1u] = 1u;
-    uvec2 bits = covering();
-    if (ended) bits = uvec2(0u);
-    uint next = batch + 1u < batches ? sharedKeys[(batch + 1u) * TILES_PIXELS] : 0xffffffffu;
-    while (!ended) {
-      while ((bits.x | bits.y) != 0u && pending < kPending) {
-        uint i = takeBit(bits);
-        vec4 plane = sharedPlanes[i];
-        float depth = depthOn(plane, inTile);
-        if (isHidden(plane, depth, pixel, farthest)) continue;
-        insert(keyOf(depth), sharedRecords[batch * TILES_PIXELS + i]);
-      }
-      bool more = (bits.x | bits.y) != 0u;
-      uint i = more ? firstBit(bits) : 0u;
-      uint horizon = more ? sharedKeys[batch * TILES_PIXELS + i] : next;
-      bool blended = false;
-      while (pending > 0u && pendingKeys[ringAt(0u)] < horizon) {
-        blendNearest(light, pixel);
-        blended = true;
-        isEmpty = false;
-        if (hasEnough(light)) {
-          ended = true;
-          break;
-        }
-      }
-      if (!more) break;
-      if (!blended && pending == kPending) tooShort = ended = true;
+  uint done = 0u;
+  uint from = 0u;
+  bool goesOn = true;
+  while (goesOn && done < count) {
+    Slab slab = sortSlab(count, tileRecords[tile].y, from);
+    if (slab.count == 0u) {
+      walk.tooShort = true;
+      break;
     }
-    barrier();
-    if (sharedGoesOn[batch & 1u] == 0u) break;
+    goesOn = walkSlab(walk, slab);
+    done += slab.count;
+    from = slab.end;
+    barrier(); // all have left the slab
   }
-  // Also where a driver has ended a loop that it took for endless.
-  if (!ended && pending > 0u) tooShort = true;
-  if (tooShort) sharedTooShort = 1u;
+  if (!walk.ended && (pending > 0u || done < count)) walk.tooShort = true; // as above
+  if (walk.tooShort) sharedTooShort = 1u;
   barrier();
   if (sharedTooShort != 0u) {
     if (thread == 0u) addDeep(tile, count);
     return;
   }
-  if (inside && !isEmpty) blendOver(pixel, light);
+  if (inside && !walk.isEmpty) blendOver(walk.pixel, walk.light);
 }

@@ -26,7 +26,7 @@ void main() {
   if (count > 0u) {
     place = atomicAdd(groupPairs, count);
     atomicMax(groupMost, count);
-    if (count <= TILES_MIDDLING) number = atomicAdd(groupCount[kind], 1u);
+    if (count <= tiles.mostWalked) number = atomicAdd(groupCount[kind], 1u);
   }
   barrier();
   if (thread == 0u && groupPairs > 0u) {
@@ -42,7 +42,7 @@ void main() {
   barrier();
   if (count == 0u) return;
   tileRecords[tile].y = groupFirst + place;
-  if (count > TILES_MIDDLING) {
+  if (count > tiles.mostWalked) {
     addDeep(tile, count);
   } else {
     uint at = groupList[kind] + number;
