@@ -73,7 +73,21 @@ constexpr std::uint32_t kMostWalkedOnCpu = 2500;
 
 std::uint32_t tilesOf(std::uint32_t pixels) { return (pixels + kSide - 1) / kSide; }
 
+void checkDevice(const Gpu& gpu) {
+  constexpr std::uint32_t kBuffers = 28; // that one shader reaches
+  constexpr std::uint32_t kSharedBytes = 28 << 10;
+  const VkPhysicalDeviceLimits& limits = gpu.properties().limits;
+  const char* lacks = nullptr;
+  if (!gpu.features().subgroupShuffles) lacks = "subgroup shuffles";
+  if (limits.maxPerStageDescriptorStorageBuffers < kBuffers) lacks = "so many buffers of a shader";
+  if (limits.maxComputeSharedMemorySize < kSharedBytes) lacks = "so much shared memory";
+  if (lacks == nullptr) return;
+  throw GpuError(fmt::format("the method tiles is not for {}, which lacks {}: use linked-list",
+                             gpu.properties().deviceName, lacks));
+}
+
 SingleSet makeSet(Gpu& gpu) {
+  checkDevice(gpu);
   std::vector<std::pair<VkDescriptorType, VkShaderStageFlags>> bindings(
       20, {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT});
   bindings[0].first = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
@@ -184,10 +198,6 @@ Tiles::Tiles(const MethodHost& host, std::uint32_t samples)
           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
           MemoryKind::Device, "tiles classes"),
       control_(gpu_, sizeof(shaders::TilesControl), "tiles control", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT) {
-  if (!gpu_.features().subgroupShuffles) {
-    throw GpuError(fmt::format("{} lacks subgroup shuffles, which the method tiles needs: use linked-list",
-                               gpu_.properties().deviceName));
-  }
   set_.writeBuffer(0, frameBuffer_.get(), frameBuffer_.size());
   set_.writeBuffer(1, control_.buffer().get(), control_.buffer().size());
   set_.writeBuffer(17, classes_.get(), classes_.size());

@@ -42,7 +42,9 @@ TilesGeometry::TilesGeometry(const MethodHost& host)
                        std::pair(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VkShaderStageFlags{VK_SHADER_STAGE_COMPUTE_BIT})),
            "tiles geometry") {
   listDraws(host.surfaces);
-  makeTextures(host.surfaces);
+  listTextures(host.surfaces);
+  makeTextureLayout();
+  makeTextureSet();
   writeSet(host.surfaces);
 }
 
@@ -88,7 +90,7 @@ void TilesGeometry::listDraws(const Surfaces& surfaces) {
 }
 
 // Textures of all draws in one table, each once.
-void TilesGeometry::makeTextures(const Surfaces& surfaces) {
+void TilesGeometry::listTextures(const Surfaces& surfaces) {
   std::map<std::pair<VkImageView, VkSampler>, std::uint32_t> known;
   const auto numberOf = [&](const std::pair<VkImageView, VkSampler>& texture) {
     const auto [found, isNew] = known.try_emplace(texture, static_cast<std::uint32_t>(table_.size()));
@@ -107,17 +109,21 @@ void TilesGeometry::makeTextures(const Surfaces& surfaces) {
   constantTextures_ = !gpu_.features().nonUniformTextures;
   const VkPhysicalDeviceLimits& limits = gpu_.properties().limits;
   const std::uint32_t most =
-      constantTextures_ ? shaders::TILES_CONSTANT_TEXTURES
-                        : std::min({limits.maxPerStageDescriptorSampledImages - 1, limits.maxPerStageDescriptorSamplers,
-                                    limits.maxDescriptorSetSampledImages});
+      constantTextures_
+          ? (limits.maxPerStageDescriptorSamplers < shaders::TILES_CONSTANT_TEXTURES ? 0
+                                                                                     : shaders::TILES_CONSTANT_TEXTURES)
+          : std::min({limits.maxPerStageDescriptorSampledImages - 1, limits.maxPerStageDescriptorSamplers,
+                      limits.maxDescriptorSetSampledImages});
   if (textureCount_ > most) {
     throw GpuError(
         fmt::format("the method tiles reaches all {} textures of transparent surfaces at once, and {} lets a "
                     "shader reach {}: use --method linked-list",
                     textureCount_, gpu_.properties().deviceName, most));
   }
-  const std::uint32_t places = constantTextures_ ? shaders::TILES_CONSTANT_TEXTURES : textureCount_;
-  const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, places,
+}
+
+void TilesGeometry::makeTextureLayout() {
+  const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texturePlaces(),
                                              VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
   auto layoutInfo = vkStruct<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
   layoutInfo.bindingCount = 1;
@@ -126,7 +132,12 @@ void TilesGeometry::makeTextures(const Surfaces& surfaces) {
   check(vkCreateDescriptorSetLayout(gpu_.device(), &layoutInfo, nullptr, &layout), "vkCreateDescriptorSetLayout");
   textureLayout_ = {gpu_.device(), layout, vkDestroyDescriptorSetLayout};
   setDebugName(gpu_.device(), VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, layout, "tiles textures");
+}
+
+void TilesGeometry::makeTextureSet() {
   if (table_.empty()) return; // there is nothing to draw
+  const std::uint32_t places = texturePlaces();
+  VkDescriptorSetLayout layout = textureLayout_.get();
   const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, places};
   auto poolInfo = vkStruct<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
   poolInfo.maxSets = 1;

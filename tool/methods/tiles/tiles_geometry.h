@@ -27,12 +27,15 @@ class TilesGeometry {
   std::uint32_t anyFeatures() const { return anyFeatures_; }
   std::uint32_t allFeatures() const { return allFeatures_; }
   std::uint32_t textureCount() const { return textureCount_; }
-  // Whether the shaders' table of textures has this many places, of which constants choose (TILES_CONSTANT_TEXTURES).
+  // Whether only constants choose of the shaders' table of textures, which then has TILES_CONSTANT_TEXTURES places.
   bool constantTextures() const { return constantTextures_; }
 
  private:
   void listDraws(const Surfaces& surfaces);
-  void makeTextures(const Surfaces& surfaces);
+  void listTextures(const Surfaces& surfaces);
+  void makeTextureLayout();
+  void makeTextureSet();
+  std::uint32_t texturePlaces() const { return constantTextures_ ? shaders::TILES_CONSTANT_TEXTURES : textureCount_; }
   void writeSet(const Surfaces& surfaces);
 
   Gpu& gpu_;
