@@ -96,6 +96,18 @@ bool sortBucket(uint begin, uint end) {
   return true;
 }
 
+// The sum of the numbers of the threads before this one (Hillis and Steele, "Data parallel algorithms", 1986).
+uint sumBefore(uint mine) {
+  uint sum = mine;
+  for (uint step = 1u; step < TILES_PIXELS; step *= 2u) {
+    sharedSums[thread] = sum;
+    barrier();
+    if (thread >= step) sum += sharedSums[thread - step];
+    barrier();
+  }
+  return sum - mine;
+}
+
 // Finds the nearest and the farthest of the records whose keys are not below `from`.
 void findRange(uint count, uint first, uint from) {
   if (thread == 0u) {
@@ -111,8 +123,17 @@ void findRange(uint count, uint first, uint from) {
     nearest = min(nearest, key);
     farthest = max(farthest, key);
   }
-  atomicMin(sharedNearest, nearest);
-  atomicMax(sharedFarthest, farthest);
+  // One atomic for all that know of each other.
+  if (kShuffles) {
+    for (uint step = 1u; step < 32u; step *= 2u) {
+      nearest = min(nearest, subgroupShuffleXor(nearest, step));
+      farthest = max(farthest, subgroupShuffleXor(farthest, step));
+    }
+  }
+  if (!kShuffles || (thread & 31u) == 0u) {
+    atomicMin(sharedNearest, nearest);
+    atomicMax(sharedFarthest, farthest);
+  }
   barrier();
 }
 
@@ -129,10 +150,7 @@ uint countBuckets(uint count, uint first, uvec2 range, int shift) {
   barrier();
   uint sum = 0u;
   for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) sum += sharedBuckets[BUCKETS_OF_THREAD * thread + i];
-  sharedSums[thread] = sum;
-  barrier();
-  uint begin = 0u;
-  for (uint i = 0u; i < thread; ++i) begin += sharedSums[i];
+  uint begin = sumBefore(sum);
   uint taken = 0u;
   for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) {
     uint bucket = BUCKETS_OF_THREAD * thread + i;
