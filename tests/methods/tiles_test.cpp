@@ -395,7 +395,7 @@ TEST_F(TilesTest, ManyFramesAreOne) {
   BuiltinOptions options;
   options.count = 500;
   const Scene hairball = makeBuiltinScene("hairball", options);
-  const Scene plane = onePlane(10);
+  const Scene plane = onePlane(120);
   RenderOptions planePicture;
   planePicture.width = 40;
   planePicture.height = 24;
