@@ -390,6 +390,26 @@ TEST_F(TilesTest, EverySceneIsTheSameInEveryOrder) {
   }
 }
 
+// Which thread gets which place differs from frame to frame, and must not show.
+TEST_F(TilesTest, ManyFramesAreOne) {
+  BuiltinOptions options;
+  options.count = 500;
+  const Scene hairball = makeBuiltinScene("hairball", options);
+  const Scene plane = onePlane(120);
+  RenderOptions planePicture;
+  planePicture.width = 40;
+  planePicture.height = 24;
+  planePicture.view = straightView();
+  for (const auto& [scene, picture] :
+       {std::pair(&hairball, usualOptions(hairball, 64, 40)), std::pair(&plane, planePicture)}) {
+    const std::unique_ptr<Renderer> renderer = rendererOf(gpu(), *scene, {}, DrawOrder::Forward, methodNamed("tiles"));
+    const Picture first = renderer->render(picture).picture;
+    for (int frame = 1; frame < 50; ++frame) {
+      ASSERT_TRUE(renderer->render(picture).picture.rgba == first.rgba) << "frame " << frame;
+    }
+  }
+}
+
 // ---- Memory
 
 TEST_F(TilesTest, BudgetsDoNotChangeABit) {
