@@ -434,6 +434,25 @@ TEST(ViewMethodsTest, Peels) {
   view.expectClosesWell();
 }
 
+TEST(ViewMethodsTest, DrawsWithOpenGl) {
+  const TemporaryFolder folder;
+  View view(folder, {"--scene", "interlocked", "--api", "opengl", "--validate"});
+  const Json shown = view.settled();
+  EXPECT_EQ(shown["method"], "linked-list");
+  view.desk.key("Tab");
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(differing(view.desk.look(), drawn(folder, shown["command"])), 0U) << shown["command"];
+  view.desk.key("s");
+  EXPECT_EQ(view.settled()["method"], "unsorted");
+  std::set<std::string> methods;
+  for (int i = 0; i < 5; ++i) {
+    view.desk.key("m");
+    methods.insert(view.settled()["method"].get<std::string>());
+  }
+  EXPECT_EQ(methods, (std::set<std::string>{"linked-list", "unsorted", "sorted", "depth-peeling", "cpu"}));
+  view.expectClosesWell();
+}
+
 TEST(ViewMethodsTest, SortsOrDoesNot) {
   const TemporaryFolder folder;
   View view(folder, {"--scene", "planes", "--count", "5", "--device", "llvmpipe", "--validate", "--layers", "4"});

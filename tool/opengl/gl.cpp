@@ -219,6 +219,15 @@ Gl::Gl(const GlOptions& options) {
 
 Gl::~Gl() = default;
 
+void Gl::leaveThread() const { eglMakeCurrent(context_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+
+void Gl::comeToThread() const {
+  eglBindAPI(EGL_OPENGL_API);
+  if (eglMakeCurrent(context_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_->context) != EGL_TRUE) {
+    throw GpuError(name() + ": OpenGL cannot be used on another thread");
+  }
+}
+
 void Gl::check(const char* what) const {
   const GLenum error = glGetError();
   if (error == GL_NO_ERROR) return;

@@ -53,6 +53,10 @@ class Gl {
   Gl(const Gl&) = delete;
   Gl& operator=(const Gl&) = delete;
 
+  // Leaves this thread, and comes to another one, which is from then on the one to use it on. Throws GpuError.
+  void leaveThread() const;
+  void comeToThread() const;
+
   const std::string& name() const { return summary_.name; }
   const std::string& driver() const { return summary_.driver; }
   std::string api() const { return "OpenGL " + summary_.version; }

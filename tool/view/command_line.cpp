@@ -98,7 +98,8 @@ void addMethod(Words& words, const RenderArguments& arguments) {
   const MethodOptions& method = arguments.method;
   const MethodOptions defaults;
   words.raw("--method", method.name);
-  if (method.api != defaults.api) words.raw("--api", std::string(nameOf(method.api)));
+  if (method.api != defaults.api && !traitsOf(method.name).onProcessor)
+    words.raw("--api", std::string(nameOf(method.api)));
   if (method.samples != defaults.samples) words.raw("--samples", fmt::format("{}", method.samples));
   if (method.nodes != defaults.nodes) words.raw("--nodes", std::string(nameOf(method.nodes)));
   if (method.resolve != defaults.resolve) words.raw("--resolve", std::string(nameOf(method.resolve)));

@@ -83,6 +83,7 @@ void Drawer::say(const std::string& doing) {
 }
 
 void Drawer::run() {
+  if (device_.gl() != nullptr) device_.gl()->comeToThread(); // what is made with it stays on this thread
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return ends_ || wanted_ || wantedPick_; });
@@ -106,6 +107,9 @@ void Drawer::run() {
     onNews_();
     lock.lock();
   }
+  lock.unlock();
+  letGo();
+  if (device_.gl() != nullptr) device_.gl()->leaveThread();
 }
 
 // What was made of the scene.
@@ -198,7 +202,7 @@ void Drawer::drawBeside(const Wanted& wanted, const RenderOptions& options, Draw
     return;
   }
   RenderArguments arguments = wanted.arguments;
-  arguments.method.api = Api::Vulkan;
+  if (device_.gpu() != nullptr) arguments.method.api = Api::Vulkan;
   RenderOptions picture = options;
   picture.memoryBudget.reset();
   picture.peel = 0;

@@ -13,7 +13,9 @@ constexpr const char* kUnsorted = "unsorted";
 std::vector<std::string> methodsOf(const Device& device) {
   std::vector<std::string> names;
   for (const std::string_view name : methodNames()) {
-    if (traitsOf(name).onProcessor || device.gpu() != nullptr) names.emplace_back(name);
+    const MethodTraits& traits = traitsOf(name);
+    const bool byGl = device.gl() != nullptr && traits.makeGl != nullptr;
+    if (traits.onProcessor || device.gpu() != nullptr || byGl) names.emplace_back(name);
   }
   return names;
 }
@@ -24,6 +26,8 @@ void chooseMethod(RenderArguments& arguments, const std::string& name) {
   MethodOptions& method = arguments.method;
   method = {};
   method.name = name;
+  const bool keepsApi = traits.makeGl != nullptr || traits.onProcessor; // which needs none, and goes back to it
+  if (keepsApi) method.api = before.api;
   if (traits.takes(kTakesSamples)) method.samples = before.samples;
   if (traits.takes(kTakesNodes)) method.nodes = before.nodes;
   if (traits.takes(kTakesResolve)) method.resolve = before.resolve;
@@ -34,10 +38,14 @@ void chooseMethod(RenderArguments& arguments, const std::string& name) {
   if (!traits.takes(kTakesMemoryBudget)) arguments.memoryBudget.reset();
   if (name != kCpuMethod) arguments.peel.reset();
   try {
-    checkMethodOptions(method);
+    MethodOptions checked = method;
+    if (traits.onProcessor) checked.api = Api::Vulkan;
+    checkMethodOptions(checked);
   } catch (const std::invalid_argument&) { // they exclude each other here
+    const Api api = method.api;
     method = {};
     method.name = name;
+    method.api = api;
   }
 }
 
@@ -49,7 +57,7 @@ void choosePeel(RenderArguments& arguments, std::uint32_t count) {
 
 bool Sorting::isOn(const RenderArguments& arguments) { return arguments.method.name != kUnsorted; }
 
-bool Sorting::isChoice(const Device& device) { return device.gpu() != nullptr; }
+bool Sorting::isChoice(const Device& device) { return device.gpu() != nullptr || device.gl() != nullptr; }
 
 void Sorting::set(RenderArguments& arguments, bool on) {
   if (on == isOn(arguments)) return;

@@ -65,7 +65,9 @@ class Widgets {
 // As `render` opens it, but for volumes, which are not known before the scene is.
 Device openDevice(const RenderArguments& arguments) {
   const bool openGl = arguments.method.api == Api::OpenGl;
-  return Device({arguments.device, arguments.validate, arguments.wish, !openGl, openGl});
+  Device device({arguments.device, arguments.validate, arguments.wish, !openGl, openGl});
+  if (device.gl() != nullptr) device.gl()->leaveThread(); // for the drawer's
+  return device;
 }
 
 // One line.
@@ -587,6 +589,7 @@ class Viewer {
     if (errors.empty() && isBusy && !now_.validate)
       std::_Exit(0); // nobody waits for a file that is not wanted any more
     drawer_.reset();
+    if (device_.gl() != nullptr) device_.gl()->comeToThread();
     if (!errors.empty()) throw std::runtime_error(errors.front());
     closeValidated(device_);
   }
