@@ -38,10 +38,10 @@ void CommandList::submit() {
 }
 
 void CommandList::wait() {
-  constexpr auto kStep = std::chrono::microseconds(100);
-  for (int i = 0; fence_->GetCompletedValue() < value_; ++i) {
-    if (i > 1'000'000) throw HostError("a command list does not end");
-    std::this_thread::sleep_for(kStep);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (fence_->GetCompletedValue() < value_) {
+    if (std::chrono::steady_clock::now() > end) throw HostError("a command list does not end");
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
   check(allocator_->Reset(), "ID3D12CommandAllocator::Reset");
   check(list_->Reset(allocator_.get(), nullptr), "ID3D12GraphicsCommandList::Reset");
