@@ -270,7 +270,7 @@ VITRAIL_API void vitrailD3d12Begin(VitrailD3d12Target target, ID3D12GraphicsComm
 
 /* Sets the graphics root parameters for vitrailCollect(), from number `firstParameter` on, of the root signature that
  * is set. Any number of times between vitrailD3d12Begin() and vitrailD3d12Collected(), and in any command lists that
- * are executed between those; in bundles, too. */
+ * are executed between those. */
 VITRAIL_API void vitrailD3d12Bind(VitrailD3d12Target target, ID3D12GraphicsCommandList* commands,
                                   uint32_t firstParameter);
 
@@ -296,9 +296,9 @@ VITRAIL_API void vitrailD3d12End(VitrailD3d12Target target, ID3D12GraphicsComman
 
 /* ---- Reading lists ---------------------------------------------------------------------------------------------- */
 
-/* Shaders of the host's walk lists where they lie, after vitrailD3d12Collected() and before vitrailD3d12End(), or with
- * VITRAIL_RESOLVE_HOST in its place: list.hlsl. This call makes the lists readable (D3D12_RESOURCE_STATE_
- * NON_PIXEL_SHADER_RESOURCE and PIXEL_SHADER_RESOURCE), and sets four root parameters from `firstParameter` on, of the
+/* Shaders of the host's walk lists where they lie, after vitrailD3d12Collected() and before vitrailD3d12End():
+ * list.hlsl. This call makes the lists readable (D3D12_RESOURCE_STATE_NON_PIXEL_SHADER_RESOURCE and
+ * PIXEL_SHADER_RESOURCE), and sets four root parameters from `firstParameter` on, of the
  * graphics root signature, or with `compute` of the compute one; VITRAIL_D3D12_NO_PARAMETER sets none. The host ends
  * with vitrailD3d12UnbindLists(), which makes them writable again, before the target's next call. */
 #define VITRAIL_D3D12_NO_PARAMETER 0xffffffffU
