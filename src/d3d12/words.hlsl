@@ -1,5 +1,5 @@
-// Writes words of a buffer in the order of the command list: the first ones as they are given, and behind them one value,
-// but for up to four places with another. Direct3D 12 has no command for that.
+// Writes words of a buffer in the order of the command list: the first ones as they are given, and behind them one
+// value, but for up to four places with another. Direct3D 12 has no command for that.
 cbuffer Words : register(b0) {
   uint count; // that are written
   uint given; // of those as given, at most 16
