@@ -62,6 +62,7 @@ TEST_F(CallsTest, AFrameMayLieInSeveralCommandLists) {
     last.run(); // waits for those before it
     const PointResult result = host.read(textures, 0);
     EXPECT_TRUE(result.pixels == expected.pixels);
+    EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kTolerance);
     EXPECT_EQ(result.stats.complete, 1U);
   }
 }
@@ -94,7 +95,9 @@ TEST_F(CallsTest, SeveralTargetsShareACommandList) {
   vitrailD3d12End(host.target(), commands.get());
   vitrailD3d12End(otherHost.target(), commands.get());
   commands.run();
-  EXPECT_TRUE(host.read(textures, 0).pixels == expected.pixels);
+  const PointResult result = host.read(textures, 0);
+  EXPECT_TRUE(result.pixels == expected.pixels);
+  EXPECT_LT(largestError(result.pixels, expectedFrame(desc, points).pixels), kTolerance);
   EXPECT_TRUE(otherHost.read(otherTextures, 0).pixels == expectedOther.pixels);
 }
 
@@ -127,6 +130,20 @@ TEST_F(CallsTest, FramesInFlightKeepTheirStatistics) {
     vitrailD3d12End(host.target(), list.get());
     list.submit();
   }
+}
+
+// A frame that has begun takes the slot of one that is more than framesInFlight older: its statistics are gone.
+TEST_F(CallsTest, AFrameThatBeginsEndsTheStatisticsOfOldOnes) {
+  HostDesc desc;
+  desc.capacity = 16;
+  D3d12Host host(backend(), desc);
+  for (int frame = 0; frame < 3; ++frame) host.draw(kPoints);
+  EXPECT_TRUE(host.stats(0).has_value());
+  CommandList commands;
+  host.begin(commands.get(), 3, {});
+  commands.run();
+  EXPECT_FALSE(host.stats(0).has_value());
+  EXPECT_TRUE(host.stats(1).has_value());
 }
 
 // A frame whose command list is never executed has no statistics, and does not spoil the next one.
