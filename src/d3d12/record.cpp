@@ -190,12 +190,10 @@ void clear(VitrailD3d12Target_T& target, ID3D12GraphicsCommandList* commands, bo
 
 void copyStatistics(VitrailD3d12Target_T& target, ID3D12GraphicsCommandList* commands) {
   D3d12Storage& storage = target.storage;
-  const std::uint64_t tag = target.frames.newest() + 1;
-  D3d12Stamp stamp{};
+  D3d12Stamp stamp{}; // without the tag
   stamp.facts = {storage.needs.nodeCapacity, target.order.misused() ? 1U : 0U, target.sums.fact()};
   static_assert(sizeof(stamp.facts) == sizeof(FrameFacts) && offsetof(FrameFacts, misused) == 4 &&
                 offsetof(FrameFacts, sumsCleared) == 8);
-  stamp.tag = {static_cast<std::uint32_t>(tag), static_cast<std::uint32_t>(tag >> 32U)};
   BarrierBatch barriers(storage);
   barriers.need(D3d12Part::Constants, kWritten, true);
   barriers.record(commands);
@@ -209,14 +207,22 @@ void copyStatistics(VitrailD3d12Target_T& target, ID3D12GraphicsCommandList* com
                    offsetof(layout::VitrailParameters, frame), sizeof(StatsSlot::begunFrame));
   copyToStatistics(target, commands, offsetof(StatsSlot, facts), D3d12Part::Constants,
                    kStampOffset + offsetof(D3d12Stamp, facts), sizeof(FrameFacts));
-  // The tag comes after what it vouches for: the transition waits for the copies.
-  barriers.need(D3d12Part::Control, kWritten);
-  barriers.record(commands);
 }
 
+// The tag comes after what it vouches for: it is written when the copies have been made, and copied then.
 void finishStatistics(VitrailD3d12Target_T& target, ID3D12GraphicsCommandList* commands) {
-  copyToStatistics(target, commands, offsetof(StatsSlot, tag), D3d12Part::Constants,
-                   kStampOffset + offsetof(D3d12Stamp, tag), sizeof(StatsSlot::tag));
+  D3d12Storage& storage = target.storage;
+  const std::uint64_t tag = target.frames.newest() + 1;
+  const std::array<std::uint32_t, 2> words = {static_cast<std::uint32_t>(tag), static_cast<std::uint32_t>(tag >> 32U)};
+  constexpr std::uint64_t kTag = kStampOffset + offsetof(D3d12Stamp, tag);
+  BarrierBatch barriers(storage);
+  barriers.need(D3d12Part::Constants, kWritten);
+  barriers.record(commands);
+  beginWords(target, commands);
+  give(commands, storage.address(D3d12Part::Constants) + kTag, words);
+  barriers.need(D3d12Part::Constants, kCopied);
+  barriers.record(commands);
+  copyToStatistics(target, commands, offsetof(StatsSlot, tag), D3d12Part::Constants, kTag, sizeof(words));
 }
 
 void beginCopy(VitrailD3d12Target_T& target, ID3D12GraphicsCommandList* commands, const VitrailRect& area,
