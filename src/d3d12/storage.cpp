@@ -41,13 +41,12 @@ VitrailResult createBuffers(const VitrailD3d12Context_T& context, const D3d12Sto
       continue;
     }
     const D3D12_RESOURCE_DESC desc = bufferDesc(sizes.at(i), true);
-    const HRESULT result =
-        context.device->CreatePlacedResource(info.heap, info.heapOffset + kHeapOffsets.at(i), &desc, kNoState, nullptr,
-                                             kGuid<ID3D12Resource>, outOf(buffer));
+    const std::uint64_t place = info.heapOffset + kHeapOffsets.at(i);
+    const HRESULT result = context.device->CreatePlacedResource(info.heap, place, &desc, kNoState, nullptr,
+                                                                kGuid<ID3D12Resource>, outOf(buffer));
     if (FAILED(result)) {
       return context.log.fail(VITRAIL_ERROR_INVALID, "the heap has no place for %s at %llu: Direct3D says 0x%08lx",
-                              kNames.at(i), static_cast<unsigned long long>(info.heapOffset + kHeapOffsets.at(i)),
-                              static_cast<unsigned long>(result));
+                              kNames.at(i), static_cast<unsigned long long>(place), static_cast<unsigned long>(result));
     }
     nameObject(buffer.get(), info.debugName, kNames.at(i));
   }
