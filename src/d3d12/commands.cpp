@@ -40,6 +40,7 @@ void beginFrame(VitrailD3d12Target_T& target, const VitrailD3d12BeginInfo& info,
                  open)) { // a second time: the first one was never executed
     for (D3d12Storage& storage : target.retired) storage.use.drop(target.frames.begun());
   }
+  if (open) forgetRecorded(target.storage); // the log says that it is taken to be dropped
   target.storage.use.add(target.frames.begun());
   freeRetired(target, target.frames.begun());
   bool whole = true;

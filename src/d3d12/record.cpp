@@ -439,6 +439,11 @@ void recordCall(VitrailD3d12Target_T& target, ID3D12GraphicsCommandList* command
   if (call == Call::End) recordNext(target, commands, Call::Begin);
 }
 
+void forgetRecorded(D3d12Storage& storage) { // as recordNext() does it for Call::Begin
+  storage.states = {kConstant, kWritten, kWritten};
+  static_assert(static_cast<std::uint32_t>(D3d12Part::Constants) == 0);
+}
+
 void recordReadable(VitrailD3d12Target_T& target, ID3D12GraphicsCommandList* commands) {
   BarrierBatch barriers(target.storage);
   barriers.need(D3d12Part::Constants, kConstant);

@@ -68,6 +68,9 @@ struct D3d12CallInfo {
 void recordCall(VitrailD3d12Target_T& target, ID3D12GraphicsCommandList* commands, Call call,
                 const D3d12CallInfo& info = {});
 
+// What was recorded of an open frame is never executed: the buffers are as the frame before has left them.
+void forgetRecorded(D3d12Storage& storage);
+
 // Makes the lists readable for shaders of the host, and as the library's next call finds them.
 void recordReadable(VitrailD3d12Target_T& target, ID3D12GraphicsCommandList* commands);
 void recordReady(VitrailD3d12Target_T& target, ID3D12GraphicsCommandList* commands);

@@ -158,6 +158,31 @@ TEST_P(StateTest, IsWhatTheHeaderSays) {
   }
 }
 
+// A frame that was recorded halfway and is never executed leaves no state behind: the one that takes its place begins
+// where the one before it has ended.
+TEST_P(StateTest, OfADroppedFrameIsForgotten) {
+  if (!isOffered()) GTEST_SKIP() << "this device has no textures of " << GetParam().samples << " samples";
+  HostDesc desc = hostOf(GetParam());
+  desc.capacity = 16;
+  D3d12Host host(backend(), desc);
+  const std::vector<Point> points = {{1, 1, 0.5F, {1.0F, 0.5F, 0.25F, 0.5F}}};
+  CommandList commands;
+  TappedList list(commands.get());
+  const auto copied = device().makeBuffer(vitrailD3d12CopySize(host.target(), 8, 8), D3D12_HEAP_TYPE_READBACK);
+  drawTapped(host, list, commands, points, 0, copied.get(), true);
+  {
+    CommandList unused;
+    host.begin(unused.get(), 1, {});
+    vitrailD3d12Collected(host.target(), unused.get());
+    vitrailD3d12BindLists(host.target(), unused.get(), VITRAIL_D3D12_NO_PARAMETER, 0);
+  }
+  drawTapped(host, list, commands, points, 1, copied.get(), true);
+  expectOneLine("Begin"); // over an open frame
+  commands.run();
+  for (const std::string& error : list.errors()) ADD_FAILURE() << error;
+  EXPECT_EQ(host.read(host.texturesOf(1), 1).stats.complete, 1U);
+}
+
 // The tapped list notices what it is there for: without a barrier, or without a transition, it objects.
 TEST_P(StateTest, MissingBarriersAreNoticed) {
   if (!isOffered()) GTEST_SKIP() << "this device has no textures of " << GetParam().samples << " samples";
