@@ -67,6 +67,38 @@ TEST_F(CallsTest, AFrameMayLieInSeveralCommandLists) {
   }
 }
 
+// A command list that is executed again draws the frame again: all that the calls need is in it.
+TEST_F(CallsTest, ACommandListMayBeExecutedAgain) {
+  for (const VitrailResolve resolve : {VITRAIL_RESOLVE_COMPUTE, VITRAIL_RESOLVE_FRAGMENT}) {
+    for (const std::uint32_t missing : {0U, 30U}) { // nodes
+      HostDesc desc;
+      desc.resolve = resolve;
+      const std::vector<Point> points = randomLists(desc, {0, 1, 2, 16, 17, 40, 200}, 3);
+      desc.capacity = static_cast<std::uint32_t>(points.size()) - missing;
+      const PointResult expected = D3d12Host(backend(), desc).draw(points);
+      D3d12Host host(backend(), desc);
+      PointTextures& textures = host.texturesOf(0);
+      CommandList list;
+      host.drawOpaque(list.get(), textures);
+      host.begin(list.get(), 0, {});
+      host.drawPoints(list.get(), list, textures, points);
+      vitrailD3d12Collected(host.target(), list.get());
+      host.resolve(list.get(), textures, 0);
+      vitrailD3d12End(host.target(), list.get());
+      textures.color.to(list.get(), D3D12_RESOURCE_STATE_RENDER_TARGET); // as the list finds it
+      check(list->Close(), "Close");
+      ID3D12CommandList* const one = list.get();
+      for (int time = 0; time < 3; ++time) device().queue()->ExecuteCommandLists(1, &one);
+      CommandList last;
+      last.run(); // waits for those before it
+      const PointResult result = host.read(textures, 0);
+      EXPECT_TRUE(result.pixels == expected.pixels);
+      EXPECT_EQ(result.stats.fragmentsMissing, missing);
+      EXPECT_EQ(result.stats.complete, missing == 0 ? 1U : 0U);
+    }
+  }
+}
+
 // Two targets by turns in one command list.
 TEST_F(CallsTest, SeveralTargetsShareACommandList) {
   HostDesc desc;
