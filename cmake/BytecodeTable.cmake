@@ -1,10 +1,12 @@
-# Makes the kernels of src/kernels/kernels.table for Direct3D 11: GLSL by glslc to SPIR-V, by SPIRV-Cross and
+# Makes the kernels of src/kernels/kernels.table for Direct3D 11 and 12: GLSL by glslc to SPIR-V, by SPIRV-Cross and
 # cmake/direct3d/kernel_to_hlsl.py to HLSL, by Microsoft's compiler to bytecode of shader model 5.0. Taken are the rows
 # that reach the pool by a binding and sort by insertion, or ask for neither; resolve_group needs what shader model 5.0
 # has not. One colour serves all: HLSL does not say which format is written.
-find_program(VITRAIL_GLSLC glslc REQUIRED)
-find_program(VITRAIL_SPIRV_CROSS spirv-cross REQUIRED)
-find_package(Python3 REQUIRED COMPONENTS Interpreter)
+if(NOT VITRAIL_BYTECODE_FROM)
+  find_program(VITRAIL_GLSLC glslc REQUIRED)
+  find_program(VITRAIL_SPIRV_CROSS spirv-cross REQUIRED)
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+endif()
 set(VITRAIL_KERNEL_TO_HLSL ${CMAKE_CURRENT_LIST_DIR}/direct3d/kernel_to_hlsl.py)
 
 # embed_cross_compiled(TARGET target NAME name SOURCE glsl NAMESPACE ns INCLUDES dir... [DEFINES def...] [CONSTANTS def...])
@@ -12,6 +14,10 @@ set(VITRAIL_KERNEL_TO_HLSL ${CMAKE_CURRENT_LIST_DIR}/direct3d/kernel_to_hlsl.py)
 # constants are.
 function(embed_cross_compiled)
   cmake_parse_arguments(arg "" "TARGET;NAME;SOURCE;NAMESPACE" "INCLUDES;DEFINES;CONSTANTS" ${ARGN})
+  if(VITRAIL_BYTECODE_FROM)
+    embed_bytecode_of_other(${arg_TARGET} ${arg_NAME} ${arg_NAMESPACE})
+    return()
+  endif()
   get_filename_component(source ${arg_SOURCE} ABSOLUTE)
   get_filename_component(stage ${source} LAST_EXT)
   string(SUBSTRING ${stage} 1 -1 stage)

@@ -1,7 +1,9 @@
 # Compiles HLSL with Microsoft's compilers and makes each shader a header with one array of bytes. On Windows they are
 # fxc.exe and dxc.exe of the SDK; elsewhere d3dcompiler_47.dll and dxcompiler.dll, called by a program of our own under
-# Wine.
-if(CMAKE_HOST_WIN32)
+# Wine. With VITRAIL_BYTECODE_FROM nothing is compiled: another build, for Windows, has made the same.
+if(VITRAIL_BYTECODE_FROM)
+  get_filename_component(VITRAIL_BYTECODE_FROM "${VITRAIL_BYTECODE_FROM}" ABSOLUTE BASE_DIR ${PROJECT_SOURCE_DIR})
+elseif(CMAKE_HOST_WIN32)
   find_program(VITRAIL_FXC fxc REQUIRED)
 else()
   find_path(VITRAIL_HLSL_COMPILERS d3dcompiler_47.dll NO_CMAKE_FIND_ROOT_PATH REQUIRED
@@ -60,10 +62,29 @@ inline constexpr unsigned char @symbol@[] = {
 ]=])
 endfunction()
 
+# embed_bytecode_of_other(target name namespace): gives the target what the other build's same folder has by that name.
+function(embed_bytecode_of_other target name namespace)
+  set(numbers ${CMAKE_CURRENT_BINARY_DIR}/generated/bytecode/${name}.inc)
+  file(RELATIVE_PATH place ${PROJECT_BINARY_DIR} ${numbers})
+  add_custom_command(
+    OUTPUT ${numbers}
+    COMMAND ${CMAKE_COMMAND} -E copy ${VITRAIL_BYTECODE_FROM}/${place} ${numbers}
+    DEPENDS ${VITRAIL_BYTECODE_FROM}/${place}
+    COMMENT "Taking over ${name}"
+    VERBATIM)
+  bytecode_header(${name} ${namespace})
+  target_sources(${target} PRIVATE ${numbers})
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/generated)
+endfunction()
+
 # embed_hlsl(TARGET target NAME name SOURCE hlsl PROFILE profile NAMESPACE ns [ENTRY name] [INCLUDES dir...] [DEFINES def...])
 # gives the target, of this folder, `#include "bytecode/<name>.h"`. Warnings are errors.
 function(embed_hlsl)
   cmake_parse_arguments(arg "" "TARGET;NAME;SOURCE;PROFILE;NAMESPACE;ENTRY" "INCLUDES;DEFINES" ${ARGN})
+  if(VITRAIL_BYTECODE_FROM)
+    embed_bytecode_of_other(${arg_TARGET} ${arg_NAME} ${arg_NAMESPACE})
+    return()
+  endif()
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/generated)
   set(numbers ${folder}/bytecode/${arg_NAME}.inc)
   file(MAKE_DIRECTORY ${folder}/bytecode)

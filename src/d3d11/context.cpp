@@ -147,8 +147,7 @@ extern "C" VitrailResult vitrailD3d11CreateContext(const VitrailD3d11ContextDesc
   }
   std::unique_ptr<VitrailD3d11Context_T> made(new (std::nothrow) VitrailD3d11Context_T);
   if (!made) return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory for a context");
-  desc->device->AddRef();
-  made->device = Com<ID3D11Device>(desc->device);
+  made->device = Com<ID3D11Device>::shared(desc->device);
   made->log = log;
   if (desc->constantSlot != 0) made->constantSlot = desc->constantSlot;
   if (desc->uavSlot != 0) made->uavSlot = desc->uavSlot;

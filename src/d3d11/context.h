@@ -1,17 +1,19 @@
 // What the library keeps for one device: limits, shaders, state objects.
 #pragma once
 
+#include <d3d11_1.h>
+
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <map>
 #include <mutex>
 
-#include "bytecode.h"
-#include "com.h"
 #include "core/device_limits.h"
 #include "core/log.h"
 #include "core/structures.h"
+#include "direct3d/bytecode.h"
+#include "direct3d/com.h"
 #include "vitrail/d3d11.h"
 
 struct VitrailD3d11Context_T {

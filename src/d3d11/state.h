@@ -1,11 +1,13 @@
 // Puts back what a call changes of a device context's state.
 #pragma once
 
+#include <d3d11_1.h>
+
 #include <array>
 #include <cstddef>
 
-#include "bytecode.h"
-#include "com.h"
+#include "direct3d/bytecode.h"
+#include "direct3d/com.h"
 #include "vitrail/bindings.h"
 
 namespace vitrail {

@@ -101,8 +101,7 @@ VitrailResult D3d11Storage::create(const VitrailD3d11Context_T& context, const S
     if (hostBuffers != nullptr) {
       result = checkHostBuffer(context, hostBuffers[i], sizes[i], i);
       if (result != VITRAIL_SUCCESS) return result;
-      hostBuffers[i]->AddRef();
-      part.buffer = Com<ID3D11Buffer>(hostBuffers[i]);
+      part.buffer = Com<ID3D11Buffer>::shared(hostBuffers[i]);
     } else {
       D3D11_BUFFER_DESC desc{};
       desc.ByteWidth = static_cast<UINT>(std::min<std::uint64_t>(sizes[i], UINT32_MAX));

@@ -6,67 +6,24 @@
 #include <new>
 #include <utility>
 
+#include "core/target_common.h"
+
 namespace vitrail {
 
 namespace {
 
 TargetInfo targetInfo(const VitrailD3d11TargetDesc& desc) {
-  TargetInfo info;
-  info.width = desc.width;
-  info.height = desc.height;
-  info.samples = desc.samples;
-  info.nodeFormat = desc.nodeFormat;
-  info.depthOrder = desc.depthOrder;
-  info.resolve = desc.resolve;
-  info.msaaResolve = desc.msaaResolve;
-  info.maxLayers = desc.maxLayers;
-  info.overflow = desc.overflow;
-  info.listBuild = desc.listBuild;
-  info.userWords = desc.userWords != 0;
-  info.nodeCapacity = desc.nodeCapacity;
-  info.memoryBudget = desc.memoryBudget;
-  info.areaPixels = desc.areaPixels;
-  info.copyLayers = desc.copyLayers;
+  TargetInfo info = infoOf(desc);
   info.ownBuffer = desc.buffers != nullptr;
   info.bufferSize = UINT64_MAX; // D3d11Storage looks at each buffer
-  info.framesInFlight = desc.framesInFlight;
   info.canStoreColor = desc.views.color != nullptr;
-  info.stencilMark = desc.stencilMark != 0;
   info.hasStencil = true; // the depth-stencil view may have one
   return info;
 }
 
-// The first view of an array that is null.
-template <class View>
-void findNull(View* const* views, std::uint32_t count, const char* what, ViewsInfo& info) {
-  if (views == nullptr || info.nullName != nullptr) return;
-  View* const* found = std::find(views, views + count, nullptr);
-  if (found == views + count) return;
-  info.nullName = what;
-  info.nullIndex = static_cast<std::uint32_t>(found - views);
-}
-
-ViewsInfo viewsInfo(const VitrailD3d11Views& views) {
-  ViewsInfo info;
-  info.count = views.count;
-  info.color = views.color != nullptr;
-  info.opaque = views.opaque != nullptr;
-  info.depth = views.depth != nullptr;
-  if (views.count > VITRAIL_MAX_VIEWS) return info; // the arrays are not trusted
-  findNull(views.color, views.count, "color", info);
-  findNull(views.opaque, views.count, "opaque", info);
-  findNull(views.depth, views.count, "depth", info);
-  return info;
-}
-
 void keepViews(VitrailD3d11Target_T& target, const VitrailD3d11Views& views) {
-  target.views = {};
+  keepViewsOf(target.views, views);
   target.viewCount = views.count;
-  for (std::uint32_t i = 0; i < views.count; ++i) {
-    if (views.color != nullptr) target.views.at(i).color = views.color[i];
-    if (views.opaque != nullptr) target.views.at(i).opaque = views.opaque[i];
-    if (views.depth != nullptr) target.views.at(i).depth = views.depth[i];
-  }
 }
 
 DXGI_FORMAT colorFormatOf(const VitrailD3d11TargetDesc& desc) {
@@ -110,10 +67,10 @@ std::uint64_t bytesBeside(const TargetInfo& info, DXGI_FORMAT format) {
   return kSmallBuffers + std::uint64_t{info.width} * info.height * pixel;
 }
 
-// The target under what the host's budget leaves for its lists.
-TargetInfo underBudget(TargetInfo info, std::uint64_t budget, DXGI_FORMAT format) {
-  if (budget != 0) info.memoryBudget = budget - std::min(budget - 1, bytesBeside(info, format));
-  return info;
+// The target with its defaults, and with what its budget leaves for its lists.
+TargetInfo describe(const VitrailD3d11Context_T& context, const VitrailD3d11TargetDesc& desc) {
+  const TargetInfo info = withDefaults(context.limits, targetInfo(desc));
+  return underBudget(info, desc.memoryBudget, bytesBeside(info, colorFormatOf(desc)));
 }
 
 VitrailResult checkDesc(const VitrailD3d11Context_T& context, const VitrailD3d11TargetDesc& desc,
@@ -131,7 +88,7 @@ VitrailResult checkDesc(const VitrailD3d11Context_T& context, const VitrailD3d11
   if (desc.stencilMask > 0xffU) {
     return context.log.fail(VITRAIL_ERROR_INVALID, "stencilMask 0x%x: a stencil has 8 bits", desc.stencilMask);
   }
-  result = checkViews(context.log, info, viewsInfo(desc.views));
+  result = checkViews(context.log, info, infoOfViews(desc.views));
   return result == VITRAIL_SUCCESS ? checkColors(context.log, info, format, desc.views) : result;
 }
 
@@ -328,10 +285,7 @@ bool readFrame(VitrailD3d11Target_T& target, std::uint64_t frame, VitrailStats& 
 
 // The statistics of the newest finished frame, of `frame` and those before it that still have a slot.
 bool readNewest(VitrailD3d11Target_T& target, std::uint64_t frame, VitrailStats& stats) {
-  for (std::uint64_t back = 0; back < target.slots.size() && back <= frame; ++back) {
-    if (readFrame(target, frame - back, stats)) return true;
-  }
-  return false;
+  return readNewestOf(frame, target.slots.size(), [&](std::uint64_t one) { return readFrame(target, one, stats); });
 }
 
 } // namespace
@@ -364,8 +318,7 @@ extern "C" VitrailResult vitrailD3d11TargetRequirements(VitrailD3d11Context cont
   }
   VitrailResult result = checkNoNext(context->log, desc->next, "VitrailD3d11TargetDesc");
   if (result != VITRAIL_SUCCESS) return result;
-  const TargetInfo info =
-      underBudget(withDefaults(context->limits, targetInfo(*desc)), desc->memoryBudget, colorFormatOf(*desc));
+  const TargetInfo info = describe(*context, *desc);
   result = checkMemory(context->limits, context->log, info);
   if (result != VITRAIL_SUCCESS) return result;
   const auto sizes = bufferSizes(layoutStorage(storageNeeds(context->limits, info)));
@@ -382,8 +335,7 @@ extern "C" VitrailResult vitrailD3d11CreateTarget(VitrailD3d11Context context, c
   }
   VitrailResult result = checkNoNext(context->log, desc->next, "VitrailD3d11TargetDesc");
   if (result != VITRAIL_SUCCESS) return result;
-  const TargetInfo info =
-      underBudget(withDefaults(context->limits, targetInfo(*desc)), desc->memoryBudget, colorFormatOf(*desc));
+  const TargetInfo info = describe(*context, *desc);
   result = checkDesc(*context, *desc, info);
   if (result != VITRAIL_SUCCESS) return result;
   std::unique_ptr<VitrailD3d11Target_T> made = makeTarget(context, *desc, info);
@@ -409,12 +361,9 @@ extern "C" VitrailResult vitrailD3d11UpdateTarget(VitrailD3d11Target target, uin
   if (target == nullptr) return VITRAIL_ERROR_INVALID;
   // A number that is too large says nothing of frames that were never begun.
   const std::uint64_t number = std::min(target->frames.numberOf(frame), target->frames.numberOf(0));
-  if (target->info.memoryBudget == 0) return VITRAIL_SUCCESS;
-  VitrailStats stats{};
-  if (!readNewest(*target, number, stats) || !target->growth.isNews(stats.frame)) return VITRAIL_SUCCESS;
-  const DeviceLimits& limits = target->context->limits;
   const std::uint32_t wanted =
-      target->growth.wanted(stats, target->storage.needs.nodeCapacity, budgetCapacity(limits, target->info));
+      wantedCapacity(target->growth, target->context->limits, target->info, target->storage.needs.nodeCapacity,
+                     [&](VitrailStats& stats) { return readNewest(*target, number, stats); });
   if (wanted == target->storage.needs.nodeCapacity) return VITRAIL_SUCCESS;
   StorageNeeds needs = target->storage.needs;
   needs.nodeCapacity = wanted;
@@ -438,13 +387,13 @@ extern "C" VitrailResult vitrailD3d11ResizeTarget(VitrailD3d11Target target, con
   TargetInfo present = target->info;
   present.width = info->width; // as far as the budget is concerned
   present.height = info->height;
-  present = underBudget(present, target->memoryBudget, target->colorFormat);
+  present = underBudget(present, target->memoryBudget, bytesBeside(present, target->colorFormat));
   present.width = target->info.width;
   present.height = target->info.height;
   TargetInfo wanted = resized(present, target->storage.needs.nodeCapacity, info->width, info->height,
                               info->nodeCapacity, info->areaPixels);
   result = checkTarget(context.limits, context.log, wanted);
-  if (result == VITRAIL_SUCCESS) result = checkViews(context.log, wanted, viewsInfo(info->views));
+  if (result == VITRAIL_SUCCESS) result = checkViews(context.log, wanted, infoOfViews(info->views));
   if (result == VITRAIL_SUCCESS) result = checkColors(context.log, wanted, target->colorFormat, info->views);
   Com<ID3D11Texture2D> behind;
   Com<ID3D11ShaderResourceView> behindView;
@@ -480,13 +429,9 @@ extern "C" void vitrailD3d11TargetMemory(VitrailD3d11Target target, VitrailMemor
     vitrail::nullArgument(target != nullptr ? target->context : nullptr, "vitrailD3d11TargetMemory");
     return;
   }
-  const vitrail::D3d11Storage& storage = target->storage;
-  memory->nodeCapacity = storage.needs.nodeCapacity;
-  memory->nodeBytes = storage.layout.nodes.size;
-  memory->headBytes = storage.layout.heads.size;
-  memory->totalBytes = storage.layout.total + vitrail::statisticsBytes(target->info.framesInFlight) +
-                       vitrail::bytesBeside(target->info, target->colorFormat);
-  memory->otherBytes = memory->totalBytes - memory->nodeBytes - memory->headBytes;
+  const std::uint64_t beside =
+      vitrail::statisticsBytes(target->info.framesInFlight) + vitrail::bytesBeside(target->info, target->colorFormat);
+  vitrail::tellMemory(*memory, target->storage.needs, target->storage.layout, beside, 0);
 }
 
 extern "C" uint64_t vitrailD3d11CopySize(VitrailD3d11Target target, uint32_t width, uint32_t height) {
@@ -495,11 +440,7 @@ extern "C" uint64_t vitrailD3d11CopySize(VitrailD3d11Target target, uint32_t wid
 }
 
 extern "C" void vitrailD3d11TilePlanTarget(VitrailTilePlan plan, VitrailD3d11TargetDesc* desc) {
-  if (plan == nullptr || desc == nullptr) return;
-  desc->nodeCapacity = vitrailTilePlanNodeCapacity(plan);
-  desc->areaPixels = vitrailTilePlanAreaPixels(plan);
-  desc->memoryBudget = 0;
-  desc->overflow = VITRAIL_OVERFLOW_SKIP;
+  vitrail::tilePlanTarget(plan, desc);
 }
 
 extern "C" VitrailResult vitrailD3d11ReadStats(VitrailD3d11Target target, uint64_t frame, VitrailStats* stats) {

@@ -30,7 +30,7 @@ class D3d11Backend : public Backend {
   VitrailD3d11Context context();
   VitrailD3d11ContextDesc contextDesc();
 
-  // Shaders of tests/library/d3d11/shaders, compiled once. Throws HostError.
+  // Shaders of tests/library/direct3d/shaders, compiled once. Throws HostError.
   ID3D11PixelShader* pixelShader(const std::string& file, const Defines& defines = {});
   ID3D11ComputeShader* computeShader(const std::string& file, const Defines& defines = {});
   ID3D11VertexShader* vertexShader(const std::string& file);

@@ -1,8 +1,8 @@
 // The kernels' bytecode: what the table of kernels has is there, and a device takes it.
 #include <gtest/gtest.h>
 
-#include "d3d11/bytecode.h"
 #include "device.h"
+#include "direct3d/bytecode.h"
 
 namespace vitrail::tests::d3d11 {
 namespace {

@@ -1,16 +1,15 @@
 // A reference to an interface.
 #pragma once
 
-#include <d3d11_1.h>
-
+#include <cstdint>
 #include <utility>
 
 namespace vitrail {
 
 // The length of an array as Direct3D takes it.
 template <class Array>
-constexpr UINT countOf(const Array& array) {
-  return static_cast<UINT>(array.size());
+constexpr std::uint32_t countOf(const Array& array) {
+  return static_cast<std::uint32_t>(array.size());
 }
 
 template <class Interface>
@@ -18,6 +17,11 @@ class Com {
  public:
   Com() = default;
   explicit Com(Interface* owned) : interface_(owned) {}
+  // Shares what somebody else has a reference to.
+  static Com shared(Interface* other) {
+    if (other != nullptr) other->AddRef();
+    return Com(other);
+  }
   Com(const Com& other) : interface_(other.interface_) {
     if (interface_ != nullptr) interface_->AddRef();
   }

@@ -17,11 +17,11 @@
 #include "bytecode/pack.h"
 #include "bytecode/pack_cross_compiled.h"
 #include "core/pool.h"
-#include "device.h"
+#include "run.h"
 #include "shaders/pack.h"
 #include "vulkan_compute.h"
 
-namespace vitrail::tests::d3d11 {
+namespace vitrail::tests::direct3d {
 namespace {
 
 constexpr std::uint32_t kWords = 18; // of a packed fragment
@@ -103,35 +103,6 @@ PackInput everyFragment(std::uint32_t format, std::uint32_t samples, bool neares
   return input;
 }
 
-std::vector<std::byte> runByDirect3d(std::span<const unsigned char> code, const PackInput& input, std::size_t bytes,
-                                     std::uint32_t groups) {
-  Device& on = device();
-  const std::vector<std::uint32_t> words = input.words();
-  constexpr UINT kRaw = D3D11_RESOURCE_MISC_BUFFER_ALLOW_RAW_VIEWS;
-  const auto read = on.makeBuffer(words.size() * 4, D3D11_BIND_SHADER_RESOURCE, kRaw, words.data());
-  const std::vector<std::byte> zeros(bytes);
-  const auto written = on.makeBuffer(bytes, D3D11_BIND_UNORDERED_ACCESS, kRaw, zeros.data());
-  const auto writtenView = on.makeRawView(written.get(), bytes);
-  D3D11_SHADER_RESOURCE_VIEW_DESC desc{};
-  desc.Format = DXGI_FORMAT_R32_TYPELESS;
-  desc.ViewDimension = D3D11_SRV_DIMENSION_BUFFEREX;
-  desc.BufferEx.NumElements = static_cast<UINT>(words.size());
-  desc.BufferEx.Flags = D3D11_BUFFEREX_SRV_FLAG_RAW;
-  Com<ID3D11ShaderResourceView> readView;
-  check(on.get()->CreateShaderResourceView(read.get(), &desc, readView.out()), "CreateShaderResourceView");
-  Com<ID3D11ComputeShader> shader;
-  check(on.get()->CreateComputeShader(code.data(), code.size(), nullptr, shader.out()), "CreateComputeShader");
-  ID3D11DeviceContext* context = on.immediate();
-  ID3D11ShaderResourceView* views = readView.get();
-  ID3D11UnorderedAccessView* target = writtenView.get();
-  context->CSSetShader(shader.get(), nullptr, 0);
-  context->CSSetShaderResources(0, 1, &views);
-  context->CSSetUnorderedAccessViews(1, 1, &target, nullptr);
-  context->Dispatch(groups, 1, 1);
-  context->ClearState();
-  return on.read(written.get(), bytes);
-}
-
 Packed packedAt(const std::vector<std::byte>& bytes, std::size_t fragment) {
   Packed words{};
   std::memcpy(words.data(), bytes.data() + fragment * sizeof(words), sizeof(words));
@@ -177,9 +148,9 @@ TEST_P(NodesOfBothLanguages, AreTheSameBytes) {
       const PackInput input = everyFragment(GetParam(), samples, nearestIsOne);
       const std::size_t bytes = input.fragments.size() * sizeof(Packed);
       const auto groups = static_cast<std::uint32_t>((input.fragments.size() + 63) / 64);
-      const std::vector<std::byte> hlsl = runByDirect3d(bytecode::pack, input, bytes, groups);
+      const std::vector<std::byte> hlsl = runByDirect3d(bytecode::pack, input.words(), bytes, groups);
       const std::vector<std::byte> glsl = runByVulkan(shaders::pack, input.words(), bytes, groups);
-      const std::vector<std::byte> kernel = runByDirect3d(bytecode::pack_cross_compiled, input, bytes, groups);
+      const std::vector<std::byte> kernel = runByDirect3d(bytecode::pack_cross_compiled, input.words(), bytes, groups);
       EXPECT_EQ(countDiffering(input, hlsl, glsl, false), 0U) << "nodes";
       EXPECT_EQ(countDiffering(input, hlsl, kernel, true), 0U) << "sums";
       std::set<std::uint32_t> nodes; // are not all one
@@ -190,4 +161,4 @@ TEST_P(NodesOfBothLanguages, AreTheSameBytes) {
 }
 
 } // namespace
-} // namespace vitrail::tests::d3d11
+} // namespace vitrail::tests::direct3d

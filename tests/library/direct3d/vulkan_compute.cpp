@@ -8,7 +8,7 @@
 
 #include "../host.h"
 
-namespace vitrail::tests::d3d11 {
+namespace vitrail::tests::direct3d {
 
 namespace {
 
@@ -30,7 +30,7 @@ struct Vulkan {
   VkQueue queue = VK_NULL_HANDLE;
 
   Vulkan() {
-    checkVulkan(volkInitialize(), "opening vulkan-1.dll");
+    checkVulkan(volkInitialize(), "opening Vulkan");
     auto application = zeroed<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
     application.apiVersion = VK_API_VERSION_1_2;
     auto instanceInfo = zeroed<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
@@ -198,4 +198,4 @@ std::vector<std::byte> runByVulkan(std::span<const std::uint32_t> spirv, std::sp
   return result;
 }
 
-} // namespace vitrail::tests::d3d11
+} // namespace vitrail::tests::direct3d

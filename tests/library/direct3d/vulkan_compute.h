@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-namespace vitrail::tests::d3d11 {
+namespace vitrail::tests::direct3d {
 
 // Set 0 has the input at binding 0 and `bytes` of output at binding 1, zeros before. Throws HostError.
 std::vector<std::byte> runByVulkan(std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> input,
                                    std::size_t bytes, std::uint32_t groups);
 
-} // namespace vitrail::tests::d3d11
+} // namespace vitrail::tests::direct3d
