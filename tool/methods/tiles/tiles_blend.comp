@@ -59,6 +59,29 @@ void sortFew(uint count, uint first) {
   barrier();
 }
 
+// The same of two records a thread.
+void sortSome(uint count, uint first) {
+  uint second = thread + TILES_PIXELS;
+  uvec2 a = pairs[first + thread];
+  uvec2 b = second < count ? pairs[first + second] : uvec2(0xffffffffu);
+  sharedBuckets[thread] = a.x;
+  sharedBuckets[second] = b.x;
+  barrier();
+  uvec2 places = uvec2(0u);
+  for (uint i = 0u; i < count; ++i) {
+    uint other = sharedBuckets[i];
+    places.x += other < a.x || (other == a.x && i < thread) ? 1u : 0u;
+    places.y += other < b.x || (other == b.x && i < second) ? 1u : 0u;
+  }
+  sharedKeys[places.x] = a.x;
+  sharedRecords[places.x] = a.y;
+  if (second < count) {
+    sharedKeys[places.y] = b.x;
+    sharedRecords[places.y] = b.y;
+  }
+  barrier();
+}
+
 void exchange(uint low, uint high) {
   uint key = sharedKeys[low];
   uint record = sharedRecords[low];
@@ -174,6 +197,10 @@ struct Slab {
 Slab sortSlab(uint count, uint first, uint from) {
   if (count <= TILES_PIXELS) {
     sortFew(count, first);
+    return Slab(count, 0xffffffffu);
+  }
+  if (count <= 2u * TILES_PIXELS) {
+    sortSome(count, first);
     return Slab(count, 0xffffffffu);
   }
   findRange(count, first, from);
