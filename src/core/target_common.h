@@ -10,12 +10,18 @@
 
 namespace vitrail {
 
-// The fields that every descriptor of a target has by the same name and type.
+// The fields that descriptors of a target have by the same name and type; those of some backends are taken where they
+// are there.
 template <class Desc>
 TargetInfo infoOf(const Desc& desc) {
   TargetInfo info;
-  info.width = desc.width;
-  info.height = desc.height;
+  if constexpr (requires { desc.extent; }) {
+    info.width = desc.extent.width;
+    info.height = desc.extent.height;
+  } else {
+    info.width = desc.width;
+    info.height = desc.height;
+  }
   info.samples = desc.samples;
   info.nodeFormat = desc.nodeFormat;
   info.depthOrder = desc.depthOrder;
@@ -30,15 +36,21 @@ TargetInfo infoOf(const Desc& desc) {
   info.areaPixels = desc.areaPixels;
   info.copyLayers = desc.copyLayers;
   info.framesInFlight = desc.framesInFlight;
-  info.stencilMark = desc.stencilMark != 0;
+  if constexpr (requires { desc.stencilMark; }) info.stencilMark = desc.stencilMark != 0;
+  if constexpr (requires { desc.postDepthCoverage; }) info.postDepthCoverage = desc.postDepthCoverage != 0;
+  if constexpr (requires { desc.bufferOffset; }) { // of one buffer
+    info.ownBuffer = desc.buffer != decltype(desc.buffer){};
+    info.bufferOffset = desc.bufferOffset;
+    info.bufferSize = desc.bufferSize;
+  }
   return info;
 }
 
-// The first of an array that is null.
+// The first of an array that is null: a pointer, a handle or a name.
 template <class View>
-void findNull(View* const* views, std::uint32_t count, const char* what, ViewsInfo& info) {
+void findNull(const View* views, std::uint32_t count, const char* what, ViewsInfo& info) {
   if (views == nullptr || info.nullName != nullptr) return;
-  View* const* found = std::find(views, views + count, nullptr);
+  const View* found = std::find(views, views + count, View{});
   if (found == views + count) return;
   info.nullName = what;
   info.nullIndex = static_cast<std::uint32_t>(found - views);

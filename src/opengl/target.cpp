@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 
+#include "core/target_common.h"
 #include "state.h"
 
 namespace vitrail {
@@ -15,64 +16,21 @@ namespace vitrail {
 namespace {
 
 TargetInfo targetInfo(const VitrailGlTargetDesc& desc) {
-  TargetInfo info;
-  info.width = desc.width;
-  info.height = desc.height;
-  info.samples = desc.samples;
-  info.nodeFormat = desc.nodeFormat;
-  info.depthOrder = desc.depthOrder;
-  info.resolve = desc.resolve;
-  info.msaaResolve = desc.msaaResolve;
-  info.postDepthCoverage = desc.postDepthCoverage != 0;
-  info.maxLayers = desc.maxLayers;
-  info.overflow = desc.overflow;
-  info.listBuild = desc.listBuild;
-  info.userWords = desc.userWords != 0;
-  info.nodeCapacity = desc.nodeCapacity;
-  info.memoryBudget = desc.memoryBudget;
-  info.areaPixels = desc.areaPixels;
-  info.copyLayers = desc.copyLayers;
-  info.ownBuffer = desc.buffer != 0;
-  info.bufferOffset = desc.bufferOffset;
-  info.bufferSize = desc.bufferSize;
-  info.framesInFlight = desc.framesInFlight;
+  TargetInfo info = infoOf(desc);
   info.canStoreColor = desc.textures.color != nullptr;
-  info.stencilMark = desc.stencilMark != 0;
   info.hasStencil = true; // the framebuffer may have one
   return info;
 }
 
-// The first name of an array that is 0.
-void findNull(const std::uint32_t* names, std::uint32_t count, const char* what, ViewsInfo& info) {
-  if (names == nullptr || info.nullName != nullptr) return;
-  const std::uint32_t* found = std::find(names, names + count, 0U);
-  if (found == names + count) return;
-  info.nullName = what;
-  info.nullIndex = static_cast<std::uint32_t>(found - names);
-}
-
 ViewsInfo viewsInfo(const VitrailGlTextures& textures) {
-  ViewsInfo info;
+  ViewsInfo info = infoOfViews(textures);
   info.field = "textures";
-  info.count = textures.count;
-  info.color = textures.color != nullptr;
-  info.opaque = textures.opaque != nullptr;
-  info.depth = textures.depth != nullptr;
-  if (textures.count > VITRAIL_MAX_VIEWS) return info; // the arrays are not trusted
-  findNull(textures.color, textures.count, "color", info);
-  findNull(textures.opaque, textures.count, "opaque", info);
-  findNull(textures.depth, textures.count, "depth", info);
   return info;
 }
 
 void keepViews(VitrailGlTarget_T& target, const VitrailGlTextures& textures) {
-  target.views = {};
+  keepViewsOf(target.views, textures);
   target.viewCount = textures.count;
-  for (std::uint32_t i = 0; i < textures.count; ++i) {
-    if (textures.color != nullptr) target.views[i].color = textures.color[i];
-    if (textures.opaque != nullptr) target.views[i].opaque = textures.opaque[i];
-    if (textures.depth != nullptr) target.views[i].depth = textures.depth[i];
-  }
 }
 
 GLenum colorFormatOf(const VitrailGlTargetDesc& desc) { return desc.colorFormat != 0 ? desc.colorFormat : GL_RGBA16F; }
@@ -241,10 +199,7 @@ bool readFrame(VitrailGlTarget_T& target, std::uint64_t frame, VitrailStats& sta
 
 // The statistics of the newest finished frame, of `frame` and those before it that still have a slot.
 bool readNewest(VitrailGlTarget_T& target, std::uint64_t frame, VitrailStats& stats) {
-  for (std::uint64_t back = 0; back < target.slots.size() && back <= frame; ++back) {
-    if (readFrame(target, frame - back, stats)) return true;
-  }
-  return false;
+  return readNewestOf(frame, target.slots.size(), [&](std::uint64_t one) { return readFrame(target, one, stats); });
 }
 
 } // namespace
@@ -325,16 +280,12 @@ extern "C" VitrailResult vitrailGlUpdateTarget(VitrailGlTarget target, uint64_t 
   if (target == nullptr) return VITRAIL_ERROR_INVALID;
   // A number that is too large says nothing of frames that were never begun.
   const std::uint64_t number = std::min(target->frames.numberOf(frame), target->frames.numberOf(0));
-  if (target->info.memoryBudget == 0) return VITRAIL_SUCCESS;
-  VitrailStats stats{};
-  if (!readNewest(*target, number, stats)) return target->lost ? VITRAIL_ERROR_DEVICE_LOST : VITRAIL_SUCCESS;
-  if (!target->growth.isNews(stats.frame)) return VITRAIL_SUCCESS;
-  const DeviceLimits& limits = target->context->limits;
-  const std::uint32_t wanted =
-      target->growth.wanted(stats, target->storage.needs.nodeCapacity, budgetCapacity(limits, target->info));
-  if (wanted == target->storage.needs.nodeCapacity) return VITRAIL_SUCCESS;
   StorageNeeds needs = target->storage.needs;
-  needs.nodeCapacity = wanted;
+  bool read = true;
+  needs.nodeCapacity = wantedCapacity(target->growth, target->context->limits, target->info, needs.nodeCapacity,
+                                      [&](VitrailStats& stats) { return read = readNewest(*target, number, stats); });
+  if (!read && target->lost) return VITRAIL_ERROR_DEVICE_LOST;
+  if (needs.nodeCapacity == target->storage.needs.nodeCapacity) return VITRAIL_SUCCESS;
   const VitrailResult result = replaceStorage(*target, needs);
   if (result != VITRAIL_SUCCESS) return result;
   target->order.drop(target->context->log, "vitrailGlUpdateTarget() gives the target another pool");
@@ -386,11 +337,9 @@ extern "C" void vitrailGlTargetMemory(VitrailGlTarget target, VitrailMemory* mem
     return;
   }
   const vitrail::GlStorage& storage = target->storage;
-  memory->nodeCapacity = storage.needs.nodeCapacity;
-  memory->nodeBytes = storage.layout.nodes.size;
-  memory->headBytes = storage.layout.heads.size;
-  memory->totalBytes = storage.bytes + vitrail::statisticsBytes(target->info.framesInFlight);
-  memory->otherBytes = memory->totalBytes - memory->nodeBytes - memory->headBytes;
+  const std::uint64_t page = storage.bytes - storage.layout.total; // what fills it
+  vitrail::tellMemory(*memory, storage.needs, storage.layout,
+                      page + vitrail::statisticsBytes(target->info.framesInFlight), 0);
 }
 
 extern "C" uint64_t vitrailGlCopySize(VitrailGlTarget target, uint32_t width, uint32_t height) {
@@ -414,11 +363,7 @@ extern "C" void vitrailGlCollectSpecialization(VitrailGlContext context, const V
 }
 
 extern "C" void vitrailGlTilePlanTarget(VitrailTilePlan plan, VitrailGlTargetDesc* desc) {
-  if (plan == nullptr || desc == nullptr) return;
-  desc->nodeCapacity = vitrailTilePlanNodeCapacity(plan);
-  desc->areaPixels = vitrailTilePlanAreaPixels(plan);
-  desc->memoryBudget = 0;
-  desc->overflow = VITRAIL_OVERFLOW_SKIP;
+  vitrail::tilePlanTarget(plan, desc);
 }
 
 extern "C" VitrailResult vitrailGlReadStats(VitrailGlTarget target, uint64_t frame, VitrailStats* stats) {

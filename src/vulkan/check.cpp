@@ -1,8 +1,7 @@
 #include "check.h"
 
-#include <algorithm>
-
 #include "convert.h"
+#include "core/target_common.h"
 
 namespace vitrail {
 
@@ -87,15 +86,6 @@ VkResult checkScope(const VitrailVkContext_T& context, const VitrailVkScope& sco
   return VK_SUCCESS;
 }
 
-// The first null handle of an array.
-void findNull(const VkImageView* views, std::uint32_t count, const char* name, ViewsInfo& info) {
-  if (views == nullptr || info.nullName != nullptr) return;
-  const VkImageView* found = std::find(views, views + count, VkImageView{});
-  if (found == views + count) return;
-  info.nullName = name;
-  info.nullIndex = static_cast<std::uint32_t>(found - views);
-}
-
 } // namespace
 
 VkResult checkNext(const Log& log, const void* next, const char* structure) {
@@ -112,45 +102,12 @@ VkFormat colorFormatOf(const VitrailVkTargetDesc& desc) {
 }
 
 TargetInfo targetInfo(const VitrailVkContext_T& context, const VitrailVkTargetDesc& desc) {
-  TargetInfo info;
-  info.width = desc.extent.width;
-  info.height = desc.extent.height;
-  info.samples = desc.samples;
-  info.nodeFormat = desc.nodeFormat;
-  info.depthOrder = desc.depthOrder;
-  info.resolve = desc.resolve;
-  info.msaaResolve = desc.msaaResolve;
-  info.postDepthCoverage = desc.postDepthCoverage != VK_FALSE;
-  info.maxLayers = desc.maxLayers;
-  info.overflow = desc.overflow;
-  info.listBuild = desc.listBuild;
-  info.userWords = desc.userWords != VK_FALSE;
-  info.nodeCapacity = desc.nodeCapacity;
-  info.memoryBudget = desc.memoryBudget;
-  info.areaPixels = desc.areaPixels;
-  info.copyLayers = desc.copyLayers;
-  info.ownBuffer = desc.buffer != VK_NULL_HANDLE;
-  info.bufferOffset = desc.bufferOffset;
-  info.bufferSize = desc.bufferSize;
-  info.framesInFlight = desc.framesInFlight;
+  TargetInfo info = infoOf(desc);
   const VkFormat color = colorFormatOf(desc);
   info.canStoreColor = computeWrites(color) && desc.views.color != nullptr &&
                        (featuresOf(context, color) & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) != 0;
   info.stencilMark = desc.scope.stencilMark != VK_FALSE;
   info.hasStencil = desc.scope.renderPass != VK_NULL_HANDLE || desc.scope.stencilFormat != VK_FORMAT_UNDEFINED;
-  return info;
-}
-
-ViewsInfo viewsInfo(const VitrailVkViews& views) {
-  ViewsInfo info;
-  info.count = views.count;
-  info.color = views.color != nullptr;
-  info.opaque = views.opaque != nullptr;
-  info.depth = views.depth != nullptr;
-  if (views.count > VITRAIL_MAX_VIEWS) return info; // the arrays are not trusted
-  findNull(views.color, views.count, "color", info);
-  findNull(views.opaque, views.count, "opaque", info);
-  findNull(views.depth, views.count, "depth", info);
   return info;
 }
 

@@ -20,9 +20,6 @@ VkFormat colorFormatOf(const VitrailVkTargetDesc& desc);
 // The descriptor for the core's rules, without its defaults.
 TargetInfo targetInfo(const VitrailVkContext_T& context, const VitrailVkTargetDesc& desc);
 
-// The views for the core's rules.
-ViewsInfo viewsInfo(const VitrailVkViews& views);
-
 // Formats of the colour and of the scope. Logs the reason where it fails.
 VkResult checkFormats(const VitrailVkContext_T& context, const VitrailVkTargetDesc& desc, const TargetInfo& info);
 

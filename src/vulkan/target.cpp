@@ -2,12 +2,12 @@
 #include "target.h"
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <new>
 
 #include "check.h"
 #include "convert.h"
+#include "core/target_common.h"
 
 namespace vitrail {
 
@@ -16,7 +16,7 @@ namespace {
 VkResult checkDesc(VitrailVkContext context, const VitrailVkTargetDesc& desc, const TargetInfo& info) {
   VkResult result = toVk(checkTarget(context->limits, context->log, info));
   if (result == VK_SUCCESS) result = checkFormats(*context, desc, info);
-  if (result == VK_SUCCESS) result = toVk(checkViews(context->log, info, viewsInfo(desc.views)));
+  if (result == VK_SUCCESS) result = toVk(checkViews(context->log, info, infoOfViews(desc.views)));
   return result;
 }
 
@@ -44,10 +44,7 @@ bool readFrame(const VitrailVkTarget_T& target, std::uint64_t frame, VitrailStat
 
 // The statistics of the newest finished frame, of `frame` and those before it that still have a slot.
 bool readNewest(const VitrailVkTarget_T& target, std::uint64_t frame, VitrailStats& stats) {
-  for (std::uint64_t back = 0; back < target.slots().size() && back <= frame; ++back) {
-    if (readFrame(target, frame - back, stats)) return true;
-  }
-  return false;
+  return readNewestOf(frame, target.slots().size(), [&](std::uint64_t one) { return readFrame(target, one, stats); });
 }
 
 } // namespace
@@ -135,15 +132,10 @@ extern "C" VkResult vitrailVkUpdateTarget(VitrailVkTarget target, uint64_t frame
   const bool again = target->frames.any() && number == target->frames.newest() && frame != 0;
   const std::uint64_t place = target->frames.begun() + (again ? 0 : 1); // of the frame that is about to be recorded
   freeRetired(*target, place);
-  if (target->info.memoryBudget == 0) return VK_SUCCESS;
-  VitrailStats stats{};
-  if (!readNewest(*target, number, stats) || !target->growth.isNews(stats.frame)) return VK_SUCCESS;
-  const DeviceLimits& limits = target->context->limits;
-  const std::uint32_t wanted =
-      target->growth.wanted(stats, target->storage.needs.nodeCapacity, budgetCapacity(limits, target->info));
-  if (wanted == target->storage.needs.nodeCapacity) return VK_SUCCESS;
   StorageNeeds needs = target->storage.needs;
-  needs.nodeCapacity = wanted;
+  needs.nodeCapacity = wantedCapacity(target->growth, target->context->limits, target->info, needs.nodeCapacity,
+                                      [&](VitrailStats& stats) { return readNewest(*target, number, stats); });
+  if (needs.nodeCapacity == target->storage.needs.nodeCapacity) return VK_SUCCESS;
   const VkResult result = replaceStorage(*target, needs, target->views);
   if (result != VK_SUCCESS) return result;
   target->order.drop(target->context->log, "vitrailVkUpdateTarget() gives the target another pool");
@@ -166,7 +158,7 @@ extern "C" VkResult vitrailVkResizeTarget(VitrailVkTarget target, const VitrailV
   TargetInfo wanted = resized(target->info, target->storage.needs.nodeCapacity, info->extent.width, info->extent.height,
                               info->nodeCapacity, info->areaPixels);
   result = toVk(checkTarget(context.limits, context.log, wanted));
-  if (result == VK_SUCCESS) result = toVk(checkViews(context.log, wanted, viewsInfo(info->views)));
+  if (result == VK_SUCCESS) result = toVk(checkViews(context.log, wanted, infoOfViews(info->views)));
   if (result != VK_SUCCESS) return result;
   wanted.nodeCapacity = capacityWithin(context.limits, wanted);
   result = replaceStorage(*target, storageNeeds(context.limits, wanted), info->views);
@@ -202,13 +194,9 @@ extern "C" void vitrailVkTargetMemory(VitrailVkTarget target, VitrailMemory* mem
     return;
   }
   const vitrail::Storage& storage = target->storage;
-  memory->nodeCapacity = storage.needs.nodeCapacity;
-  memory->nodeBytes = storage.layout.nodes.size;
-  memory->headBytes = storage.layout.heads.size;
-  const VkDeviceSize own = storage.layout.total + target->stats.size;
-  memory->otherBytes = own - memory->nodeBytes - memory->headBytes;
-  for (const vitrail::Storage& retired : target->retired) memory->retiredBytes += retired.layout.total;
-  memory->totalBytes = own + memory->retiredBytes;
+  std::uint64_t retired = 0;
+  for (const vitrail::Storage& one : target->retired) retired += one.layout.total;
+  vitrail::tellMemory(*memory, storage.needs, storage.layout, target->stats.size, retired);
 }
 
 extern "C" VkDeviceSize vitrailVkCopySize(VitrailVkTarget target, uint32_t width, uint32_t height) {
@@ -249,11 +237,7 @@ extern "C" void vitrailVkStencilMark(VkStencilOpState* state) {
 }
 
 extern "C" void vitrailVkTilePlanTarget(VitrailTilePlan plan, VitrailVkTargetDesc* desc) {
-  if (plan == nullptr || desc == nullptr) return;
-  desc->nodeCapacity = vitrailTilePlanNodeCapacity(plan);
-  desc->areaPixels = vitrailTilePlanAreaPixels(plan);
-  desc->memoryBudget = 0;
-  desc->overflow = VITRAIL_OVERFLOW_SKIP;
+  vitrail::tilePlanTarget(plan, desc);
 }
 
 extern "C" VkResult vitrailVkReadStats(VitrailVkTarget target, uint64_t frame, VitrailStats* stats) {
