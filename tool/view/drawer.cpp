@@ -8,7 +8,6 @@
 #include "../commands/errors.h"
 #include "../commands/progress.h"
 #include "../commands/scene_options.h"
-#include "../image/color_map.h"
 #include "../methods/methods.h"
 #include "settings.h"
 
@@ -47,7 +46,7 @@ void Drawer::ask(Wanted wanted) {
 void Drawer::askPick(RenderArguments arguments, std::uint32_t x, std::uint32_t y) {
   {
     const std::lock_guard lock(mutex_);
-    wantedPick_ = Picked{std::move(arguments), x, y, {}};
+    wantedPick_ = Picked{std::move(arguments), x, y, {}, {}};
   }
   changed_.notify_one();
 }
@@ -172,6 +171,7 @@ void Drawer::pick(Picked& picked) {
   }
   const RenderOptions options = pictureOf(picked.arguments, *scene_);
   picked.layers = picker_->at(options.view, options.width, options.height, picked.x, picked.y);
+  picked.scene = facts_;
   const std::lock_guard lock(mutex_);
   picked_ = std::move(picked);
 }
@@ -184,6 +184,10 @@ void Drawer::prepare(const RenderArguments& arguments) {
   renderer_.reset(); // what it holds on the device first
   renderer_ = device_.makeRenderer(*scene_, arguments.opacity, DrawOrder::Forward, arguments.method);
   rendererArguments_ = arguments;
+}
+
+const ColorMap& colorsOf(const Beside& beside) {
+  return beside.kind == Beside::Kind::Complexity ? kViridis : kMagma; // as on the pages of `compare`
 }
 
 Renderer& Drawer::besideRenderer(const RenderArguments& arguments, const MethodOptions& method) {
@@ -233,7 +237,7 @@ void Drawer::drawBeside(const Wanted& wanted, const RenderOptions& options, Draw
       drawn.largest = std::max(*std::ranges::max_element(plane.values), 1.0);
     }
   }
-  drawn.beside = heatmap(plane, drawn.largest, kMagma);
+  drawn.beside = heatmap(plane, drawn.largest, colorsOf(wanted.beside));
 }
 
 void Drawer::draw(const Wanted& wanted) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../commands/render_options.h"
+#include "../image/color_map.h"
 #include "../render/device.h"
 #include "../render/pick.h"
 
@@ -29,6 +30,8 @@ struct Beside {
   std::string method; // of Kind::Method
   bool operator==(const Beside&) const = default;
 };
+// What numbers are shown as beside a picture.
+const ColorMap& colorsOf(const Beside& beside);
 
 // A picture that is wanted: what `vitrail render` would draw, or one with a pixel for each square of `coarse` pixels.
 struct Wanted {
@@ -47,12 +50,13 @@ struct SceneFacts {
   std::optional<Background> background;
 };
 
-// The surfaces under a pixel of the picture that `wanted` is of.
+// The surfaces under a pixel of the picture of some arguments.
 struct Picked {
   RenderArguments arguments;
   std::uint32_t x = 0;
   std::uint32_t y = 0;
   std::vector<PickedLayer> layers;
+  std::shared_ptr<const SceneFacts> scene{}; // that they are of
 };
 
 struct Drawn {

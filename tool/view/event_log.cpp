@@ -60,11 +60,12 @@ void EventLog::shown(const Drawn& drawn, const std::string& command) {
                       {"command", command}});
 }
 
-void EventLog::picked(const Picked& picked, const SceneFacts& scene) {
+void EventLog::picked(const Picked& picked) {
   if (!file_) return;
   nlohmann::json layers = nlohmann::json::array();
   for (const PickedLayer& layer : picked.layers) {
-    layers.push_back({{"object", scene.objects.path(layer.object)}, {"depth", layer.distance}, {"alpha", layer.alpha}});
+    layers.push_back(
+        {{"object", picked.scene->objects.path(layer.object)}, {"depth", layer.distance}, {"alpha", layer.alpha}});
   }
   write(file_.get(), {{"event", "picked"}, {"x", picked.x}, {"y", picked.y}, {"layers", layers}});
 }

@@ -16,7 +16,7 @@ class EventLog {
 
   // A picture is on the screen; `command` draws it again.
   void shown(const Drawn& drawn, const std::string& command);
-  void picked(const Picked& picked, const SceneFacts& scene);
+  void picked(const Picked& picked);
   // "error", "saved", "copied", "opened" and what of it.
   void happened(const std::string& event, const std::string& text);
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "../image/encode.h"
 #include "../methods/methods.h"
 #include "../scene/turn.h"
 
@@ -180,25 +181,28 @@ void showInside(const PanelState& state, PanelActions& actions) {
 }
 
 void showPicked(const PanelState& state) {
-  if (state.picked == nullptr || state.scene == nullptr) return;
+  if (state.picked == nullptr) return;
   const Picked& picked = *state.picked;
+  const SceneFacts& scene = *picked.scene;
   if (!ImGui::CollapsingHeader("Picked", ImGuiTreeNodeFlags_DefaultOpen)) return;
   ImGui::Text("pixel %u,%u: %zu layers", picked.x, picked.y, picked.layers.size());
   const float height = static_cast<float>(std::clamp<std::size_t>(picked.layers.size(), 1, 10));
   ImGui::BeginChild("layers", ImVec2(0.0F, (height + 1.0F) * ImGui::GetTextLineHeightWithSpacing()), true);
   for (std::size_t i = 0; i < picked.layers.size(); ++i) {
     const PickedLayer& layer = picked.layers[i];
-    const auto code = [](float value) { return std::pow(std::clamp(value, 0.0F, 1.0F), 1.0F / 2.2F); };
+    const float linear[4] = {layer.color.r, layer.color.g, layer.color.b, 1.0F};
+    std::uint8_t codes[4] = {};
+    encodePixels(linear, 1, codes);
     ImGui::PushID(static_cast<int>(i));
-    ImGui::ColorButton("##color", ImVec4(code(layer.color.r), code(layer.color.g), code(layer.color.b), 1.0F),
-                       ImGuiColorEditFlags_NoTooltip, ImVec2(ImGui::GetFontSize(), ImGui::GetFontSize()));
+    ImGui::ColorButton("##color", ImColor(codes[0], codes[1], codes[2]), ImGuiColorEditFlags_NoTooltip,
+                       ImVec2(ImGui::GetFontSize(), ImGui::GetFontSize()));
     ImGui::SameLine();
-    const std::string name(state.scene->objects.name(layer.object));
-    const std::string material =
-        layer.material < state.scene->materials.size() ? state.scene->materials[layer.material] : "faded";
+    const std::string name(scene.objects.name(layer.object));
+    // Those behind the file's are of faded objects.
+    const std::string material = layer.material < scene.materials.size() ? scene.materials[layer.material] : "faded";
     ImGui::Text("%.5g  %s  %.0f%%", layer.distance, name.c_str(), 100.0 * static_cast<double>(layer.alpha));
     if (ImGui::IsItemHovered()) {
-      ImGui::SetTooltip("%s\nmaterial %s\n%s", state.scene->objects.path(layer.object).c_str(), material.c_str(),
+      ImGui::SetTooltip("%s\nmaterial %s\n%s", scene.objects.path(layer.object).c_str(), material.c_str(),
                         layer.blend.c_str());
     }
     ImGui::PopID();
@@ -231,7 +235,7 @@ void showReport(const PanelState& state) {
   if (state.drawn == nullptr) return;
   const Drawn& drawn = *state.drawn;
   const FrameReport& report = drawn.report;
-  if (report.complete && report.errorBound <= 1.0) {
+  if (isExact(report)) {
     ImGui::TextColored(ImVec4(0.4F, 0.9F, 0.4F, 1.0F), "exact: within 1/255");
   } else if (report.complete) {
     ImGui::TextColored(ImVec4(0.9F, 0.9F, 0.4F, 1.0F), "complete: within %.3g/255", report.errorBound);

@@ -18,9 +18,8 @@ struct PanelState {
   bool& rotates;
   bool& vsync;
   const Device& device;
-  const std::string& presentedBy; // a device
-  const SceneFacts* scene;        // null: none was drawn
-  const Picked* picked;           // null: nothing was
+  const SceneFacts* scene; // null: none was drawn
+  const Picked* picked;    // null: nothing was
   const Picked* pickedBefore;
   Parts& parts;
   Beside& beside;

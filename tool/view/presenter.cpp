@@ -118,8 +118,6 @@ Presenter::~Presenter() {
   if (gpu_->device() != VK_NULL_HANDLE) vkDeviceWaitIdle(gpu_->device());
 }
 
-std::string Presenter::device() const { return gpu_->properties().deviceName; }
-
 std::vector<std::string> Presenter::finish() {
   vkDeviceWaitIdle(gpu_->device());
   for (Slot& slot : slots_) slot = {};

@@ -39,7 +39,6 @@ class Presenter {
   // Shows what ImGui has drawn. False: the window has no size, and nothing was shown. Throws GpuError.
   bool show(ImDrawData& data, bool vsync);
 
-  [[nodiscard]] std::string device() const;
   // The validation layer's errors; waits for the device, and shows nothing any more.
   std::vector<std::string> finish();
 

@@ -23,7 +23,6 @@
 #include "../commands/device_options.h"
 #include "../commands/output_file.h"
 #include "../commands/output_format.h"
-#include "../image/color_map.h"
 #include "../methods/methods.h"
 #include "../scene/message.h"
 #include "command_line.h"
@@ -95,7 +94,6 @@ class Viewer {
         window_(titleOf(arguments.picture), {arguments.picture.width, arguments.picture.height}),
         widgets_(window_),
         presenter_(window_, arguments.picture.validate),
-        presentedBy_(presenter_.device()),
         drawer_(std::make_unique<Drawer>(device_, Window::wake)) {
     if (now_.wish == Wish::Fastest) now_.method = device_.exactMethod();
     if (device_.gpu() == nullptr && device_.gl() == nullptr) now_.device = std::string(kProcessor);
@@ -114,11 +112,13 @@ class Viewer {
  private:
   // How long nothing will change by itself, in seconds; negative: for ever.
   double patience() const {
+    if (isMinimised(window_.size())) return -1.0;
     if (restless_ > 0) return 0.0;
     if (!isMoving() && wantsFull()) return std::max(kSettle - since(lastMove_), 0.0);
     return isSettling() ? kSettle : -1.0;
   }
   static double since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
+  static bool isMinimised(PixelSize size) { return size.width == 0 || size.height == 0; }
   bool isMoving() const { return rotates_ || drags_; }
   bool isSettling() const { return since(lastMove_) < kSettle; }
   // Whether the picture on the screen is a coarse one of what is seen.
@@ -126,8 +126,8 @@ class Viewer {
 
   void step() {
     const PixelSize size = window_.size();
+    if (isMinimised(size)) return;
     if (restless_ > 0) --restless_;
-    if (size.width == 0 || size.height == 0) return; // minimised
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     openDropped();
@@ -146,7 +146,6 @@ class Viewer {
     if (!presenter_.show(*ImGui::GetDrawData(), vsync_)) restless_ = std::max(restless_, 1);
   }
 
-  // What was asked for may be of a file that is not there.
   static bool sameCamera(const RenderArguments& a, const RenderArguments& b) {
     const auto sameOrbit = [](const Orbit& one, const Orbit& other) {
       return one.azimuth == other.azimuth && one.elevation == other.elevation && one.zoom == other.zoom;
@@ -155,6 +154,7 @@ class Viewer {
            a.orbit.has_value() == b.orbit.has_value() && (!a.orbit || sameOrbit(*a.orbit, *b.orbit));
   }
 
+  // What was dropped may be no model: then takeNews() goes back.
   void openDropped() {
     const std::vector<std::string> files = window_.takeDropped();
     if (files.empty()) return;
@@ -190,7 +190,7 @@ class Viewer {
     }
     if (std::optional<Picked> picked = drawer_->takePicked()) {
       pickedBefore_ = std::exchange(picked_, std::move(picked));
-      log_.picked(*picked_, *drawer_->scene());
+      log_.picked(*picked_);
       changed_ = true;
     }
     std::optional<Drawn> drawn = drawer_->take();
@@ -211,7 +211,6 @@ class Viewer {
       pickedBefore_.reset();
     }
     if (drawn->wanted.coarse == 1) fullMilliseconds_ = drawn->milliseconds;
-    coarseMilliseconds_ = drawn->milliseconds;
     milliseconds_.push_back(static_cast<float>(drawn->milliseconds));
     constexpr std::size_t kKept = 120;
     if (milliseconds_.size() > kKept) milliseconds_.pop_front();
@@ -494,12 +493,13 @@ class Viewer {
                        ImVec2(corner.x - 12.0F, at.y + (hasColors ? 2.4F : 1.3F) * height), IM_COL32(0, 0, 0, 200));
     list.AddText(at, IM_COL32(255, 255, 255, 255), text.c_str());
     if (!hasColors) return;
-    const auto color = [](const std::array<std::uint8_t, 3>& c) { return IM_COL32(c[0], c[1], c[2], 255); };
-    const float step = (corner.x - 20.0F - at.x) / static_cast<float>(kMagma.size() - 1);
-    for (std::size_t i = 0; i + 1 < kMagma.size(); ++i) {
+    const ColorMap& map = colorsOf(beside);
+    const auto color = [&map](std::size_t i) { return IM_COL32(map[i][0], map[i][1], map[i][2], 255); };
+    const float step = (corner.x - 20.0F - at.x) / static_cast<float>(map.size() - 1);
+    for (std::size_t i = 0; i + 1 < map.size(); ++i) {
       const float left = at.x + step * static_cast<float>(i);
       list.AddRectFilledMultiColor(ImVec2(left, at.y + 1.3F * height), ImVec2(left + step, at.y + 2.1F * height),
-                                   color(kMagma[i]), color(kMagma[i + 1]), color(kMagma[i + 1]), color(kMagma[i]));
+                                   color(i), color(i + 1), color(i + 1), color(i));
     }
   }
 
@@ -521,9 +521,9 @@ class Viewer {
       parts_.set(scene_, now_.objects);
       const ObjectChoice before = now_.objects;
       const PanelActions actions =
-          drawPanel({now_, sorting_, rotates_, vsync_, device_, presentedBy_, scene_.get(),
-                     picked_ ? &*picked_ : nullptr, pickedBefore_ ? &*pickedBefore_ : nullptr, parts_, beside_,
-                     drawn_ ? &*drawn_ : nullptr, drawer_->doing(), milliseconds_});
+          drawPanel({now_, sorting_, rotates_, vsync_, device_, scene_.get(), picked_ ? &*picked_ : nullptr,
+                     pickedBefore_ ? &*pickedBefore_ : nullptr, parts_, beside_, drawn_ ? &*drawn_ : nullptr,
+                     drawer_->doing(), milliseconds_});
       if (rotates_ && !didRotate) lastTurn_ = Clock::now();
       if (actions.frame) frameFromHere();
       if (actions.reset) reset();
@@ -546,7 +546,8 @@ class Viewer {
 
   // Writes the picture on the screen, without the widgets.
   void save() {
-    if (!drawn_ || drawn_->wanted.coarse != 1) return;
+    if (!drawn_) return;
+    if (drawn_->wanted.coarse != 1 || isAsked_) return say("the picture is not finished: press P again", false);
     try {
       const std::string name = freeName();
       OutputFile file{std::filesystem::path(name)};
@@ -606,7 +607,6 @@ class Viewer {
   Window window_;
   Widgets widgets_;
   Presenter presenter_;
-  std::string presentedBy_;
   std::unique_ptr<Drawer> drawer_;
   Sorting sorting_;
   Navigation navigation_;
@@ -624,7 +624,6 @@ class Viewer {
   bool isResting_ = false;
   std::deque<float> milliseconds_;
   double fullMilliseconds_ = 0.0;
-  double coarseMilliseconds_ = 0.0;
   bool rotates_ = false;
   bool drags_ = false;
   bool vsync_ = true;
