@@ -472,11 +472,12 @@ void Tiles::cmdPush(VkCommandBuffer commands, const std::array<std::uint32_t, 3>
 void Tiles::takeNote() {
   const auto control = control_.read<shaders::TilesControl>();
   const auto raise = [](std::uint64_t& most, std::uint64_t value) { most = std::max(most, value); };
-  raise(wanted_.records, control.records);
+  const auto together = [](std::uint32_t high, std::uint32_t low) { return std::uint64_t{high} << 32U | low; };
+  raise(wanted_.records, together(control.recordsHigh, control.records));
   raise(wanted_.large, control.large);
   raise(wanted_.deep, control.deep.count);
   raise(wanted_.blocks, control.blocks.count);
-  raise(wanted_.fragments, control.fragments);
+  raise(wanted_.fragments, together(control.fragmentsHigh, control.fragments));
   raise(wanted_.chunks, control.chunks.count);
   mostFragments_ = std::max(mostFragments_, control.mostFragments);
   cutPixels_ += control.cutPixels;

@@ -21,12 +21,13 @@ void main() {
   uint pixel = deep * TILES_PIXELS + thread;
   uint count = deepPixels[pixel].x;
   uint chunkCount = (count + TILES_CHUNK - 1u) / TILES_CHUNK;
+  if (count > 0xffffffffu / TILES_PIXELS) atomicAdd(control.fragmentsHigh, 1u); // the sum of a tile may come round
   uint place = atomicAdd(groupFragments, count);
   uint chunk = atomicAdd(groupChunks, chunkCount);
   atomicMax(groupMost, count);
   barrier();
   if (thread == 0u) {
-    groupFirst = atomicAdd(control.fragments, groupFragments);
+    TAKE_PLACES(control.fragments, control.fragmentsHigh, groupFragments, groupFirst)
     uint first;
     RESERVE(control.chunks, groupChunks, first)
     groupFirstChunk = first;

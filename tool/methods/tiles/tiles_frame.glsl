@@ -33,6 +33,15 @@ uint keyOf(float depth) { return 0x3f800000u - floatBitsToUint(min(max(depth, 0.
   atomicMax(groups.y, (first + (more) + TILES_ROW - 1u) / TILES_ROW); \
   groups.z = 1u;
 
+// Takes `more` of something that is counted in two words: the number of the first. Where the lower one comes round,
+// there is more than any buffer holds, and the frame is drawn again.
+#define TAKE_PLACES(low, high, more, first) \
+  first = atomicAdd(low, more); \
+  if (first + (more) < first) atomicAdd(high, 1u);
+
+// Whether the records can be read: no place of them was given out twice.
+bool hasRecords() { return control.recordsHigh == 0u; }
+
 // What fragments are sorted by: a depth on a record's plane in a pixel of its tile.
 float depthOn(vec4 plane, ivec2 inTile) {
   return max(min(fma(plane.y, float(inTile.x), fma(plane.z, float(inTile.y), plane.x)), plane.w), 0.0);

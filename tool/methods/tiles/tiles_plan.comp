@@ -19,7 +19,8 @@ void main() {
   if (thread == 2u) groupPairs = groupMost = 0u;
   barrier();
   uint tile = flatGroup() * 256u + thread;
-  uint count = tile < tiles.tilesX * tiles.tilesY ? tileRecords[tile].x : 0u;
+  bool isRead = tile < tiles.tilesX * tiles.tilesY && hasRecords();
+  uint count = isRead ? tileRecords[tile].x : 0u;
   uint place = 0u;
   uint number = 0u;
   uint kind = count <= TILES_SHALLOW ? 0u : 1u;

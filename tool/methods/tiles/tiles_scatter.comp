@@ -6,7 +6,7 @@
 layout(local_size_x = 256) in;
 
 void main() {
-  uint count = min(control.records, tiles.recordCapacity);
+  uint count = hasRecords() ? min(control.records, tiles.recordCapacity) : 0u;
   for (uint i = gl_GlobalInvocationID.x; i < count; i += TILES_SCATTER * 256u) {
     uint tile = places[3u * i];
     if (tile == NO_TILE) continue;

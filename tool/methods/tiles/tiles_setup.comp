@@ -182,7 +182,9 @@ void coverAll(uint mine) {
   }
   uint all = sharedEnds[TILES_GROUP - 1u];
   if (all == 0u) return;
-  if (thread == 0u) sharedFirst = atomicAdd(control.records, all);
+  if (thread == 0u) {
+    TAKE_PLACES(control.records, control.recordsHigh, all, sharedFirst)
+  }
   barrier();
   for (uint i = thread; i < all; i += TILES_GROUP) {
     uint owner = 0u; // the first whose end is beyond i

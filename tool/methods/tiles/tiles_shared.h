@@ -96,8 +96,9 @@ struct TilesControl {
   uint mostRecords;     // of a tile
   uint mostFragments;   // of a pixel of a deep tile
   uint cutPixels;       // that the driver did not let a pass finish
-  uint controlPadding;
-  uint unused[8];
+  uint recordsHigh;     // how often `records` has come round
+  uint fragmentsHigh;   // the same of `fragments`
+  uint controlPadding[7];
 };
 
 #ifdef __cplusplus
