@@ -1,4 +1,4 @@
-// What targets of several backends do alike on the host's side: templates over the backends' structures, whose fields
+// What targets of all backends do alike on the host's side: templates over the backends' structures, whose fields
 // have the same names.
 #pragma once
 
