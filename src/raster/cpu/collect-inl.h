@@ -44,28 +44,24 @@ HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, s
     mask &= ~bitsOf(hidden);
   }
   if (mask == 0) return Emitted::IsStored;
-  std::uint32_t isFresh = 0;
-  const Row row = store_.rowFor(block, mask, isFresh);
+  const std::int32_t* kept = nullptr;
+  const Row row = store_.rowFor(block, mask, kept);
   if (HWY_UNLIKELY(row == nullptr)) {
     return store_.isCrowded(block) ? Emitted::IsCrowded : Emitted::IsFull;
   }
   const M here = maskOf(mask);
-  const M fresh = maskOf(0U - isFresh); // without a branch: nobody could tell which it takes
-  const auto put = [&](std::uint32_t vector, const I& value, const I& elsewhere) HWY_ATTR {
-    std::int32_t* to = row + kLanes * vector;
-    store(to, select(here, value, select(fresh, elsewhere, load(to))));
-  };
-  put(RowShape::kKey, key, set(kFarKey));
+  const auto put = [&](std::uint32_t vector, const I& value)
+                       HWY_ATTR { store(row + kLanes * vector, select(here, value, load(kept + kLanes * vector))); };
+  put(RowShape::kKey, key);
   if constexpr (!kShaded) {
     const std::uint32_t number = static_cast<std::uint32_t>(batch_.number[t]) & ~kFrontBit;
-    put(RowShape::kNumber, set(static_cast<std::int32_t>(frame.jobs[number >> kJobBits].draw)), set(shape_.nothing));
+    put(RowShape::kNumber, set(static_cast<std::int32_t>(frame.jobs[number >> kJobBits].draw)));
   } else {
     F weights[6];
     perspective(t, met.second, met.third, frame.needs.derivatives, weights);
-    const I number = set(batch_.number[t]);
-    put(RowShape::kNumber, number, number); // where nothing is, there is still the number of one that exists
+    put(RowShape::kNumber, set(batch_.number[t]));
     const std::uint32_t count = frame.needs.derivatives ? 6 : 2;
-    for (std::uint32_t i = 0; i < count; ++i) put(RowShape::kSecond + i, bitsOf(weights[i]), bitsOf(weights[i]));
+    for (std::uint32_t i = 0; i < count; ++i) put(RowShape::kSecond + i, bitsOf(weights[i]));
   }
   if (kShaded && shape_.coverage != 0) {
     I covered = set(0);
@@ -75,7 +71,7 @@ HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, s
       isEdge |= mask & ~static_cast<std::uint32_t>(sampleMasks_[s][item]);
     }
     edges_ |= static_cast<std::uint64_t>(isEdge != 0) << block;
-    put(shape_.coverage, covered, set(0));
+    put(shape_.coverage, covered);
   }
   return Emitted::IsStored;
 }

@@ -1,6 +1,7 @@
 // A tile's fragments. A row holds one fragment for each of a block's sixteen pixels, a vector (64 bytes) for each
-// value. A triangle whose pixels are still free in the block's last row goes there, else a row is opened: neighbouring
-// small triangles of one surface fill rows together. Rows come in chunks, from an arena that is as large as the budget.
+// value. A triangle goes to the first of the block's last four rows in which its pixels are still free; where there is
+// none, a row is opened: neighbouring small triangles of one surface, and thin ones that cross, fill rows together.
+// Rows come in chunks, from an arena that is as large as the budget.
 #if defined(VITRAIL_STORE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VITRAIL_STORE_INL_H
 #undef VITRAIL_STORE_INL_H
@@ -49,8 +50,9 @@ struct RowShape {
   static constexpr std::uint32_t kThird = 3;
   static constexpr std::uint32_t kDerivatives = 4;
   static constexpr std::uint32_t kFilters = 6; // four vectors
+  static constexpr std::uint32_t kMost = 11;
   std::uint32_t coverage = 0;
-  std::uint32_t vectors = 2;
+  std::uint32_t vectors = 2; // at most kMost
   bool isFlat = false;
   std::int32_t nothing = 0; // flat: the place of the pair that does nothing
 
@@ -69,6 +71,7 @@ HWY_INLINE float* floatsOf(Row row, std::uint32_t vector) { return reinterpret_c
 class Store {
  public:
   static constexpr std::uint32_t kNone = ~0U;
+  static constexpr std::uint64_t kFull = ~std::uint64_t{0}; // so that the first fragment opens a row
   static constexpr std::uint32_t kFirstLimit = 64;
   static constexpr std::uint32_t kNoLimit = ~0U;
 
@@ -81,6 +84,8 @@ class Store {
         static_cast<std::uint32_t>(std::clamp<std::uint64_t>(std::min(budget, kMostBytes) / chunkBytes_, 4, 1U << 24U));
     arena_.reset(allocate(chunks_));
     previous_.resize(chunks_);
+    std::fill_n(blank_, kLanes, kFarKey);
+    if (shape.isFlat) std::fill_n(blank_ + kLanes * RowShape::kNumber, kLanes, shape.nothing);
   }
 
   const RowShape& shape() const { return shape_; }
@@ -94,11 +99,15 @@ class Store {
 
   std::uint32_t rows(std::uint32_t block) const { return heads_[block].rows; }
 
-  // The row for fragments of a block at the pixels of `mask`; isFresh is 1 where nothing is in it yet, else 0. Null:
-  // the arena is full.
-  HWY_INLINE Row rowFor(std::uint32_t block, std::uint32_t mask, std::uint32_t& isFresh) {
+  // The row for fragments of a block at the pixels of `mask`, and the one whose values its other pixels keep: itself,
+  // or where nothing is in it yet one without fragments. Null: the arena is full.
+  HWY_INLINE Row rowFor(std::uint32_t block, std::uint32_t mask, const std::int32_t*& kept) {
     Head& head = heads_[block];
-    isFresh = static_cast<std::uint32_t>((head.filled & mask) != 0);
+    constexpr std::uint64_t kOnes = 0x0001000100010001U;
+    // The top bit of each row in which all pixels of the mask are free, and maybe of rows above the lowest such one.
+    const std::uint64_t taken = head.filled & mask * kOnes;
+    const std::uint64_t free = (taken - kOnes) & ~taken & kOnes << 15U;
+    const auto isFresh = static_cast<std::uint32_t>(free == 0);
     if (HWY_UNLIKELY((isFresh & static_cast<std::uint32_t>(head.left == 0)) != 0)) {
       if (!addChunk(head)) return nullptr;
     } else {
@@ -106,8 +115,12 @@ class Store {
     }
     head.left -= isFresh;
     head.rows += isFresh;
-    head.filled = (head.filled & (isFresh - 1)) | mask;
-    return head.row;
+    constexpr std::uint64_t kTop = std::uint64_t{1} << 63U;
+    const auto place = static_cast<std::uint32_t>(__builtin_ctzll(free | kTop)) & 48U; // of its sixteen bits
+    head.filled = head.filled >> 16U * isFresh | std::uint64_t{mask} << place;
+    const Row row = head.row - (48U - place) * shape_.vectors;          // kLanes numbers a vector, 16 bits a row
+    kept = row + (blank_ - row) * static_cast<std::ptrdiff_t>(isFresh); // without a branch: nobody could tell
+    return row;
   }
 
   // All rows of a block, in the order in which they were opened.
@@ -132,7 +145,7 @@ class Store {
   // All of its rows were.
   void setShaded(std::uint32_t block) {
     heads_[block].shaded = heads_[block].rows;
-    heads_[block].filled = 0xffffU; // nothing is added to a row that was shaded
+    heads_[block].filled = kFull; // nothing is added to a row that was shaded
   }
 
   // Keeps the first `rows` rows of a block, all of them shaded; `limit`: how many make it crowded.
@@ -148,7 +161,7 @@ class Store {
     head.rows = rows;
     head.shaded = rows;
     head.limit = limit;
-    head.filled = 0xffffU;
+    head.filled = kFull;
     head.left = chunks * kChunkRows - rows;
     head.row = rows == 0 ? nullptr : rowAt(head.chunk, (rows - 1) % kChunkRows);
   }
@@ -171,8 +184,8 @@ class Store {
     const std::uint32_t limit = heads_[block].limit;
     reset();
     heads_[block].limit = limit;
-    std::uint32_t isFresh = 0;
-    for (std::uint32_t i = 0; i < rows; ++i) static_cast<void>(rowFor(block, 0xffffU, isFresh));
+    const std::int32_t* kept = nullptr;
+    for (std::uint32_t i = 0; i < rows; ++i) static_cast<void>(rowFor(block, 0xffffU, kept));
   }
 
   std::uint64_t peakBytes() const { return peak_ * chunkBytes_; }
@@ -183,7 +196,7 @@ class Store {
     void operator()(std::int32_t* p) const { ::operator delete (p, std::align_val_t{kVectorBytes}); }
   };
   struct Head {
-    std::uint32_t filled = 0xffffU; // pixels of the last row: all, so that the first fragment opens one
+    std::uint64_t filled = kFull; // pixels of the last four rows, the last one's in the uppermost bits
     std::uint32_t rows = 0;
     std::uint32_t left = 0; // rows of the last chunk that are free
     std::uint32_t chunk = 0;
@@ -210,10 +223,12 @@ class Store {
     head.chunk = chunk;
     head.row = rowAt(head.chunk, 0);
     head.left = kChunkRows;
+    head.filled = kFull; // rows before it are in another chunk
     return true;
   }
 
   RowShape shape_;
+  alignas(64) std::int32_t blank_[RowShape::kMost * kLanes] = {}; // a row without fragments
   std::size_t chunkBytes_ = 0;
   std::uint32_t chunks_ = 0;
   std::uint32_t used_ = 0;
