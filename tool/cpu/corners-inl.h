@@ -74,7 +74,15 @@ HWY_INLINE Places placesOf(const VitrailCpuFragments& fragments, const Corners& 
 // What each fragment's triangle has at a corner, 0 to 2.
 HWY_INLINE V valueAt(const Corners& corners, const CornerValues& values, VI first, std::int32_t corner) {
   const Tag d;
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
+#if HWY_TARGET == HWY_AVX3
+  const __m512i at = (first + setInt(corner)).raw;
+  if (HWY_LIKELY(corners.count <= 2 * kLanes)) {
+    return V{_mm512_permutex2var_ps(load(values.of).raw, at, load(values.of + kLanes).raw)};
+  }
+  const __m512 nearer = _mm512_permutex2var_ps(load(values.of).raw, at, load(values.of + kLanes).raw);
+  const __m512 further = _mm512_permutexvar_ps(at, load(values.of + 2 * kLanes).raw);
+  return V{_mm512_mask_blend_ps(_mm512_test_epi32_mask(at, _mm512_set1_epi32(32)), nearer, further)};
+#elif HWY_TARGET == HWY_AVX2
   // Shuffles of whole vectors: calls have five triangles on average, and their corners fit into one or two.
   const VI at = first + setInt(corner);
   const auto within = hn::IndicesFromVec(d, hn::And(at, setInt(static_cast<std::int32_t>(kLanes - 1))));

@@ -24,6 +24,8 @@ class SortedRows {
   double* keys = nullptr; // 16 a row
   const float* pairs = nullptr;
   const float* filters = nullptr;
+  I listed;             // how many fragments there are, pixel by pixel
+  bool isShaded = true; // all of them; else each row is shaded when one of its fragments is about to be blended
 
   HWY_INLINE std::uint64_t keyOf(std::size_t row, std::size_t lane) const {
     std::uint64_t key = 0;

@@ -134,7 +134,8 @@ HWY_INLINE void shadeAll(const Frame& frame, const ToShade& s, bool derivatives,
 
 // Replaces a row's weights by what is blended. Fragments that are not there after all, or change nothing, leave the
 // row; returns how many lanes did, a bit each.
-HWY_INLINE void shadeRow(const Frame& frame, Row row, std::uint32_t x, std::uint32_t y, VitrailCpuFragments& f) {
+HWY_INLINE std::uint32_t shadeRow(const Frame& frame, Row row, std::uint32_t x, std::uint32_t y,
+                                  VitrailCpuFragments& f) {
   const bool filters = frame.needs.filters;
   const I keys = load(row);
   ToShade s;
@@ -169,6 +170,7 @@ HWY_INLINE void shadeRow(const Frame& frame, Row row, std::uint32_t x, std::uint
   if (gone != 0) store(row, select(maskOf(gone), set(kFarKey), keys));
   storeFours(floatsOf(row, RowShape::kPairs), color[0], color[1], color[2], alpha);
   if (filters) storeFours(floatsOf(row, RowShape::kFilters), filter[0], filter[1], filter[2], zero);
+  return gone;
 }
 
 } // namespace vitrail::raster::HWY_NAMESPACE

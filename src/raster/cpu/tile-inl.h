@@ -30,6 +30,7 @@ inline void TileWorker::draw(const Frame& frame, std::uint32_t tile, TileCounts&
     tile_.pixels[b] = static_cast<std::uint16_t>(row * 0x1111U & all);
     if (tile_.pixels[b] != 0) blocks |= std::uint64_t{1} << b;
   }
+  demand_ = {};
   drawOpaque(frame, tile);
   merge(frame, tile, false);
   if (!numbers_.empty() || (opaque_ != nullptr && opaque_->drawn != 0) || frame.info.sampleColors != nullptr) {

@@ -173,6 +173,12 @@ class TileWorker final : public TileWorkspace {
   void thin(const Frame& frame, std::uint32_t block);
   bool mayHide(const Frame& frame) const;
   void shadeBlock(const Frame& frame, std::uint32_t block);
+  bool shadesOnDemand(const Frame& frame, std::uint32_t block);
+  void shadeRowsFrom(const Frame& frame, std::uint32_t block, std::size_t first);
+  HWY_INLINE std::uint32_t demand(const Frame& frame, std::uint32_t block, const SortedRows& sorted, std::size_t r,
+                                  std::uint32_t lanes);
+  template <bool kFilters>
+  void blendOnDemand(const Frame& frame, std::uint32_t block, const SortedRows& sorted, Blended& blended);
   I saturationOf(const Frame& frame, const SortedRows& sorted) const;
   void resolveBlock(const Frame& frame, std::uint32_t block, TileCounts& counts);
   SortedRows sortBlock(const Frame& frame, std::uint32_t block);
@@ -203,6 +209,11 @@ class TileWorker final : public TileWorkspace {
   std::array<std::array<std::uint16_t, kBatch * kBlocks + 64>, kMaxSamples> sampleMasks_{};
   // Blocks in which what is far away is known to be hidden: from which depth on, and how many fragments were left out.
   std::uint64_t saturated_ = 0;
+  struct Demand { // of the tile
+    std::uint32_t asked = 0;
+    bool pays = false;
+  };
+  Demand demand_;
   std::uint64_t edges_ = 0; // blocks in which a fragment does not cover all samples of its pixel
   alignas(64) std::int32_t until_[kBlocks][kLanes];
   alignas(64) std::int32_t hidden_[kBlocks][kLanes];

@@ -1,0 +1,150 @@
+// Blocks with many rows shade only those of which something shows. The picture must not depend on it.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "scene.h"
+
+namespace vitrail::tests::raster {
+namespace {
+
+constexpr std::uint32_t kSide = 64;
+
+// Panes over the whole picture, each a draw with a shade function that counts.
+struct Pane {
+  std::vector<Position> corners;
+  float alpha = 0.0F;
+  std::uint64_t* shaded = nullptr;
+  bool isHole = false;
+};
+
+void shadePane(void* user, VitrailCpuFragments* fragments) {
+  const Pane& pane = *static_cast<const Pane*>(user);
+  *pane.shaded += static_cast<std::uint64_t>(__builtin_popcount(fragments->mask));
+  for (std::size_t lane = 0; lane < VITRAIL_CPU_LANES; ++lane) {
+    for (std::size_t c = 0; c < 3; ++c) fragments->color[c][lane] = 0.5F;
+    fragments->color[3][lane] = pane.alpha;
+  }
+  if (pane.isHole) fragments->discarded = fragments->mask;
+}
+
+struct Panes {
+  std::vector<Pane> panes;
+  std::uint64_t shaded = 0;
+
+  Panes(std::uint32_t count, float alpha) : panes(count) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const float depth = (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
+      const auto at = [&](double x, double y) { return inPixels(kSide, kSide, x, y, depth); };
+      panes[i] = {{at(0, 0), at(kSide, 0), at(0, kSide), at(kSide, 0), at(kSide, kSide), at(0, kSide)}, alpha, &shaded};
+    }
+  }
+
+  VitrailStats draw(VitrailCpuInstructions instructions, const std::vector<std::size_t>& order, Picture& picture) {
+    shaded = 0;
+    std::vector<VitrailCpuDraw> draws;
+    for (const std::size_t i : order) {
+      VitrailCpuDraw draw = drawOf(panes[i].corners);
+      draw.shade = shadePane;
+      draw.shadeUser = &panes[i];
+      draw.shadeFlags = VITRAIL_CPU_SHADE_DISCARD;
+      draw.brightest = 1.0F;
+      draws.push_back(draw);
+    }
+    Raster raster(instructions);
+    VitrailStats stats{};
+    EXPECT_EQ(raster.render(picture.frame(), draws, &stats), VITRAIL_SUCCESS);
+    return stats;
+  }
+};
+
+std::vector<std::size_t> inOrder(std::size_t count) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  return order;
+}
+
+class HiddenTest : public testing::TestWithParam<VitrailCpuInstructions> {};
+
+TEST_P(HiddenTest, IsNotShadedInWhateverOrderItComes) {
+  constexpr std::uint32_t kPanes = 48;
+  Panes panes(kPanes, 0.9F);
+  std::vector<std::size_t> order = inOrder(kPanes);
+  Picture first(kSide, kSide);
+  panes.draw(GetParam(), order, first);
+  for (int round = 0; round < 3; ++round) {
+    Picture picture(kSide, kSide);
+    const VitrailStats stats = panes.draw(GetParam(), order, picture);
+    EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{kPanes} * kSide * kSide);
+    EXPECT_EQ(stats.layersMax, kPanes);
+    // 0.1^5 is less than 2^-16.
+    EXPECT_EQ(panes.shaded, std::uint64_t{5} * kSide * kSide) << "round " << round;
+    EXPECT_NEAR(picture.at(20, 30)[0], 0.5, 1e-5);
+    EXPECT_TRUE(picture.pixels == first.pixels) << "round " << round;
+    if (round == 0) std::reverse(order.begin(), order.end());
+    if (round == 1) std::shuffle(order.begin(), order.end(), Random(3).engine());
+  }
+}
+
+TEST_P(HiddenTest, FragmentsThatAreNotThereHideNothing) {
+  constexpr std::uint32_t kPanes = 60;
+  Panes panes(kPanes, 0.9F);
+  for (std::size_t i = 0; i < 30; ++i) panes.panes[i].isHole = true;
+  Picture picture(kSide, kSide);
+  const VitrailStats stats = panes.draw(GetParam(), inOrder(kPanes), picture);
+  EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{30} * kSide * kSide);
+  EXPECT_EQ(stats.layersMax, 30U);
+  EXPECT_EQ(panes.shaded, std::uint64_t{35} * kSide * kSide);
+  EXPECT_NEAR(picture.at(1, 1)[0], 0.5, 1e-5);
+}
+
+TEST_P(HiddenTest, NothingThatShowsIsLeftOut) {
+  constexpr std::uint32_t kPanes = 48;
+  Panes panes(kPanes, 0.02F);
+  Picture picture(kSide, kSide, {0.0F, 1.0F, 0.0F, 1.0F});
+  panes.draw(GetParam(), inOrder(kPanes), picture);
+  EXPECT_EQ(panes.shaded, std::uint64_t{kPanes} * kSide * kSide);
+  const double through = std::pow(0.98, kPanes);
+  EXPECT_NEAR(picture.at(5, 5)[0], 0.5 * (1.0 - through), 1e-6);
+  EXPECT_NEAR(picture.at(5, 5)[1], 0.5 * (1.0 - through) + through, 1e-6);
+}
+
+// Surfaces in one plane, holes, filters and all blend modes, deep enough that some blocks wait and others do not.
+TEST_P(HiddenTest, RandomFramesAreThoseOfAnyOrder) {
+  std::uint64_t shown = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Random random(seed);
+    SceneOptions options;
+    options.draws = 70;
+    options.primitives = 16;
+    options.isShaded = seed % 2 == 0;
+    options.hasFilters = seed % 3 == 0;
+    options.hasDiscards = seed % 4 == 0;
+    options.hasOpaque = seed % 5 == 0;
+    Scene scene = randomScene(random, options);
+    for (const auto& each : scene.draws) {
+      // Of opaque surfaces in one plane the last one shows.
+      if (each->desc.surface == VITRAIL_CPU_OPAQUE || random.below(6) != 0) continue;
+      for (std::size_t v = 0; v < each->vertices.size(); v += 4) each->vertices[v + 2] = 0.5F * each->vertices[v + 3];
+    }
+    Raster raster(GetParam());
+    const Drawn expected = draw(raster, scene);
+    shown = std::max<std::uint64_t>(shown, expected.stats.layersMax);
+    std::reverse(scene.draws.begin(), scene.draws.end());
+    EXPECT_TRUE(draw(raster, scene).pixels == expected.pixels) << "reversed, seed " << seed;
+    std::shuffle(scene.draws.begin(), scene.draws.end(), random.engine());
+    EXPECT_TRUE(draw(raster, scene).pixels == expected.pixels) << "shuffled, seed " << seed;
+  }
+  EXPECT_GT(shown, 24U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Instructions, HiddenTest, testing::ValuesIn(instructionsHere()),
+                         [](const testing::TestParamInfo<VitrailCpuInstructions>& each) {
+                           std::string name = nameOf(each.param);
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+} // namespace
+} // namespace vitrail::tests::raster
