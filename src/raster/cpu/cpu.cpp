@@ -21,8 +21,10 @@ struct VitrailCpuContext_T {
   Log log;
   const raster::Stages* stages = nullptr;
   std::unique_ptr<raster::Workers> workers;
-  raster::Frame frame;             // its memory is kept from frame to frame
-  std::uint64_t fragmentBytes = 0; // of the last one
+  // Memory that is kept from frame to frame.
+  raster::Frame frame;
+  std::vector<std::unique_ptr<raster::TileWorkspace>> workspaces; // one a thread
+  std::uint64_t fragmentBytes = 0;                                // of the last one
 };
 
 namespace {
@@ -131,7 +133,13 @@ VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
   });
 
   Progress progress(frame.info, frame.tiles());
-  std::vector<std::unique_ptr<raster::TileWorkspace>> workspaces(workers.count());
+  // Those of the frame before, where they fit; where this one fails, none are kept.
+  std::vector<std::unique_ptr<raster::TileWorkspace>> workspaces = std::move(context.workspaces);
+  context.workspaces.clear();
+  workspaces.resize(workers.count());
+  for (std::unique_ptr<raster::TileWorkspace>& each : workspaces) {
+    if (each != nullptr && !each->begin(frame)) each.reset();
+  }
   std::vector<raster::TileCounts> counts(workers.count());
   forAll(workers, frame.tiles(), [&](std::uint32_t worker, std::uint64_t i) {
     if (progress.isGivenUp()) return;
@@ -141,6 +149,7 @@ VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
   });
   context.fragmentBytes = 0;
   for (const auto& workspace : workspaces) context.fragmentBytes += workspace ? workspace->fragmentBytes() : 0;
+  context.workspaces = std::move(workspaces);
   if (progress.isGivenUp()) return VITRAIL_INCOMPLETE;
   raster::TileCounts all;
   for (const raster::TileCounts& each : counts) all.add(each);

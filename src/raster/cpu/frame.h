@@ -108,6 +108,8 @@ struct FrameNeeds {
   bool filters = false;     // something passes light through coloured: BLEND_MULTIPLY, or a filter
   bool opaque = false;      // there are opaque draws, or a depth of the host's
   bool opaqueDerivatives = false;
+
+  bool operator==(const FrameNeeds&) const = default;
 };
 
 struct Frame {
@@ -149,7 +151,8 @@ struct TileBox {
   std::array<std::uint16_t, kBlocks> pixels{}; // of each block: those within the frame, a bit each
 };
 
-// Memory of one thread that works on tiles; kept from tile to tile of a frame.
+// Memory of one thread that works on tiles; kept from tile to tile and, where the next frame needs the same, from frame
+// to frame: memory that the system has to hand out anew is slower than all that small frames do with it.
 class TileWorkspace {
  public:
   TileWorkspace() = default;
@@ -157,7 +160,9 @@ class TileWorkspace {
   TileWorkspace(const TileWorkspace&) = delete;
   TileWorkspace& operator=(const TileWorkspace&) = delete;
 
-  // The most that fragments have taken.
+  // Gets ready for another frame. False: that one needs another workspace.
+  virtual bool begin(const Frame& frame) = 0;
+  // The most that fragments have taken since then.
   virtual std::uint64_t fragmentBytes() const = 0;
 };
 

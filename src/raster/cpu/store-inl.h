@@ -80,12 +80,17 @@ class Store {
 
   Store(const RowShape& shape, std::uint64_t budget) : shape_(shape) {
     chunkBytes_ = shape.bytes() * kChunkRows;
-    chunks_ =
-        static_cast<std::uint32_t>(std::clamp<std::uint64_t>(std::min(budget, kMostBytes) / chunkBytes_, 4, 1U << 24U));
+    chunks_ = chunksWithin(budget);
     arena_.reset(allocate(chunks_));
     previous_.resize(chunks_);
     std::fill_n(blank_, kLanes, kFarKey);
     if (shape.isFlat) std::fill_n(blank_ + kLanes * RowShape::kNumber, kLanes, shape.nothing);
+  }
+
+  // Forgets how much was used. False: the store is not as large as that budget makes one.
+  bool begin(std::uint64_t budget) {
+    peak_ = 0;
+    return chunks_ == chunksWithin(budget);
   }
 
   const RowShape& shape() const { return shape_; }
@@ -204,6 +209,11 @@ class Store {
     std::uint32_t limit = kFirstLimit;
     Row row = nullptr; // the last one
   };
+
+  std::uint32_t chunksWithin(std::uint64_t budget) const {
+    const std::uint64_t chunks = std::min(budget, kMostBytes) / chunkBytes_;
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(chunks, 4, 1U << 24U));
+  }
 
   std::int32_t* allocate(std::size_t chunks) const {
     return static_cast<std::int32_t*>(::operator new (chunks* chunkBytes_, std::align_val_t{kVectorBytes}));

@@ -91,11 +91,19 @@ struct OpaqueTile {
 class TileWorker final : public TileWorkspace {
  public:
   explicit TileWorker(const Frame& frame)
-      : shape_(frame.needs, frame.info.samples > 1, frame.draws.size()), store_(shape_, frame.budget) {
+      : needs_(frame.needs),
+        samples_(frame.info.samples),
+        draws_(frame.draws.size()),
+        shape_(frame.needs, frame.info.samples > 1, frame.draws.size()),
+        store_(shape_, frame.budget) {
     if (frame.needs.opaque) opaque_ = std::make_unique<OpaqueTile>(frame.info.samples);
   }
 
   void draw(const Frame& frame, std::uint32_t tile, TileCounts& counts);
+  bool begin(const Frame& frame) override {
+    return needs_ == frame.needs && samples_ == frame.info.samples && draws_ == frame.draws.size() &&
+           store_.begin(frame.budget);
+  }
   std::uint64_t fragmentBytes() const override { return store_.peakBytes(); }
 
  private:
@@ -195,6 +203,9 @@ class TileWorker final : public TileWorkspace {
   void listBlock(const Frame& frame, std::uint32_t block, const SortedRows& sorted);
   void layersOf(const Frame& frame, const SortedRows& sorted, std::uint32_t lane);
 
+  FrameNeeds needs_; // and what else the memory below is for
+  std::uint32_t samples_;
+  std::size_t draws_;
   RowShape shape_;
   Store store_;
   Batch batch_{};
