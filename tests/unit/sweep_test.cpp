@@ -10,9 +10,9 @@ namespace {
 
 using namespace vitrail::tool;
 
-SweepStart startOn(bool isCpu) {
+SweepStart startOn(bool isSlow) {
   SweepStart start;
-  start.isCpu = isCpu;
+  start.isSlow = isSlow;
   start.width = 320;
   start.height = 180;
   start.samples = 4;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint32_t kGpuRounds = 31;
 constexpr std::uint32_t kGpuWarmups = 3;
-constexpr std::uint32_t kCpuRounds = 3; // a frame takes seconds there
-constexpr std::uint32_t kCpuWarmups = 1;
+constexpr std::uint32_t kSlowRounds = 3;
+constexpr std::uint32_t kSlowWarmups = 1;
 
 } // namespace
 
@@ -53,11 +53,11 @@ Machine machineOf(const Device& device) {
 }
 
 std::uint32_t roundsOn(const Machine& machine, std::optional<std::uint32_t> asked) {
-  return asked.value_or(machine.isCpu ? kCpuRounds : kGpuRounds);
+  return asked.value_or(machine.isSlow() ? kSlowRounds : kGpuRounds);
 }
 
 std::uint32_t warmupsOn(const Machine& machine, std::optional<std::uint32_t> asked) {
-  return asked.value_or(machine.isCpu ? kCpuWarmups : kGpuWarmups);
+  return asked.value_or(machine.isSlow() ? kSlowWarmups : kGpuWarmups);
 }
 
 } // namespace vitrail::tool

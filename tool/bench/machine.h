@@ -16,6 +16,9 @@ struct Machine {
   bool isCpu = false;      // only ratios mean anything
   std::string processor{}; // what draws the method `cpu`
   bool hasDevice = true;   // false: the processor is all there is, and nothing has a ratio
+
+  // A driver draws on the processor, where a frame takes seconds. Our own rasteriser does not.
+  bool isSlow() const { return isCpu && hasDevice; }
 };
 
 Machine machineOf(const Device& device);

@@ -15,26 +15,26 @@ namespace {
 constexpr std::array<std::string_view, kSweepKinds.size()> kNames{"layers", "triangles", "resolution", "samples",
                                                                   "cap"};
 
-constexpr std::uint32_t kMostPanesOnGpu = 64;
-constexpr std::uint32_t kMostPanesOnCpu = 32;
-constexpr std::uint64_t kMostTrianglesOnGpu = 10'000'000;
-constexpr std::uint64_t kMostTrianglesOnCpu = 600'000;
+constexpr std::uint32_t kMostPanes = 64;
+constexpr std::uint32_t kMostPanesIfSlow = 32;
+constexpr std::uint64_t kMostTriangles = 10'000'000;
+constexpr std::uint64_t kMostTrianglesIfSlow = 600'000;
 constexpr std::uint32_t kMostSamples = 8;
 
 using Size = std::pair<std::uint32_t, std::uint32_t>;
-constexpr std::array<Size, 5> kSizesOnGpu{{{320, 180}, {640, 360}, {1280, 720}, {1920, 1080}, {3840, 2160}}};
-constexpr std::array<Size, 4> kSizesOnCpu{{{160, 90}, {320, 180}, {640, 360}, {960, 540}}};
+constexpr std::array<Size, 5> kSizes{{{320, 180}, {640, 360}, {1280, 720}, {1920, 1080}, {3840, 2160}}};
+constexpr std::array<Size, 4> kSizesIfSlow{{{160, 90}, {320, 180}, {640, 360}, {960, 540}}};
 
-void addSizes(std::vector<SweepStep>& steps, const SweepStep& base, bool isCpu) {
+void addSizes(std::vector<SweepStep>& steps, const SweepStep& base, bool isSlow) {
   const auto add = [&](const Size& size) {
     SweepStep step = base;
     std::tie(step.width, step.height) = size;
     steps.push_back(step);
   };
-  if (isCpu) {
-    std::ranges::for_each(kSizesOnCpu, add);
+  if (isSlow) {
+    std::ranges::for_each(kSizesIfSlow, add);
   } else {
-    std::ranges::for_each(kSizesOnGpu, add);
+    std::ranges::for_each(kSizes, add);
   }
 }
 
@@ -54,13 +54,13 @@ std::vector<SweepStep> planSweep(SweepKind kind, const SweepStart& start) {
   SweepStep step = base;
   switch (kind) {
     case SweepKind::Layers:
-      for (std::uint32_t panes = 1; panes <= (start.isCpu ? kMostPanesOnCpu : kMostPanesOnGpu); panes *= 2) {
+      for (std::uint32_t panes = 1; panes <= (start.isSlow ? kMostPanesIfSlow : kMostPanes); panes *= 2) {
         step.panes = panes;
         steps.push_back(step);
       }
       break;
     case SweepKind::Triangles: {
-      const std::uint64_t most = start.isCpu ? kMostTrianglesOnCpu : kMostTrianglesOnGpu;
+      const std::uint64_t most = start.isSlow ? kMostTrianglesIfSlow : kMostTriangles;
       steps.push_back(step);
       for (std::uint64_t count = start.triangles * 4; count > 0 && count <= most; count *= 4) {
         ++step.splits;
@@ -69,7 +69,7 @@ std::vector<SweepStep> planSweep(SweepKind kind, const SweepStart& start) {
       break;
     }
     case SweepKind::Resolution:
-      addSizes(steps, base, start.isCpu);
+      addSizes(steps, base, start.isSlow);
       break;
     case SweepKind::Samples:
       for (std::uint32_t samples = 1; samples <= kMostSamples; samples *= 2) {

@@ -42,7 +42,7 @@ struct SweepStep {
 
 // What a sweep starts from.
 struct SweepStart {
-  bool isCpu = false; // few and small steps: a frame takes long there
+  bool isSlow = false; // few and small steps: a frame takes long there
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t samples = 1;

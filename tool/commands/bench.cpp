@@ -27,7 +27,7 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr std::uint32_t kSweepCount = 8; // spheres whose triangles are split, and of the sweeps on a CPU
+constexpr std::uint32_t kSweepCount = 8; // spheres whose triangles are split, and of all sweeps on a CPU's driver
 
 // A scene that is measured, and what it is called.
 struct Subject {
@@ -106,19 +106,19 @@ void measureScenes(Device& device, const BenchArguments& arguments, const std::v
 }
 
 // The scene of a sweep over something other than layers. Where no count was chosen the sweep has its own.
-Subject subjectOf(const BenchArguments& arguments, SweepKind kind, const Subject& chosen, bool isCpu) {
+Subject subjectOf(const BenchArguments& arguments, SweepKind kind, const Subject& chosen, bool isSlow) {
   const bool isDefault = arguments.model.empty() && arguments.counts.empty() && chosen.name == "spheres";
-  return isDefault && (isCpu || kind == SweepKind::Triangles) ? openNamed(chosen.name, kSweepCount) : chosen;
+  return isDefault && (isSlow || kind == SweepKind::Triangles) ? openNamed(chosen.name, kSweepCount) : chosen;
 }
 
 void measureSweep(Device& device, const BenchArguments& arguments, SweepKind kind, const Subject& chosen,
                   const Progress& progress, BenchReport& report) {
   const Subject base =
-      kind == SweepKind::Layers ? Subject{"planes", {}, {}} : subjectOf(arguments, kind, chosen, report.isCpu);
+      kind == SweepKind::Layers ? Subject{"planes", {}, {}} : subjectOf(arguments, kind, chosen, report.isSlow());
   SweepStart start;
-  start.isCpu = report.isCpu;
-  start.width = arguments.width != 0 ? arguments.width : report.isCpu ? 320 : 1280;
-  start.height = arguments.width != 0 ? arguments.height : report.isCpu ? 180 : 720;
+  start.isSlow = report.isSlow();
+  start.width = arguments.width != 0 ? arguments.width : start.isSlow ? 320 : 1280;
+  start.height = arguments.width != 0 ? arguments.height : start.isSlow ? 180 : 720;
   start.samples = arguments.matrix.samples.front();
   start.triangles = triangleCount(base.scene);
   if (!arguments.caps.empty()) start.caps = arguments.caps;

@@ -36,13 +36,13 @@ What to draw:
   --scene NAME,...      built-in scenes (default spheres,planes,hairball; vitrail scenes lists all)
   --count N,...         how many spheres, panes, ...: one number for all scenes, or one for each
 @load@
-  --size WxH            pixels (default 1280x720; of sweeps on a CPU 320x180)
+  --size WxH            pixels (default 1280x720; of sweeps on a CPU's driver 320x180)
   --opacity A           makes every material translucent, 0.004 to 1
 
 What grows, step by step (one scene, default spheres):
-  --sweep NAME,...      layers       1, 2, 4, ... 64 panes (on a CPU 32), of the scene planes
+  --sweep NAME,...      layers       1, 2, 4, ... 64 panes (on a CPU's driver 32), of planes
                         triangles    every triangle is split into 4, again and again
-                        resolution   320x180 to 3840x2160 (on a CPU 160x90 to 960x540)
+                        resolution   320x180 to 3840x2160 (on a CPU's driver 160x90 to 960x540)
                         samples      1, 2, 4 and 8 a pixel
                         cap          8, 16 and 32 layers that are blended exactly, or --layers
 
@@ -68,8 +68,8 @@ What to compare with method unsorted, which is always measured:
 
 How often:
   --repeat N            rounds, each of which draws one frame of every setting, and of every step of
-                        a sweep (default 31, on a CPU 3)
-  --warmup N            frames of every setting before the first round (default 3, on a CPU 1)
+                        a sweep (default 31, on a CPU's driver 3)
+  --warmup N            frames of every setting before the first round (default 3, on a CPU's driver 1)
 
 Where to:
   -o, --output DIR      a folder, made where there is none, for index.html, one page that needs
