@@ -86,25 +86,72 @@ HWY_INLINE void orderRows(double* column, std::size_t i, std::size_t j) {
   hn::Store(high, kD, column + j * kLanes);
 }
 
-// Sorts up to kRun rows that first grow and then shrink, or the other way round.
-HWY_INLINE void cleanRun(double* column, std::size_t rows) {
-  Key keys[kRun];
-  for (std::size_t r = 0; r < kRun; ++r) keys[r] = hn::Load(kD, column + (r < rows ? r : rows - 1) * kLanes);
-  if (HWY_UNLIKELY(rows < kRun)) {
-    const Key beyond = hn::Set(kD, std::numeric_limits<double>::max());
-    for (std::size_t r = rows; r < kRun; ++r) keys[r] = beyond;
-  }
-  for (std::size_t s = kRun / 2; s > 0; s /= 2) {
-    for (std::size_t r = 0; r < kRun; ++r) {
-      if ((r & s) == 0) order(keys[r], keys[r + s]);
+// The comparisons that sort kRun values which first grow and then shrink, or the other way round.
+struct CleanSteps {
+  static constexpr std::size_t kCount = 80; // kRun / 2 for each power of two below it
+  std::array<std::uint8_t, kCount> low{};
+  std::array<std::uint8_t, kCount> high{};
+  constexpr CleanSteps() {
+    std::size_t count = 0;
+    for (std::size_t s = kRun / 2; s > 0; s /= 2) {
+      for (std::size_t r = 0; r < kRun; ++r) {
+        if ((r & s) != 0) continue;
+        low[count] = static_cast<std::uint8_t>(r);
+        high[count++] = static_cast<std::uint8_t>(r + s);
+      }
     }
   }
-  for (std::size_t r = 0; r < rows && r < kRun; ++r) hn::Store(keys[r], kD, column + r * kLanes);
+};
+inline constexpr CleanSteps kCleanSteps{};
+
+// One by one: in a loop the values would not stay in registers.
+template <std::size_t... kSteps>
+HWY_INLINE void cleanKeys(Key* keys, std::index_sequence<kSteps...> /*steps*/) {
+  (order(keys[kCleanSteps.low[kSteps]], keys[kCleanSteps.high[kSteps]]), ...);
 }
 
-// The same of any number of rows up to `width`, a power of two.
+// Sorts up to kRun rows that first grow and then shrink, or the other way round.
+HWY_INLINE void cleanRun(double* column, std::size_t rows) {
+  using Steps = std::make_index_sequence<CleanSteps::kCount>;
+  Key keys[kRun];
+  if (HWY_LIKELY(rows == kRun)) {
+    for (std::size_t r = 0; r < kRun; ++r) keys[r] = hn::Load(kD, column + r * kLanes);
+    cleanKeys(keys, Steps());
+    for (std::size_t r = 0; r < kRun; ++r) hn::Store(keys[r], kD, column + r * kLanes);
+    return;
+  }
+  const Key beyond = hn::Set(kD, std::numeric_limits<double>::max());
+  for (std::size_t r = 0; r < kRun; ++r) keys[r] = r < rows ? hn::Load(kD, column + r * kLanes) : beyond;
+  cleanKeys(keys, Steps());
+  for (std::size_t r = 0; r < rows; ++r) hn::Store(keys[r], kD, column + r * kLanes);
+}
+
+// Four rows that two steps of a merge compare: `a` with `c` and `b` with `d`, then `a` with `b` and `c` with `d`, of
+// which the lower row gets the smaller key. Both steps at once, since memory is what long lists wait for.
+template <bool kFallsBehind> // d is lower than c
+HWY_INLINE void orderFour(double* column, std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
+  Key keys[4] = {hn::Load(kD, column + a * kLanes), hn::Load(kD, column + b * kLanes),
+                 hn::Load(kD, column + c * kLanes), hn::Load(kD, column + d * kLanes)};
+  order(keys[0], keys[2]);
+  order(keys[1], keys[3]);
+  order(keys[0], keys[1]);
+  order(keys[kFallsBehind ? 3 : 2], keys[kFallsBehind ? 2 : 3]);
+  hn::Store(keys[0], kD, column + a * kLanes);
+  hn::Store(keys[1], kD, column + b * kLanes);
+  hn::Store(keys[2], kD, column + c * kLanes);
+  hn::Store(keys[3], kD, column + d * kLanes);
+}
+
+// The same as cleanRun() of any number of rows up to `width`, a power of two.
 HWY_INLINE void clean(double* column, std::size_t rows, std::size_t width) {
-  for (std::size_t s = width / 2; s >= kRun; s /= 2) {
+  std::size_t s = width / 2;
+  for (; s >= 2 * kRun && rows == width; s /= 4) {
+    const std::size_t half = s / 2;
+    for (std::size_t first = 0; first < rows; first += 2 * s) {
+      for (std::size_t r = first; r < first + half; ++r) orderFour<false>(column, r, r + half, r + s, r + s + half);
+    }
+  }
+  for (; s >= kRun; s /= 2) {
     for (std::size_t first = 0; first + s < rows; first += 2 * s) {
       const std::size_t last = rows - s < first + s ? rows - s : first + s;
       for (std::size_t r = first; r < last; ++r) orderRows(column, r, r + s);
@@ -113,16 +160,31 @@ HWY_INLINE void clean(double* column, std::size_t rows, std::size_t width) {
   for (std::size_t r = 0; r < rows; r += kRun) cleanRun(column + r * kLanes, rows - r < kRun ? rows - r : kRun);
 }
 
+// Merges two sorted runs, of `width` rows and of `behind`, at most as many.
+HWY_INLINE void mergeTwo(double* low, std::size_t width, std::size_t behind) {
+  double* const high = low + width * kLanes;
+  if (behind == width && width >= 2 * kRun) {
+    const std::size_t half = width / 2;
+    for (std::size_t r = 0; r < half; ++r) {
+      orderFour<true>(low, r, r + half, 2 * width - 1 - r, 2 * width - 1 - r - half);
+    }
+    clean(low, half, half);
+    clean(low + half * kLanes, half, half);
+    clean(high, half, half);
+    clean(high + half * kLanes, half, half);
+    return;
+  }
+  for (std::size_t r = 0; r < behind; ++r) orderRows(low, width - 1 - r, width + r);
+  clean(low, width, width);
+  clean(high, behind, width);
+}
+
 HWY_NOINLINE inline void mergeRuns(double* keys, std::size_t rows) {
   for (std::size_t v = 0; v < kKeyVectors; ++v) {
     double* const column = keys + v * kKeyLanes;
     for (std::size_t width = kRun; width < rows; width *= 2) {
       for (std::size_t first = 0; first + width < rows; first += 2 * width) {
-        double* const low = column + first * kLanes;
-        const std::size_t behind = rows - first - width < width ? rows - first - width : width;
-        for (std::size_t r = 0; r < behind; ++r) orderRows(low, width - 1 - r, width + r);
-        clean(low, width, width);
-        clean(low + width * kLanes, behind, width);
+        mergeTwo(column + first * kLanes, width, rows - first - width < width ? rows - first - width : width);
       }
     }
   }
