@@ -248,7 +248,7 @@ void expectSheets(const RenderResult& result, std::uint32_t count, float alpha) 
   EXPECT_TRUE(result.report.complete);
 }
 
-// A list in registers, a tile that is sorted in shared memory, one whose chunks are merged, many dispatches.
+// Keys in registers, once and again; a tile that takes too many turns, one whose chunks are merged, many dispatches.
 TEST_F(TilesTest, PixelsOfAnyDepthAreRight) {
   struct Depth {
     std::uint32_t count;
@@ -296,7 +296,7 @@ TEST_F(TilesTest, ATileWithAMillionTrianglesIsRight) {
   }
 }
 
-// Long triangles across each other: a pixel's list is too short for those that may still come, and all are sorted.
+// Long triangles across each other, many turns deep.
 Scene crossing(std::uint32_t count) {
   Scene scene;
   Mesh mesh;
@@ -331,8 +331,6 @@ TEST_F(TilesTest, ManySurfacesThatCrossInOneTileAreRight) {
   for (const DrawOrder order : {DrawOrder::Reversed, DrawOrder::Shuffled}) {
     EXPECT_TRUE(draw("tiles", scene, picture, order).picture.rgba == drawn.picture.rgba);
   }
-  EXPECT_TRUE(std::ranges::any_of(drawn.report.passesMs, [](const auto& pass) { return pass.first == "sort"; }))
-      << "no list was too short";
 }
 
 // ---- Order
@@ -364,13 +362,17 @@ TEST_F(TilesTest, SurfacesInOnePlaneHaveAnOrderOfTheirOwn) {
     picture.height = 32;
     picture.view = straightView();
     const Scene scene = onePlane(count);
-    const Picture forward = draw("tiles", scene, picture).picture;
+    const RenderResult forward = draw("tiles", scene, picture);
     for (const DrawOrder order : {DrawOrder::Reversed, DrawOrder::Shuffled}) {
-      EXPECT_TRUE(draw("tiles", scene, picture, order).picture.rgba == forward.rgba);
+      EXPECT_TRUE(draw("tiles", scene, picture, order).picture.rgba == forward.picture.rgba);
     }
     // More than so many have another order than in fragment lists.
     if (count < 16) {
-      EXPECT_LE(largestDifference(forward, draw("linked-list", scene, picture).picture), 1);
+      EXPECT_LE(largestDifference(forward.picture, draw("linked-list", scene, picture).picture), 1);
+    }
+    // More than registers hold are all collected.
+    if (count >= 40) {
+      EXPECT_TRUE(std::ranges::any_of(forward.report.passesMs, [](const auto& pass) { return pass.first == "sort"; }));
     }
   }
 }

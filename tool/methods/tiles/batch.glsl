@@ -4,10 +4,12 @@
 #ifndef VITRAIL_TOOL_TILES_BATCH_GLSL
 #define VITRAIL_TOOL_TILES_BATCH_GLSL
 
+#include "samples.glsl"
 #include "tiles_frame.glsl"
 
 shared uint sharedMasks[2][TILES_PIXELS]; // the pixels that each covers
 shared vec4 sharedPlanes[TILES_PIXELS];
+shared float sharedSlacks[TILES_PIXELS]; // how much nearer than on its plane each may be, anywhere in the tile
 
 uint thread; // set by main()
 
@@ -16,10 +18,16 @@ ivec2 firstPixel(uint tile) {
 }
 bool isInside(ivec2 pixel) { return pixel.x < int(tiles.width) && pixel.y < int(tiles.bottom); }
 
-// Each thread loads one, or none. A barrier has to come before and after.
-void loadBatch(bool any_, uint record) {
+// Each thread loads one, or none, of the tile with that first pixel. A barrier has to come before and after.
+void loadBatch(bool any_, uint record, ivec2 corner) {
   uvec2 mask = any_ ? records[2u * record].xy : uvec2(0u);
-  if (any_) sharedPlanes[thread] = uintBitsToFloat(records[2u * record + 1u]);
+  if (any_) {
+    vec4 plane = uintBitsToFloat(records[2u * record + 1u]);
+    float slack = depthSlack(plane, corner + 7);
+    if (kSamples > 1u) slack += 0.5 * (abs(plane.y) + abs(plane.z));
+    sharedPlanes[thread] = plane;
+    sharedSlacks[thread] = slack;
+  }
   sharedMasks[0][thread] = mask.x;
   sharedMasks[1][thread] = mask.y;
 }
@@ -38,6 +46,9 @@ uint transposed(uint word) {
   }
   return word;
 }
+
+// Whether a fragment of a batch is behind the opaque surfaces at all samples, of which the farthest is given.
+bool isHidden(uint inBatch, float depth, float farthest) { return depth + sharedSlacks[inBatch] < farthest; }
 
 // Those that cover the thread's pixel, a bit each. All threads together.
 uvec2 covering() {

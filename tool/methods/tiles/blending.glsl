@@ -51,8 +51,7 @@ struct SurfaceFragments {
 // As nodes hold them: not negative, no infinite colours, NaN is 0.
 vec4 storedColor(vec4 color) { return vec4(min(max(color.rgb, 0.0), LARGEST_HALF), min(max(color.a, 0.0), 1.0)); }
 
-SurfaceFragments fragmentsOf(uint record, ivec2 pixel) {
-  Surface surface = shadeFragment(records[2u * record].zw, pixel, vec2(tiles.width, tiles.height));
+SurfaceFragments fragmentsOf(Surface surface) {
   SurfaceFragments f;
   f.count = surfaceCut ? 0u : 1u;
   f.colors[0] = storedColor(vec4(surface.color, surface.alpha));
@@ -147,28 +146,26 @@ bool lessKey(uvec4 a, uvec4 b) {
   return a.z != b.z ? a.z < b.z : a.w < b.w;
 }
 
-// The record of the i-th surface of those that have one depth, which the including shader has at hand.
+// The i-th surface of those that have one depth, which the including shader has at hand: its record, and it, shaded.
 uint alikeRecord(uint i);
+Surface alikeSurface(uint i, ivec2 pixel);
 
-// Blends them. Up to TILES_TIES are in the order of what they are: each turn finds the next fragment, of which a
-// surface has two at most. More are in the order in which they are at hand, that of sourceBefore().
+// Blends them: one, or up to TILES_TIES in the order of what they are. Then each turn through all finds the next
+// fragment, of which a surface has two at most. What shades them stands here once, as it is what takes long.
 void blendAlike(inout PixelLight light, ivec2 pixel, uint thread, uint alike) {
-  bool byColor = alike > 1u && alike <= TILES_TIES;
-  uint turns = byColor ? 2u * alike : alike;
   uvec4 last = uvec4(0u);
-  for (uint turn = 0u; turn < turns; ++turn) {
-    uvec4 best = uvec4(0xffffffffu);
-    vec4 bestColor = vec4(0.0);
-    uint bestVisible = 0u;
-    for (uint i = 0u; i < (byColor ? alike : 1u); ++i) {
-      uint record = alikeRecord(byColor ? i : turn);
-      uint visible = visibleSamples(light, record, pixel, thread);
-      if (visible == 0u) continue;
-      SurfaceFragments f = fragmentsOf(record, pixel);
+  uvec4 best = uvec4(0xffffffffu);
+  vec4 bestColor = vec4(0.0);
+  uint bestVisible = 0u;
+  uint i = 0u;
+  for (uint step = 0u; step < (2u * TILES_TIES + 1u) * TILES_TIES; ++step) {
+    uint visible = kSamples > 1u ? visibleSamples(light, alikeRecord(i), pixel, thread) : 1u;
+    if (visible != 0u) {
+      SurfaceFragments f = fragmentsOf(alikeSurface(i, pixel));
       // No loop: arrays stay in registers where their indices are constants.
 #define TAKE_FRAGMENT(k) \
-  if (f.count > k && !byColor) put(light, f.colors[k], f.blends[k], visible); \
-  if (f.count > k && byColor) { \
+  if (f.count > k && alike == 1u) put(light, f.colors[k], f.blends[k], visible); \
+  if (f.count > k && alike > 1u) { \
     uvec4 order = tieKey(f.colors[k], f.blends[k], 2u * i + k + 1u); \
     if (lessKey(last, order) && lessKey(order, best)) { \
       best = order; \
@@ -181,10 +178,13 @@ void blendAlike(inout PixelLight light, ivec2 pixel, uint thread, uint alike) {
         TAKE_FRAGMENT(1u)
       }
     }
-    if (!byColor) continue;
-    if (best.w == 0xffffffffu) break;
+    if (alike == 1u) return;
+    if (++i < alike) continue;
+    if (best.w == 0xffffffffu) return;
     put(light, bestColor, best.x, bestVisible);
     last = best;
+    best = uvec4(0xffffffffu);
+    i = 0u;
   }
 }
 

@@ -111,9 +111,8 @@ void setDirections(uint draw, InstancePlace place, Corners corners, vec3 weights
   if (has(FEATURE_VOLUME)) inTangent.w = abs(inTangent.w) * size * pow(abs(volume), 1.0 / 3.0) * sign(inTangent.w);
 }
 
-// `source`: the primitive, with the side in its highest bit, and the instance. `size`: of the picture.
-Surface shadeFragment(uvec2 source, ivec2 pixel, vec2 size) {
-  uint draw = drawOfInstance[2u * source.y];
+// `source`: the primitive, with the side in its highest bit, and the instance, of that draw. `size`: of the picture.
+Surface shadeFragment(uvec2 source, uint draw, ivec2 pixel, vec2 size) {
   surfaceFeatures = draws[draw].features;
   surfaceMaterial = draws[draw].materialNumber;
   surfaceDraw = draw;

@@ -18,6 +18,8 @@ layout(set = 2, binding = 8, std430) readonly buffer MaterialsBlock { TilesMater
 layout(set = 2, binding = 9, std430) readonly buffer DrawBlock { TilesDraw draws[]; };
 layout(set = 2, binding = 10, std430) readonly buffer InstanceDrawBlock { uint drawOfInstance[]; }; // and its source
 
+layout(set = 2, binding = 11, std430) readonly buffer GroupDrawBlock { uint drawOfGroup[]; }; // that sets up triangles
+
 struct InstancePlace {
   vec4 row0;
   vec4 row1;

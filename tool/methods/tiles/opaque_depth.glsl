@@ -23,11 +23,5 @@ float farthestDepth(ivec2 pixel) {
   return farthest;
 }
 
-// Whether a fragment of that depth is behind the opaque surfaces at all samples, of which the farthest is given.
-bool isHidden(vec4 plane, float depth, ivec2 pixel, float farthest) {
-  float nearest = depth + depthSlack(plane, pixel);
-  if (kSamples > 1u) nearest += 0.5 * (abs(plane.y) + abs(plane.z));
-  return nearest < farthest;
-}
 
 #endif

@@ -6,6 +6,10 @@ embed_tool_shader(tiles_deep_fill_msaa.comp tiles_deep_collect.comp TILES_FILL T
 # Where only constants choose a texture: TILES_CONSTANT_TEXTURES of tiles_shared.h.
 embed_tool_shader(tiles_blend_constant.comp tiles_blend.comp SURFACE_CONSTANT_TEXTURES=32)
 embed_tool_shader(tiles_deep_blend_constant.comp tiles_deep_blend.comp SURFACE_CONSTANT_TEXTURES=32)
+# That keep fewer fragments in registers, or more.
+foreach(keep 8 32)
+  embed_tool_shader(tiles_blend_${keep}.comp tiles_blend.comp TILES_KEEP=${keep})
+endforeach()
 foreach(name tiles_blend tiles_deep_blend)
   embed_tool_shader(${name}_msaa.comp ${name}.comp TILES_MSAA)
   embed_tool_shader(${name}_msaa_constant.comp ${name}.comp TILES_MSAA SURFACE_CONSTANT_TEXTURES=32)

@@ -3,10 +3,9 @@
 // "High-performance software rasterization on GPUs" (HPG 2011), coverage by Pineda, "A parallel algorithm for polygon
 // rasterization" (SIGGRAPH 1988). docs/notes/tiles.md has the design.
 //
-// Each triangle is set up and makes a record in every tile in which it covers a pixel; a tile's records are sorted by
-// their nearest depths and walked in that order, while each pixel keeps what it has met in a short sorted list and
-// shades the nearest once nothing can come before it. Tiles with very many records, and those whose surfaces cross each
-// other more than the list holds, collect their fragments and sort them all.
+// Each triangle is set up and makes a record in every tile in which it covers a pixel. A pixel keeps the nearest 8 to 32
+// of its fragments in registers, sorted, and shades them from the front; while some are left and still show, it takes the
+// next. Tiles with very many records collect their fragments and sort them all.
 //
 // Cost: nothing is stored per fragment but in such deep tiles, and no fragment that is hidden is shaded. Memory: 52
 // bytes for a triangle in a tile, 12 bytes a tile; 16 bytes a fragment in deep tiles. A picture that needs more than
@@ -36,6 +35,8 @@
 #include "../methods.h"
 #include "most_light.h"
 #include "shaders/tiles_blend.comp.h"
+#include "shaders/tiles_blend_32.comp.h"
+#include "shaders/tiles_blend_8.comp.h"
 #include "shaders/tiles_blend_constant.comp.h"
 #include "shaders/tiles_blend_msaa.comp.h"
 #include "shaders/tiles_blend_msaa_constant.comp.h"
@@ -66,15 +67,17 @@ namespace {
 constexpr std::uint32_t kSide = 8; // of a tile
 constexpr Access kIndirectRead{VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT};
 
-// Records of a tile that are taken in slabs, each of which goes through all. A CPU driver ends loops that it takes for
-// endless.
+// Records of a tile that is not deep from the start, and how often it goes through 64 of them before it is. A CPU driver
+// ends loops that it takes for endless.
 constexpr std::uint32_t kMostWalked = 16384;
 constexpr std::uint32_t kMostWalkedOnCpu = 2500;
+constexpr std::uint32_t kMostVisits = 8192;
+constexpr std::uint32_t kMostVisitsOnCpu = 1024;
 
 std::uint32_t tilesOf(std::uint32_t pixels) { return (pixels + kSide - 1) / kSide; }
 
 void checkDevice(const Gpu& gpu) {
-  constexpr std::uint32_t kBuffers = 28; // that one shader reaches
+  constexpr std::uint32_t kBuffers = 29; // that one shader reaches
   constexpr std::uint32_t kSharedBytes = 28 << 10;
   const VkPhysicalDeviceLimits& limits = gpu.properties().limits;
   const char* lacks = nullptr;
@@ -126,7 +129,7 @@ class Tiles final : public Method {
 
   std::uint32_t shuffles() const { return gpu_.features().wideSubgroups ? VK_TRUE : VK_FALSE; } // batch.glsl
   void makePipelines();
-  std::span<const std::uint32_t> blendCode() const;
+  std::span<const std::uint32_t> blendCode(std::uint32_t tileClass) const;
   std::span<const std::uint32_t> deepBlendCode() const;
   void planDeep();
   Unique<VkPipeline> makePipeline(std::span<const std::uint32_t> code, const char* name,
@@ -155,7 +158,6 @@ class Tiles final : public Method {
   std::uint32_t samples_;
   TilesGeometry geometry_;
   float mostLight_;
-  std::uint32_t mostWalked_;
   SingleSet set_;
   TilesMemory memory_;
   GpuBuffer frameBuffer_; // shaders::TilesFrame
@@ -167,8 +169,7 @@ class Tiles final : public Method {
   Unique<VkPipeline> plan_;
   Unique<VkPipeline> scatter_;
   Unique<VkPipeline> mean_; // of several samples
-  Unique<VkPipeline> shallow_;
-  Unique<VkPipeline> middling_;
+  std::array<Unique<VkPipeline>, shaders::TILES_CLASSES> blends_; // of each class
   std::optional<DeepPipelines> deep_;
   VkExtent2D extent_{};
   std::uint64_t budget_ = 0;
@@ -187,7 +188,6 @@ Tiles::Tiles(const MethodHost& host, std::uint32_t samples)
       samples_(samples),
       geometry_(host),
       mostLight_(mostLight(host.scene, host.surfaces.scene())),
-      mostWalked_(gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? kMostWalkedOnCpu : kMostWalked),
       set_(makeSet(gpu_)),
       memory_(gpu_, set_, samples),
       frameBuffer_(gpu_, sizeof(shaders::TilesFrame),
@@ -216,12 +216,14 @@ PipelineConstants Tiles::shadingConstants() const {
           {7, shuffles()}};
 }
 
-std::span<const std::uint32_t> Tiles::blendCode() const {
+std::span<const std::uint32_t> Tiles::blendCode(std::uint32_t tileClass) const {
   if (geometry_.constantTextures()) {
     if (samples_ > 1) return shaders::tiles_blend_msaa_constant_comp;
     return shaders::tiles_blend_constant_comp;
   }
   if (samples_ > 1) return shaders::tiles_blend_msaa_comp;
+  if (tileClass == 0) return shaders::tiles_blend_8_comp;
+  if (tileClass == 3) return shaders::tiles_blend_32_comp;
   return shaders::tiles_blend_comp;
 }
 
@@ -242,20 +244,18 @@ Unique<VkPipeline> Tiles::makePipeline(std::span<const std::uint32_t> code, cons
 void Tiles::makePipelines() {
   using Code = std::span<const std::uint32_t>;
   const bool clipped = surfaces_.list().isClipped();
-  const PipelineConstants samples{{6, samples_}};
+  const PipelineConstants samples{{0, geometry_.anyFeatures()}, {6, samples_}};
   setup_ = makePipeline(clipped ? Code(shaders::tiles_setup_clipped_comp) : Code(shaders::tiles_setup_comp),
                         "tiles setup", samples);
   large_ = makePipeline(clipped ? Code(shaders::tiles_large_clipped_comp) : Code(shaders::tiles_large_comp),
                         "tiles large", samples);
   plan_ = makePipeline(shaders::tiles_plan_comp, "tiles plan");
   scatter_ = makePipeline(shaders::tiles_scatter_comp, "tiles scatter");
-  const Code blend = blendCode();
-  PipelineConstants constants = shadingConstants();
-  constants.insert(constants.end(), {{3, shaders::TILES_SHALLOW}, {4, 16}, {5, VK_FALSE}});
-  shallow_ = makePipeline(blend, "tiles blend", constants);
-  constants = shadingConstants();
-  constants.insert(constants.end(), {{3, shaders::TILES_MIDDLING}, {4, 32}, {5, VK_TRUE}});
-  middling_ = makePipeline(blend, "tiles blend more", constants);
+  for (std::uint32_t i = 0; i < shaders::TILES_CLASSES; ++i) {
+    PipelineConstants constants = shadingConstants();
+    constants.insert(constants.end(), {{3, i < 2 ? VK_TRUE : VK_FALSE}, {5, i}});
+    blends_.at(i) = makePipeline(blendCode(i), fmt::format("tiles blend {}", i).c_str(), constants);
+  }
 }
 
 // From the first picture on that has deep tiles, so that others do without.
@@ -319,7 +319,9 @@ shaders::TilesFrame Tiles::frameOf(const Band& band) const {
   data.chunkCapacity = static_cast<std::uint32_t>(capacity.chunks);
   data.pointSize = surfaces_.pointSize();
   data.lightMost = mostLight_;
-  data.mostWalked = mostWalked_;
+  const bool onCpu = gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  data.mostWalked = onCpu ? kMostWalkedOnCpu : kMostWalked;
+  data.mostVisits = onCpu ? kMostVisitsOnCpu : kMostVisits;
   const glm::dmat4 toWorld = glm::inverse(glm::dmat4(surfaces_.view().viewProjection));
   for (std::uint32_t i = 0; i < shaders::CLIP_PLANE_COUNT; ++i) {
     data.clipPlanes[i] = glm::vec4(glm::dvec4(surfaces_.view().clipPlanes[i]) * toWorld);
@@ -430,8 +432,10 @@ void Tiles::rasterise(Frame& frame, const Band& band) {
 
 void Tiles::blend(Frame& frame) {
   VkCommandBuffer commands = frame.commands();
-  cmdIndirect(commands, shallow_, classes_.get(), offsetof(shaders::TilesClasses, shallow));
-  cmdIndirect(commands, middling_, classes_.get(), offsetof(shaders::TilesClasses, middling));
+  for (std::uint32_t i = shaders::TILES_CLASSES; i-- > 0;) { // those that take longest first
+    cmdIndirect(commands, blends_.at(i), classes_.get(),
+                offsetof(shaders::TilesClasses, of) + i * sizeof(shaders::TilesDispatch));
+  }
   frame.endPass("blend");
 }
 

@@ -1,365 +1,205 @@
-// Sorts and blends the fragments of a tile, a work group a tile and a thread a pixel. The tile's records are sorted by
-// their nearest depths and then walked: a thread keeps the fragments that it has met in a short list, in order, and
-// shades the nearest once no record that is still to come can be before it. So a pixel ends where enough is hidden, and
-// of records that do not cross each other the list holds only a few. Where it is too short, the tile is left to
-// tiles_deep_*.comp. More records than there is room for are taken in slabs, from the front: those behind where all
-// pixels end are counted, but never sorted.
+// Sorts and blends the fragments of a tile, a work group a tile and a thread a pixel. A thread goes through the records
+// that cover its pixel and keeps the nearest TILES_KEEP fragments in registers, as keys of depth and the record's number
+// in the tile; then it shades these from the front. Pixels that have more, and have not ended, take the next in another
+// turn. Nothing is stored but the order of what a turn has kept. A tile that takes too many turns, or in which more
+// than TILES_KEEP fragments of a pixel have one depth, is left to tiles_deep_*.comp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_nonuniform_qualifier : require
+#ifndef TILES_KEEP
+#define TILES_KEEP 16
+#endif
 #include "blending.glsl"
 #include "batch.glsl"
+#include "nearest.glsl"
 #include "tiles_deep.glsl"
 
 layout(local_size_x = TILES_PIXELS) in;
 
-layout(constant_id = 3) const uint kRecords = 256u; // at most that the tile has: a power of two
-layout(constant_id = 4) const uint kPending = 16u;  // fragments that a list holds: a power of two
-layout(constant_id = 5) const bool kSecondClass = false;
+layout(constant_id = 3) const bool kOneBatch = false; // whether the tile has up to TILES_PIXELS records
+layout(constant_id = 5) const uint kClass = 0u;
 
 layout(set = 3, binding = 17, std430) readonly buffer ClassBlock { TilesClasses classes; };
 
-shared uint sharedKeys[kRecords]; // sorted: of records the nearest depth, and their number
-shared uint sharedRecords[kRecords];
-shared uint pendingKeys[kPending * TILES_PIXELS];
-shared uint pendingRecords[kPending * TILES_PIXELS];
+shared uint sharedOrder[TILES_KEEP / 2 * TILES_PIXELS]; // numbers of kept records, two a word
 shared uint sharedGoesOn[2]; // in turns
 shared uint sharedTooShort;
-const int BUCKET_BITS = 8;
-const uint BUCKETS = 1u << BUCKET_BITS;
-const uint BUCKETS_OF_THREAD = BUCKETS / TILES_PIXELS;
-const uint MANY_IN_BUCKET = 24u;
 
-shared uint sharedBuckets[BUCKETS]; // of depths: how many records, or where they begin or end
-shared uint sharedSums[TILES_PIXELS];
-shared uint sharedNearest; // of the records that are left
-shared uint sharedFarthest;
-shared uint sharedTaken;   // buckets of a slab
-shared uint sharedCrowded; // whether some bucket holds many
+uint firstPair; // of the tile
+uint alikeFirst; // of the fragments that are blended
+ivec2 inTile;
 
-uint head = 0u;    // where in the ring the nearest fragment is
-uint pending = 0u; // fragments in it
-
-uint ringAt(uint i) { return ((head + i) & (kPending - 1u)) * TILES_PIXELS + thread; }
-
-// Few records are sorted by counting for each how many are nearer, which needs no steps.
-void sortFew(uint count, uint first) {
-  uvec2 mine = thread < count ? pairs[first + thread] : uvec2(0xffffffffu);
-  sharedSums[thread] = mine.x;
-  barrier();
-  uint place = 0u;
-  for (uint i = 0u; i < count; ++i) {
-    uint other = sharedSums[i];
-    place += other < mine.x || (other == mine.x && i < thread) ? 1u : 0u;
-  }
-  if (thread < count) {
-    sharedKeys[place] = mine.x;
-    sharedRecords[place] = mine.y;
-  }
-  barrier();
+// Of the i-th fragment that was kept: the number of its record in the tile.
+uint orderAt(uint i) { return sharedOrder[(i >> 1) * TILES_PIXELS + thread] >> (16u * (i & 1u)) & 0xffffu; }
+void setOrder(uint i, uint number) {
+  uint shift = 16u * (i & 1u);
+  uint at = (i >> 1) * TILES_PIXELS + thread;
+  sharedOrder[at] = (sharedOrder[at] & ~(0xffffu << shift)) | number << shift;
 }
 
-// The same of two records a thread.
-void sortSome(uint count, uint first) {
-  uint second = thread + TILES_PIXELS;
-  uvec2 a = pairs[first + thread];
-  uvec2 b = second < count ? pairs[first + second] : uvec2(0xffffffffu);
-  sharedBuckets[thread] = a.x;
-  sharedBuckets[second] = b.x;
-  barrier();
-  uvec2 places = uvec2(0u);
-  for (uint i = 0u; i < count; ++i) {
-    uint other = sharedBuckets[i];
-    places.x += other < a.x || (other == a.x && i < thread) ? 1u : 0u;
-    places.y += other < b.x || (other == b.x && i < second) ? 1u : 0u;
-  }
-  sharedKeys[places.x] = a.x;
-  sharedRecords[places.x] = a.y;
-  if (second < count) {
-    sharedKeys[places.y] = b.x;
-    sharedRecords[places.y] = b.y;
-  }
-  barrier();
+uint recordOf(uint number) { return pairs[firstPair + number].y; }
+uint alikeRecord(uint i) { return recordOf(orderAt(alikeFirst + i)); }
+Surface alikeSurface(uint i, ivec2 pixel) {
+  uint number = orderAt(alikeFirst + i);
+  uvec2 pair = pairs[firstPair + number];
+  return shadeFragment(records[2u * pair.y].zw, pair.x, pixel, vec2(tiles.width, tiles.height));
 }
 
-void exchange(uint low, uint high) {
-  uint key = sharedKeys[low];
-  uint record = sharedRecords[low];
-  sharedKeys[low] = sharedKeys[high];
-  sharedRecords[low] = sharedRecords[high];
-  sharedKeys[high] = key;
-  sharedRecords[high] = record;
+uint exactKey(uint number) { return keyOf(depthOn(uintBitsToFloat(records[2u * recordOf(number) + 1u]), inTile)); }
+bool isBefore(uint a, uint b) {
+  uint keyA = exactKey(a);
+  uint keyB = exactKey(b);
+  return keyA < keyB || (keyA == keyB && sourceBefore(recordOf(a), recordOf(b)));
 }
 
-// Any records that are in shared memory, by a network (Batcher, "Sorting networks and their applications", 1968).
-void sortByNetwork(uint count) {
-  uint size = 2u * TILES_PIXELS;
-  while (size < count) size *= 2u;
-  for (uint i = count + thread; i < size; i += TILES_PIXELS) sharedKeys[i] = 0xffffffffu;
-  barrier();
-  for (uint run = 2u; run <= size; run *= 2u) {
-    for (uint step = run / 2u; step > 0u; step /= 2u) {
-      for (uint i = thread; i < size / 2u; i += TILES_PIXELS) {
-        uint low = 2u * i - (i & (step - 1u));
-        uint a = sharedKeys[low];
-        uint b = sharedKeys[low + step];
-        if ((a > b) == ((low & run) == 0u) && a != b) exchange(low, low + step);
-      }
+uint numberBits; // of keys, which hold as much of the depth as there is room for above the record's number
+uint depthOf(uint key) { return key >> numberBits; }
+
+// Takes one of a batch's fragments that cover the pixel, or none where there is none any more.
+#define TAKE_KEY(i) { \
+  bool isLow = bits.x != 0u; \
+  uint word = isLow ? bits.x : bits.y; \
+  uint number = uint(findLSB(word)) + (isLow ? 0u : 32u); \
+  bool isThere = word != 0u; \
+  word &= word - 1u; \
+  if (isLow) bits.x = word; else bits.y = word; \
+  uint inBatch = number & (TILES_PIXELS - 1u); \
+  float depth = depthOn(sharedPlanes[inBatch], inTile); \
+  uint key = (keyOf(depth) >> (numberBits - 2u)) << numberBits | (base + number); \
+  if (key < from || isHidden(inBatch, depth, farthest)) isThere = false; \
+  newKeys[i] = isThere ? key : NO_FRAGMENT; \
+}
+
+// Finds the nearest fragments of a pixel whose keys are not below `from`: the nearest key of those that were left.
+uint findNearest(uint count, uint from, ivec2 corner, float farthest, bool ended, bool isFirst) {
+  uint left = NO_FRAGMENT;
+  bool isEmpty = true;
+#define FORGET(i) nearestKeys[i] = NO_FRAGMENT;
+  EACH_KEPT(FORGET)
+  for (uint base = 0u; base < count; base += TILES_PIXELS) {
+    if (isFirst || !kOneBatch) {
+      if (!isFirst || base > 0u) barrier(); // all have left the last batch
+      uint number = base + thread;
+      loadBatch(number < count, number < count ? recordOf(number) : 0u, corner);
       barrier();
     }
-  }
-}
-
-// Sorts a bucket, if it holds only a few. False: it holds many.
-bool sortBucket(uint begin, uint end) {
-  if (end - begin > MANY_IN_BUCKET) return false;
-  for (uint i = begin + 1u; i < end; ++i) {
-    for (uint k = i; k > begin && sharedKeys[k - 1u] > sharedKeys[k]; --k) exchange(k - 1u, k);
-  }
-  return true;
-}
-
-// The sum of the numbers of the threads before this one (Hillis and Steele, "Data parallel algorithms", 1986).
-uint sumBefore(uint mine) {
-  uint sum = mine;
-  for (uint step = 1u; step < TILES_PIXELS; step *= 2u) {
-    sharedSums[thread] = sum;
-    barrier();
-    if (thread >= step) sum += sharedSums[thread - step];
-    barrier();
-  }
-  return sum - mine;
-}
-
-// Finds the nearest and the farthest of the records whose keys are not below `from`.
-void findRange(uint count, uint first, uint from) {
-  if (thread == 0u) {
-    sharedNearest = 0xffffffffu;
-    sharedFarthest = 0u;
-  }
-  barrier();
-  uint nearest = 0xffffffffu;
-  uint farthest = 0u;
-  for (uint i = thread; i < count; i += TILES_PIXELS) {
-    uint key = pairs[first + i].x;
-    if (key < from) continue;
-    nearest = min(nearest, key);
-    farthest = max(farthest, key);
-  }
-  // One atomic for all that know of each other.
-  if (kShuffles) {
-    for (uint step = 1u; step < 32u; step *= 2u) {
-      nearest = min(nearest, subgroupShuffleXor(nearest, step));
-      farthest = max(farthest, subgroupShuffleXor(farthest, step));
-    }
-  }
-  if (!kShuffles || (thread & 31u) == 0u) {
-    atomicMin(sharedNearest, nearest);
-    atomicMax(sharedFarthest, farthest);
-  }
-  barrier();
-}
-
-// Counts the records of a range of keys in buckets of 2^shift, and says how many of these, from the front, are no more
-// than there is room for. Each then begins where its number says.
-uint countBuckets(uint count, uint first, uvec2 range, int shift) {
-  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) sharedBuckets[BUCKETS_OF_THREAD * thread + i] = 0u;
-  if (thread == 0u) sharedTaken = sharedCrowded = 0u;
-  barrier();
-  for (uint i = thread; i < count; i += TILES_PIXELS) {
-    uint key = pairs[first + i].x;
-    if (key >= range.x && key <= range.y) atomicAdd(sharedBuckets[(key - range.x) >> shift], 1u);
-  }
-  barrier();
-  uint sum = 0u;
-  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) sum += sharedBuckets[BUCKETS_OF_THREAD * thread + i];
-  uint begin = sumBefore(sum);
-  uint taken = 0u;
-  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) {
-    uint bucket = BUCKETS_OF_THREAD * thread + i;
-    uint inBucket = sharedBuckets[bucket];
-    sharedBuckets[bucket] = begin;
-    begin += inBucket;
-    if (begin <= kRecords) taken = bucket + 1u;
-  }
-  atomicMax(sharedTaken, taken);
-  barrier();
-  return sharedTaken;
-}
-
-// The nearest records of those that are left, sorted: by their depths into buckets, most of which then hold one or two;
-// where one holds many, all by a network.
-struct Slab {
-  uint count; // of its records; 0: too many have one depth
-  uint end;   // the key behind it, from which the others are
-};
-
-Slab sortSlab(uint count, uint first, uint from) {
-  if (count <= TILES_PIXELS) {
-    sortFew(count, first);
-    return Slab(count, 0xffffffffu);
-  }
-  if (count <= 2u * TILES_PIXELS) {
-    sortSome(count, first);
-    return Slab(count, 0xffffffffu);
-  }
-  findRange(count, first, from);
-  uvec2 range = uvec2(sharedNearest, sharedFarthest);
-  int shift = max(findMSB(range.y - range.x) + 1 - BUCKET_BITS, 0);
-  uint taken = countBuckets(count, first, range, shift);
-  while (taken == 0u && shift > 0) { // the first alone is too much
-    range.y = min(range.y, range.x + (1u << shift) - 1u);
-    shift = max(shift - BUCKET_BITS, 0);
-    taken = countBuckets(count, first, range, shift);
-  }
-  if (taken == 0u) return Slab(0u, from);
-  uint end = min(range.x + (taken << shift), range.y + 1u);
-  for (uint i = thread; i < count; i += TILES_PIXELS) {
-    uvec2 pair = pairs[first + i];
-    if (pair.x < range.x || pair.x >= end) continue;
-    uint place = atomicAdd(sharedBuckets[(pair.x - range.x) >> shift], 1u);
-    sharedKeys[place] = pair.x;
-    sharedRecords[place] = pair.y;
-  }
-  barrier();
-  for (uint i = 0u; i < BUCKETS_OF_THREAD; ++i) { // each now ends where the next began
-    uint bucket = i * TILES_PIXELS + thread;
-    if (bucket >= taken) continue;
-    if (!sortBucket(bucket > 0u ? sharedBuckets[bucket - 1u] : 0u, sharedBuckets[bucket])) sharedCrowded = 1u;
-  }
-  uint inSlab = sharedBuckets[taken - 1u];
-  barrier();
-  if (sharedCrowded != 0u) sortByNetwork(inSlab);
-  return Slab(inSlab, end > sharedFarthest ? 0xffffffffu : end);
-}
-
-void insert(uint key, uint record) {
-  uint i = pending;
-  while (i > 0u) {
-    uint before = ringAt(i - 1u);
-    uint other = pendingKeys[before];
-    if (other < key || (other == key && !sourceBefore(record, pendingRecords[before]))) break;
-    uint to = ringAt(i);
-    pendingKeys[to] = other;
-    pendingRecords[to] = pendingRecords[before];
-    --i;
-  }
-  uint to = ringAt(i);
-  pendingKeys[to] = key;
-  pendingRecords[to] = record;
-  ++pending;
-}
-
-uint alikeRecord(uint i) { return pendingRecords[ringAt(i)]; }
-
-// Blends the nearest fragments of the list, all that have one depth.
-void blendNearest(inout PixelLight light, ivec2 pixel) {
-  uint key = pendingKeys[ringAt(0u)];
-  uint alike = 1u;
-  while (alike < pending && pendingKeys[ringAt(alike)] == key) ++alike;
-  blendAlike(light, pixel, thread, alike);
-  head += alike;
-  pending -= alike;
-}
-
-// What a thread knows of its pixel.
-struct Walk {
-  PixelLight light;
-  ivec2 inTile;
-  ivec2 pixel;
-  float farthest; // opaque depth
-  bool isEmpty;   // nothing has been blended
-  bool ended;     // nothing farther away is needed
-  bool tooShort;  // the list was
-};
-
-// Goes through a batch of sorted records, of which `bits` cover the pixel. No record behind has a key below `next`.
-void walkBatch(inout Walk walk, uvec2 bits, uint batch, uint next) {
-  while (!walk.ended) {
-    while ((bits.x | bits.y) != 0u && pending < kPending) {
-      uint i = takeBit(bits);
-      vec4 plane = sharedPlanes[i];
-      float depth = depthOn(plane, walk.inTile);
-      if (isHidden(plane, depth, walk.pixel, walk.farthest)) continue;
-      insert(keyOf(depth), sharedRecords[batch * TILES_PIXELS + i]);
-    }
-    bool more = (bits.x | bits.y) != 0u;
-    uint horizon = more ? sharedKeys[batch * TILES_PIXELS + firstBit(bits)] : next;
-    bool blended = false;
-    while (pending > 0u && pendingKeys[ringAt(0u)] < horizon) {
-      blendNearest(walk.light, walk.pixel);
-      blended = true;
-      walk.isEmpty = false;
-      if (hasEnough(walk.light)) {
-        walk.ended = true;
-        break;
+    uvec2 bits = covering();
+    if (ended) bits = uvec2(0u);
+    while ((bits.x | bits.y) != 0u) {
+      TAKE_KEY(0) TAKE_KEY(1) TAKE_KEY(2) TAKE_KEY(3)
+      newKeys[4] = newKeys[5] = newKeys[6] = newKeys[7] = NO_FRAGMENT;
+      if ((bits.x | bits.y) != 0u) {
+        TAKE_KEY(4) TAKE_KEY(5) TAKE_KEY(6) TAKE_KEY(7)
+      }
+      sortNewKeys();
+      if (isEmpty) {
+        nearestKeys[0] = newKeys[0]; nearestKeys[1] = newKeys[1]; nearestKeys[2] = newKeys[2]; nearestKeys[3] = newKeys[3];
+        nearestKeys[4] = newKeys[4]; nearestKeys[5] = newKeys[5]; nearestKeys[6] = newKeys[6]; nearestKeys[7] = newKeys[7];
+        isEmpty = false;
+      } else {
+        left = min(left, mergeNewKeys());
       }
     }
-    if (!more) return;
-    if (!blended && pending == kPending) walk.tooShort = walk.ended = true;
   }
-  if (walk.ended) return;
-  walk.tooShort = walk.ended = true; // the driver has ended the loop
+  return left;
 }
 
-// Goes through a slab. Whether some pixel has not ended.
-bool walkSlab(inout Walk walk, Slab slab) {
-  uint batches = (slab.count + TILES_PIXELS - 1u) / TILES_PIXELS;
-  uint batch = 0u;
-  bool goesOn = true;
-  for (; batch < batches && goesOn; ++batch) {
-    if (thread == 0u) sharedGoesOn[batch & 1u] = 0u;
-    uint number = batch * TILES_PIXELS + thread;
-    loadBatch(number < slab.count, number < slab.count ? sharedRecords[number] : 0u);
-    barrier();
-    if (!walk.ended) sharedGoesOn[batch & 1u] = 1u;
-    uvec2 bits = covering();
-    uint next = batch + 1u < batches ? sharedKeys[(batch + 1u) * TILES_PIXELS] : slab.end;
-    walkBatch(walk, bits, batch, next);
-    barrier();
-    goesOn = sharedGoesOn[batch & 1u] != 0u;
+// Puts fragments whose keys hold the same depth in order.
+void settle(uint ties, uint count) {
+  for (uint i = 1u; i < count; ++i) {
+    for (uint k = i; k > 0u && (ties >> (k - 1u) & 1u) != 0u; --k) {
+      uint a = orderAt(k - 1u);
+      uint b = orderAt(k);
+      if (isBefore(a, b)) break;
+      setOrder(k - 1u, b);
+      setOrder(k, a);
+    }
   }
-  if (goesOn && batch < batches) walk.tooShort = walk.ended = true; // as above
-  return goesOn;
+}
+
+// How many fragments from the i-th on have one depth.
+uint alikeFrom(uint i, uint ties, uint count) {
+  uint alike = 1u;
+  if ((ties >> i & 1u) == 0u) return alike;
+  uint key = exactKey(orderAt(i));
+  while (i + alike < count && (ties >> (i + alike - 1u) & 1u) != 0u && exactKey(orderAt(i + alike)) == key) ++alike;
+  return alike;
 }
 
 void main() {
   thread = gl_LocalInvocationIndex;
-  uint number = flatGroup();
-  if (number >= (kSecondClass ? classes.middling.count : classes.shallow.count)) return;
-  uint tile = tileList[kSecondClass ? tiles.tilesX * tiles.tilesY - 1u - number : number];
+  uint place = flatGroup();
+  if (place >= classes.of[kClass].count) return;
+  uint tile = tileList[kClass * tiles.tilesX * tiles.tilesY + place];
   uint count = tileRecords[tile].x;
-  Walk walk;
-  walk.inTile = ivec2(thread & 7u, thread >> 3);
-  walk.pixel = firstPixel(tile) + walk.inTile;
-  bool inside = isInside(walk.pixel);
-  if (!inside) walk.pixel = ivec2(0);
-  walk.light = lightBehind(walk.pixel);
-  walk.farthest = farthestDepth(walk.pixel);
-  walk.isEmpty = true;
-  walk.ended = !inside;
-  walk.tooShort = false;
-  if (thread == 0u) sharedTooShort = 0u;
-  uint done = 0u;
+  firstPair = tileRecords[tile].y;
+  inTile = ivec2(thread & 7u, thread >> 3);
+  ivec2 corner = firstPixel(tile);
+  ivec2 pixel = corner + inTile;
+  bool inside = isInside(pixel);
+  if (!inside) pixel = ivec2(0);
+  PixelLight light = lightBehind(pixel);
+  float farthest = farthestDepth(pixel);
+  numberBits = max(uint(findMSB(max(count, 2u) * 2u - 1u)), 2u);
+  bool isEmpty = true;
+  bool ended = !inside;
+  bool isFirst = true;
   uint from = 0u;
-  bool goesOn = true;
-  while (goesOn && done < count) {
-    Slab slab = sortSlab(count, tileRecords[tile].y, from);
-    if (slab.count == 0u) {
-      walk.tooShort = true;
-      break;
-    }
-    goesOn = walkSlab(walk, slab);
-    done += slab.count;
-    from = slab.end;
-    barrier(); // all have left the slab
+  if (thread == 0u) {
+    sharedTooShort = 0u;
+    sharedGoesOn[0] = 0u;
   }
-  if (!walk.ended && (pending > 0u || done < count)) walk.tooShort = true; // as above
-  if (walk.tooShort) sharedTooShort = 1u;
-  barrier();
+  uint batches = (count + TILES_PIXELS - 1u) / TILES_PIXELS;
+  uint turns = max(tiles.mostVisits / batches, 1u);
+  for (uint i = 0u; i < turns; ++i) {
+    uint turn = i & 1u;
+    uint left = findNearest(count, from, corner, farthest, ended, isFirst);
+    isFirst = false;
+    // All of a depth that some were left of come in the next turn.
+    uint end = left == NO_FRAGMENT ? NO_FRAGMENT : depthOf(left) << numberBits;
+    uint kept = 0u;
+    uint ties = 0u;
+    uint numbers = (1u << numberBits) - 1u;
+#define COUNT_KEPT(i) \
+    if (nearestKeys[i] < end) ++kept; \
+    if (i + 1 < TILES_KEEP && nearestKeys[i + 1 < TILES_KEEP ? i + 1 : i] != NO_FRAGMENT && \
+        depthOf(nearestKeys[i]) == depthOf(nearestKeys[i + 1 < TILES_KEEP ? i + 1 : i])) ties |= 1u << i;
+    EACH_KEPT(COUNT_KEPT)
+#define STORE_KEPT(i) \
+    if ((i & 1) == 0) \
+      sharedOrder[i / 2 * TILES_PIXELS + thread] = (nearestKeys[i] & numbers) | (nearestKeys[i | 1] & numbers) << 16;
+    EACH_KEPT(STORE_KEPT)
+    if (ties != 0u) settle(ties, kept);
+    uint singles = 0u; // at one depth, more than whose order their colours decide
+    for (uint k = 0u; k < kept && !ended;) {
+      uint alike = singles > 0u ? 1u : alikeFrom(k, ties, kept);
+      if (alike > TILES_TIES) singles = alike;
+      if (singles > 0u) {
+        --singles;
+        alike = 1u;
+      }
+      alikeFirst = k;
+      blendAlike(light, pixel, thread, alike);
+      isEmpty = false;
+      k += alike;
+      if (hasEnough(light)) ended = true;
+    }
+    if (left == NO_FRAGMENT) ended = true;
+    if (!ended && kept == 0u) { // more than there is room for have one depth
+      sharedTooShort = 1u;
+      ended = true;
+    }
+    from = end;
+    if (!ended && i + 1u < turns) sharedGoesOn[turn] = 1u;
+    if (!ended && i + 1u == turns) sharedTooShort = 1u;
+    barrier();
+    if (sharedGoesOn[turn] == 0u) break;
+    if (thread == 0u) sharedGoesOn[turn ^ 1u] = 0u;
+    barrier();
+  }
   if (sharedTooShort != 0u) {
     if (thread == 0u) addDeep(tile, count);
     return;
   }
-  if (inside && !walk.isEmpty) blendOver(walk.pixel, walk.light);
+  if (inside && !isEmpty) blendOver(pixel, light);
 }

@@ -26,6 +26,10 @@ uint alikeFirst; // of the surfaces that are blended
 
 uvec2 fragmentAt(uint i) { return inSorted != 0u ? sortedFragments[i] : fragments[i]; }
 uint alikeRecord(uint i) { return fragmentAt(alikeFirst + i).y; }
+Surface alikeSurface(uint i, ivec2 pixel) {
+  uvec2 source = records[2u * alikeRecord(i)].zw;
+  return shadeFragment(source, drawOfInstance[2u * source.y], pixel, vec2(tiles.width, tiles.height));
+}
 
 void main() {
   thread = gl_LocalInvocationIndex;

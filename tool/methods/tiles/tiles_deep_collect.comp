@@ -32,7 +32,7 @@ void main() {
   for (uint i = first; i < end; i += TILES_PIXELS) {
     bool any_ = i + thread < end;
     barrier(); // all have left the last batch
-    loadBatch(any_, any_ ? pairs[pairsFirst + i + thread].y : 0u);
+    loadBatch(any_, any_ ? pairs[pairsFirst + i + thread].y : 0u, firstPixel(tile));
     barrier();
     uvec2 bits = covering();
     if (!inside) bits = uvec2(0u);
@@ -46,7 +46,7 @@ void main() {
       uint k = takeBit(bits);
       vec4 plane = sharedPlanes[k];
       float depth = depthOn(plane, inTile);
-      bool hidden = isHidden(plane, depth, pixel, farthest);
+      bool hidden = isHidden(k, depth, farthest);
       fragments[at++] = hidden ? uvec2(NO_FRAGMENT) : uvec2(keyOf(depth), pairs[pairsFirst + i + k].y);
     }
 #endif

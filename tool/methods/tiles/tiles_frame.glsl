@@ -12,12 +12,12 @@ layout(set = 3, binding = 2, std430) buffer TileBlock { uvec2 tileRecords[]; };
 // whether its front shows) and the instance; the depth at the middle of the first pixel, what pixels to the right and
 // down add, and the nearest depth.
 layout(set = 3, binding = 3, std430) buffer RecordBlock { uvec4 records[]; };
-// Of each record the tile (or NO_TILE), which one it is there, and the key of its nearest depth.
+// Of each record the tile (or NO_TILE), which one it is there, and its draw.
 layout(set = 3, binding = 4, std430) buffer PlaceBlock { uint places[]; };
-// The records of each tile: the key of the nearest depth, and the record.
+// The records of each tile: the draw, and the record.
 layout(set = 3, binding = 5, std430) buffer PairBlock { uvec2 pairs[]; };
 layout(set = 3, binding = 6, std430) buffer LargeBlock { uvec2 large[]; }; // primitive and instance
-// Tiles by class: those of the second class begin in the middle, from behind.
+// Tiles by class: each has room for all.
 layout(set = 3, binding = 7, std430) buffer ListBlock { uint tileList[]; };
 
 const uint NO_TILE = 0xffffffffu;

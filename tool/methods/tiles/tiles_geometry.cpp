@@ -15,7 +15,7 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr std::uint32_t kGeometryBindings = 11;
+constexpr std::uint32_t kGeometryBindings = 12;
 constexpr VkBufferUsageFlags kTableUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr Access kTableRead{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT};
 
@@ -173,7 +173,13 @@ void TilesGeometry::writeSet(const Surfaces& surfaces) {
     const std::uint32_t first = list_[i].firstInstance;
     for (std::uint32_t k = first; k < first + list_[i].instances; ++k) ofInstances[k] = {i, scene.sourceOf(k)};
   }
+  std::vector<std::uint32_t> ofGroups(std::max(groups_, 1U));
+  for (std::uint32_t i = 0; i < draws_; ++i) {
+    const std::uint32_t end = i + 1 < draws_ ? list_[i + 1].firstGroup : groups_;
+    std::fill(ofGroups.begin() + list_[i].firstGroup, ofGroups.begin() + end, i);
+  }
   drawBuffer_ = uploadTable(gpu_, list_, "tiles draws");
+  groupDraws_ = uploadTable(gpu_, ofGroups, "tiles draws of groups");
   instanceDraws_ = uploadTable(gpu_, ofInstances, "tiles draws of instances");
   std::array<const GpuBuffer*, kGeometryBindings> buffers{};
   for (std::size_t i = 0; i < kStreamCount; ++i) buffers.at(i) = &scene.streams().buffer(i);
@@ -182,6 +188,7 @@ void TilesGeometry::writeSet(const Surfaces& surfaces) {
   buffers[8] = &scene.materials();
   buffers[9] = &drawBuffer_;
   buffers[10] = &instanceDraws_;
+  buffers[11] = &groupDraws_;
   for (std::uint32_t i = 0; i < kGeometryBindings; ++i) {
     checkReach(gpu_, *buffers.at(i), i < kStreamCount ? "vertices" : i == 6 ? "indices" : "objects");
     set_.writeBuffer(i, buffers.at(i)->get(), buffers.at(i)->size());

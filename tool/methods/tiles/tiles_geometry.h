@@ -44,6 +44,7 @@ class TilesGeometry {
   SingleSet set_;
   GpuBuffer drawBuffer_;
   GpuBuffer instanceDraws_;
+  GpuBuffer groupDraws_;
   Unique<VkDescriptorSetLayout> textureLayout_;
   Unique<VkDescriptorPool> texturePool_;
   VkDescriptorSet textureSet_ = VK_NULL_HANDLE;

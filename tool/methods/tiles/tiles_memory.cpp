@@ -33,14 +33,14 @@ void TilesMemory::setTiles(std::uint32_t tiles, std::uint64_t budget) {
   tiles_ = tiles;
   budget_ = budget;
   make(2, std::uint64_t{tiles} * 8, "tiles records of tiles");
-  make(7, std::uint64_t{tiles} * 4, "tiles lists");
+  make(7, std::uint64_t{tiles} * 4 * shaders::TILES_CLASSES, "tiles lists");
 }
 
 double TilesMemory::excess(const TilesNeeds& needs) const {
   const auto reach = static_cast<double>(
       std::min<std::uint64_t>(gpu_.properties().limits.maxStorageBufferRange, gpu_.maxAllocation()));
   double most = 0.0;
-  double all = static_cast<double>(tiles_) * 12.0;
+  double all = static_cast<double>(tiles_) * (8.0 + 4.0 * shaders::TILES_CLASSES);
   const auto add = [&](std::uint64_t count, std::uint64_t largest, std::uint64_t together) {
     // Numbers have 32 bits, and what is done in strides must not pass their end.
     most = std::max({most, static_cast<double>(count * largest) / reach, static_cast<double>(count) / 2e9});

@@ -10,20 +10,20 @@ layout(set = 3, binding = 17, std430) buffer ClassBlock { TilesClasses classes; 
 shared uint groupPairs;
 shared uint groupFirst;
 shared uint groupMost;
-shared uint groupCount[2];
-shared uint groupList[2];
+shared uint groupCount[TILES_CLASSES];
+shared uint groupList[TILES_CLASSES];
 
 void main() {
   uint thread = gl_LocalInvocationIndex;
-  if (thread < 2u) groupCount[thread] = 0u;
-  if (thread == 2u) groupPairs = groupMost = 0u;
+  if (thread < TILES_CLASSES) groupCount[thread] = 0u;
+  if (thread == TILES_CLASSES) groupPairs = groupMost = 0u;
   barrier();
   uint tile = flatGroup() * 256u + thread;
   bool isRead = tile < tiles.tilesX * tiles.tilesY && hasRecords();
   uint count = isRead ? tileRecords[tile].x : 0u;
   uint place = 0u;
   uint number = 0u;
-  uint kind = count <= TILES_SHALLOW ? 0u : 1u;
+  uint kind = count <= TILES_FEW ? 0u : count <= TILES_PIXELS ? 1u : count <= TILES_SHALLOW ? 2u : 3u;
   if (count > 0u) {
     place = atomicAdd(groupPairs, count);
     atomicMax(groupMost, count);
@@ -33,12 +33,9 @@ void main() {
   if (thread == 0u && groupPairs > 0u) {
     groupFirst = atomicAdd(control.pairs, groupPairs);
     atomicMax(control.mostRecords, groupMost);
-    if (groupCount[0] > 0u) {
-      RESERVE(classes.shallow, groupCount[0], groupList[0])
-    }
-    if (groupCount[1] > 0u) {
-      RESERVE(classes.middling, groupCount[1], groupList[1])
-    }
+  }
+  if (thread < TILES_CLASSES && groupCount[thread] > 0u) {
+    RESERVE(classes.of[thread], groupCount[thread], groupList[thread])
   }
   barrier();
   if (count == 0u) return;
@@ -46,7 +43,6 @@ void main() {
   if (count > tiles.mostWalked) {
     addDeep(tile, count);
   } else {
-    uint at = groupList[kind] + number;
-    tileList[kind == 0u ? at : tiles.tilesX * tiles.tilesY - 1u - at] = tile;
+    tileList[kind * tiles.tilesX * tiles.tilesY + groupList[kind] + number] = tile;
   }
 }

@@ -1,4 +1,4 @@
-// Brings the records of each tile together, as pairs that can be sorted.
+// Brings the records of each tile together.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "tiles_frame.glsl"

@@ -13,8 +13,9 @@ const uint TILES_PIXELS = 64u;            // of a tile, a thread each
 const uint TILES_ROW = 32768u;            // work groups in a row of a dispatch
 const uint TILES_LARGE = 64u;             // a triangle that may touch more tiles is left to a pass of its own
 const uint TILES_LARGE_BLOCK = 64u;       // tiles of a row that a work group of that pass looks after
-const uint TILES_SHALLOW = 256u;          // records of a tile that are sorted in shared memory: of most tiles
-const uint TILES_MIDDLING = 1024u;        // and of others, at once
+const uint TILES_CLASSES = 4u;            // of tiles, by how many records they have: up to
+const uint TILES_FEW = 16u;               // so many, TILES_PIXELS,
+const uint TILES_SHALLOW = 256u;          // so many, and more
 const uint TILES_SCATTER = 1024u;         // work groups of passes over all records
 const uint TILES_BLOCK = 4096u;           // records of a deep tile that a work group looks after
 const uint TILES_CHUNK = 1024u;           // fragments that a work group sorts at once
@@ -63,8 +64,8 @@ struct TilesFrame {
   uint chunkCapacity; // TILES_CHUNKs of them
   float pointSize;
   float lightMost; // that one surface sends to the eye
-  uint mostWalked; // records of a tile that is not deep
-  uint framePadding0;
+  uint mostWalked; // records of a tile that is not deep from the start
+  uint mostVisits; // how often a tile may go through TILES_PIXELS records before it is left to others
   uint framePadding1;
   uint framePadding2;
   vec4 clipPlanes[CLIP_PLANE_COUNT]; // of clip space
@@ -80,8 +81,7 @@ struct TilesDispatch {
 
 // Tiles by how many records they have. All zero at first. Apart from what is counted while they are blended.
 struct TilesClasses {
-  TilesDispatch shallow;
-  TilesDispatch middling;
+  TilesDispatch of[TILES_CLASSES];
 };
 
 // What a frame counts. All zero at first.
@@ -106,7 +106,7 @@ static_assert(sizeof(TilesDraw) == 144);
 static_assert(sizeof(TilesMaterial) == 768);
 static_assert(sizeof(TilesFrame) == 208);
 static_assert(sizeof(TilesDispatch) == 16);
-static_assert(sizeof(TilesClasses) == 32);
+static_assert(sizeof(TilesClasses) == 64);
 static_assert(sizeof(TilesControl) == 112);
 #endif
 
