@@ -424,14 +424,14 @@ TEST_F(TilesTest, BudgetsDoNotChangeABit) {
   deepPicture.height = 24;
   deepPicture.view = straightView();
   for (const auto& [scene, whole, part] :
-       {std::tuple(&spheres, usualOptions(spheres, 160, 90), 6), std::tuple(&deep, deepPicture, 2)}) {
+       {std::tuple(&spheres, usualOptions(spheres, 160, 90), 64), std::tuple(&deep, deepPicture, 2)}) {
     const std::unique_ptr<Renderer> renderer = rendererOf(gpu(), *scene, {}, DrawOrder::Forward, methodNamed("tiles"));
     const RenderResult expected = renderer->render(whole);
     EXPECT_EQ(expected.report.tiles, 1U);
     RenderOptions bounded = whole;
     bounded.memoryBudget = expected.report.totalBytes / part;
     const RenderResult drawn = renderer->render(bounded);
-    EXPECT_GT(drawn.report.tiles, 1U);
+    EXPECT_GT(drawn.report.tiles, 1U) << *bounded.memoryBudget << " bytes";
     EXPECT_LE(drawn.report.totalBytes, *bounded.memoryBudget + 4096); // what all frames have comes on top
     EXPECT_TRUE(drawn.picture.rgba == expected.picture.rgba);
     EXPECT_TRUE(renderer->render(whole).picture.rgba == expected.picture.rgba);

@@ -50,6 +50,7 @@ VertexPlaces placeVertices(const Scene& scene, const SceneDraws& draws) {
   for (std::size_t i = 0; i < places.meshes.size(); ++i) {
     if (!draws.usesMesh(i)) continue;
     const auto arrays = vertexArrays(scene.meshes[i]);
+    places.meshes[i].vertices = static_cast<std::uint32_t>(scene.meshes[i].positions.size());
     for (std::size_t stream = 0; stream < kStreamCount; ++stream) {
       if (arrays[stream].empty()) continue;
       places.meshes[i].offsets[stream] = places.bytes[stream];

@@ -35,6 +35,7 @@ Mesh defaultVertex();
 struct VertexPlace {
   std::array<std::uint64_t, kStreamCount> offsets{};
   std::array<std::uint64_t, kStreamCount> strides{};
+  std::uint32_t vertices = 0;
 };
 
 struct VertexPlaces {

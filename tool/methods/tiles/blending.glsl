@@ -104,11 +104,20 @@ uint visibleSamples(PixelLight light, uint record, ivec2 pixel, uint thread) {
 #endif
 }
 
+// What of the light behind comes through. Where all surfaces let the same of all colours through, one number is kept;
+// not of several samples, where that came out slower.
+#ifdef TILES_MSAA
+#define THROUGH(front) (front).transmittance
+#else
+#define THROUGH(front) \
+  ((kAnyFeatures & (FEATURE_ADDITIVE | FEATURE_TRANSMISSION)) == 0u ? (front).transmittance.aaaa : (front).transmittance)
+#endif
+
 void put(inout PixelLight light, vec4 color, uint blend, uint visible) {
   VitrailPair pair = vitrailPairOf(color, blend);
 #define PUT_SAMPLE(i) \
   if ((visible & (1u << i)) != 0u) { \
-    light.fronts[i].color += light.fronts[i].transmittance.rgb * pair.color; \
+    light.fronts[i].color += THROUGH(light.fronts[i]).rgb * pair.color; \
     light.fronts[i].transmittance *= pair.transmittance; \
   }
   EACH_SAMPLE(PUT_SAMPLE)
@@ -118,8 +127,8 @@ void put(inout PixelLight light, vec4 color, uint blend, uint visible) {
 // TILES_STOP of 1/255. What is left out is light of at most `most` together, or hides so much of what is behind. On the
 // sRGB curve it counts most in the dark. Surfaces that add light without hiding as much have no such bound.
 bool hasEnoughAt(VitrailPair front, float most) {
-  float through = max(max(front.transmittance.r, front.transmittance.g),
-                      max(front.transmittance.b, front.transmittance.a));
+  vec4 all = THROUGH(front);
+  float through = max(max(all.r, all.g), max(all.b, all.a));
   if ((kAnyFeatures & (FEATURE_ADDITIVE | FEATURE_TRANSMISSION)) != 0u) return through <= 0.0;
   float darkest = min(front.color.r, min(front.color.g, front.color.b));
   float steepness = darkest > 0.0031308 ? 0.43958 * pow(darkest, -0.58333) : 12.92;
@@ -194,7 +203,7 @@ void blendOver(ivec2 pixel, PixelLight light) {
 #define ADD_SAMPLE(i) \
   if (i < kSamples) { \
     VitrailPair front = light.fronts[i]; \
-    sum += vec4(front.color, 1.0 - front.transmittance.a) + front.transmittance * colorBehind(pixel, i); \
+    sum += vec4(front.color, 1.0 - front.transmittance.a) + THROUGH(front) * colorBehind(pixel, i); \
   }
   EACH_SAMPLE(ADD_SAMPLE)
   imageStore(colorImage, pixel, sum / float(kSamples));

@@ -30,6 +30,7 @@ vec2 weightsOf(vec3 a, vec3 b, vec2 ndc, vec2 size) {
 struct Corners {
   uint count; // 2 of a line, 1 of a point, whose others are the first
   uvec3 vertices;
+  uint first;   // of cornerPlaces
   vec3 clip[3]; // x, y, w
 };
 
@@ -39,22 +40,6 @@ vec3 weightsAt(Corners c, vec2 ndc, vec2 size) {
   return weightsOf(c.clip[0].xy - ndc * c.clip[0].z, c.clip[1].xy - ndc * c.clip[1].z,
                    c.clip[2].xy - ndc * c.clip[2].z);
 }
-
-vec2 unpackOctahedral(uint packed) { return unpackSnorm2x16(packed); }
-
-vec3 fromOctahedral(vec2 p) {
-  vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-  float fold = max(-v.z, 0.0);
-  v.x -= v.x < 0.0 ? -fold : fold;
-  v.y -= v.y < 0.0 ? -fold : fold;
-  return normalize(v);
-}
-
-uint word(uint draw, uint stream, uint vertex) {
-  return draws[draw].firstWords[stream] + vertex * draws[draw].vertexWords[stream];
-}
-
-vec3 normalOf(uint draw, uint vertex) { return fromOctahedral(unpackOctahedral(normals[word(draw, 1u, vertex)])); }
 
 vec4 tangentOf(uint draw, uint vertex) {
   uint packed = tangents[word(draw, 2u, vertex)];
@@ -88,27 +73,38 @@ void setTexCoords(uint draw, Corners corners, vec3 weights, ivec2 pixel, vec2 si
   surfaceTexCoordsDown = (down - surfaceTexCoords) * step.y;
 }
 
-// As surface.vert: normals turn by the cofactors.
 void setDirections(uint draw, InstancePlace place, Corners corners, vec3 weights) {
-  vec3 largest = max(max(abs(place.row0.xyz), abs(place.row1.xyz)), abs(place.row2.xyz));
-  float size = max(max(largest.x, largest.y), largest.z);
-  mat3 rows = mat3(place.row0.xyz, place.row1.xyz, place.row2.xyz) * (size > 0.0 ? 1.0 / size : 0.0);
-  mat3 cofactors = mat3(cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1]));
-  float volume = dot(rows[0], cofactors[0]);
-  float mirrored = volume < 0.0 ? -1.0 : 1.0;
+  InstanceTurn turn = turnOf(place);
   if (!has(FEATURE_FLAT)) {
     vec3 normal = vec3(0.0);
-    for (uint i = 0u; i < 3u; ++i) normal += weights[i] * normalOf(draw, corners.vertices[i]);
-    inNormal = mirrored * (normal * cofactors);
+    if (kCorners) {
+      for (uint i = 0u; i < 3u; ++i) normal += weights[i] * cornerNormals[corners.first + corners.vertices[i]].xyz;
+      inNormal = normal;
+    } else {
+      for (uint i = 0u; i < 3u; ++i) normal += weights[i] * normalOf(draw, corners.vertices[i]);
+      inNormal = turnedNormal(turn, normal);
+    }
   }
   if (hasTexture(SLOT_NORMAL) || has(FEATURE_RARE)) {
     vec4 tangent = vec4(0.0);
     for (uint i = 0u; i < 3u; ++i) tangent += weights[i] * tangentOf(draw, corners.vertices[i]);
-    inTangent = vec4(tangent.xyz * rows, tangent.w * mirrored);
+    inTangent = vec4(tangent.xyz * turn.rows, tangent.w * turn.mirrored);
   } else {
-    inTangent.w = mirrored;
+    inTangent.w = turn.mirrored;
   }
-  if (has(FEATURE_VOLUME)) inTangent.w = abs(inTangent.w) * size * pow(abs(volume), 1.0 / 3.0) * sign(inTangent.w);
+  if (has(FEATURE_VOLUME)) {
+    inTangent.w = abs(inTangent.w) * turn.size * pow(abs(turn.volume), 1.0 / 3.0) * sign(inTangent.w);
+  }
+}
+
+// Where a surface is only matters to lights that are near, and to planes; else only from where it is seen.
+const bool kNeedsPlaces = (kAnyFeatures & (FEATURE_LIGHTS | FEATURE_FLAT)) != 0u || !kCorners;
+
+// From a surface at the pixel to the eye.
+vec3 wayToEye(ivec2 pixel) {
+  vec2 at = vec2(pixel) + 0.5;
+  vec3 ray = vec3(at.x * frame.ray.x - frame.ray.z, frame.ray.w - at.y * frame.ray.y, -1.0);
+  return -(mat3(frame.cameraToWorld) * ray);
 }
 
 // `source`: the primitive, with the side in its highest bit, and the instance, of that draw. `size`: of the picture.
@@ -123,14 +119,18 @@ Surface shadeFragment(uvec2 source, uint draw, ivec2 pixel, vec2 size) {
   vec3 world[3];
   corners.count = (kAnyFeatures & FEATURE_SOLID) == 0u ? 3u : cornersOf(surfaceFeatures);
   uint first = firstIndexOf(draw, corners.count, source.x & 0x7fffffffu);
+  corners.first = kCorners ? cornerOf(draw, source.y, 0u) : 0u;
   for (uint i = 0u; i < 3u; ++i) {
     corners.vertices[i] = indices[first + (i < corners.count ? i : 0u)];
-    vec4 local = vec4(positionOf(draw, corners.vertices[i]), 1.0);
-    world[i] = vec3(dot(place.row0, local), dot(place.row1, local), dot(place.row2, local));
-    corners.clip[i] = (frame.viewProjection * vec4(world[i], 1.0)).xyw;
+    if (kNeedsPlaces) {
+      vec4 local = vec4(positionOf(draw, corners.vertices[i]), 1.0);
+      world[i] = vec3(dot(place.row0, local), dot(place.row1, local), dot(place.row2, local));
+    }
+    corners.clip[i] = kCorners ? cornerPlaces[corners.first + corners.vertices[i]].xyw
+                               : (frame.viewProjection * vec4(world[i], 1.0)).xyw;
   }
   vec3 weights = weightsAt(corners, (vec2(pixel) + 0.5) * 2.0 / size - 1.0, size);
-  inPosition = mat3(world[0], world[1], world[2]) * weights;
+  inPosition = kNeedsPlaces ? mat3(world[0], world[1], world[2]) * weights : frame.eye.xyz - wayToEye(pixel);
   if (has(FEATURE_FLAT)) surfacePlane = cross(world[1] - world[0], world[2] - world[0]);
   if (has(FEATURE_VERTEX_COLOR)) {
     inColor = vec4(0.0);

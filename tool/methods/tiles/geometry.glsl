@@ -20,6 +20,19 @@ layout(set = 2, binding = 10, std430) readonly buffer InstanceDrawBlock { uint d
 
 layout(set = 2, binding = 11, std430) readonly buffer GroupDrawBlock { uint drawOfGroup[]; }; // that sets up triangles
 
+// Of each vertex of each instance: its place in clip space, and its normal in the world.
+#ifdef TILES_MAKES_CORNERS
+#define TILES_CORNERS writeonly
+#else
+#define TILES_CORNERS readonly
+#endif
+layout(set = 2, binding = 12, std430) TILES_CORNERS buffer CornerBlock { vec4 cornerPlaces[]; };
+layout(set = 2, binding = 13, std430) TILES_CORNERS buffer CornerNormalBlock { vec4 cornerNormals[]; };
+layout(set = 2, binding = 14, std430) readonly buffer CornerGroupBlock { uint drawOfCornerGroup[]; }; // that makes them
+
+// Whether there was room for these. Else shaders that need them compute them from the vertices.
+layout(constant_id = 8) const bool kCorners = false;
+
 struct InstancePlace {
   vec4 row0;
   vec4 row1;
@@ -45,6 +58,47 @@ vec4 clipOf(vec4 world) {
   precise vec4 clip = frame.viewProjection * world;
   return clip;
 }
+
+uint cornerOf(uint draw, uint instance, uint vertex) {
+  return draws[draw].firstCorner + (instance - draws[draw].firstInstance) * draws[draw].vertices + vertex;
+}
+
+vec3 fromOctahedral(vec2 p) {
+  vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+  float fold = max(-v.z, 0.0);
+  v.x -= v.x < 0.0 ? -fold : fold;
+  v.y -= v.y < 0.0 ? -fold : fold;
+  return normalize(v);
+}
+
+uint word(uint draw, uint stream, uint vertex) {
+  return draws[draw].firstWords[stream] + vertex * draws[draw].vertexWords[stream];
+}
+
+vec3 normalOf(uint draw, uint vertex) { return fromOctahedral(unpackSnorm2x16(normals[word(draw, 1u, vertex)])); }
+
+// How directions turn with an instance. As surface.vert: normals by the cofactors.
+struct InstanceTurn {
+  mat3 rows; // of the transform over its largest number
+  float size; // that number
+  mat3 cofactors;
+  float volume;
+  float mirrored; // -1 or 1
+};
+
+InstanceTurn turnOf(InstancePlace place) {
+  InstanceTurn turn;
+  vec3 largest = max(max(abs(place.row0.xyz), abs(place.row1.xyz)), abs(place.row2.xyz));
+  turn.size = max(max(largest.x, largest.y), largest.z);
+  turn.rows = mat3(place.row0.xyz, place.row1.xyz, place.row2.xyz) * (turn.size > 0.0 ? 1.0 / turn.size : 0.0);
+  turn.cofactors = mat3(cross(turn.rows[1], turn.rows[2]), cross(turn.rows[2], turn.rows[0]),
+                        cross(turn.rows[0], turn.rows[1]));
+  turn.volume = dot(turn.rows[0], turn.cofactors[0]);
+  turn.mirrored = turn.volume < 0.0 ? -1.0 : 1.0;
+  return turn;
+}
+
+vec3 turnedNormal(InstanceTurn turn, vec3 normal) { return turn.mirrored * (normal * turn.cofactors); }
 
 // What a draw consists of: 3 corners a triangle, 2 a line, 1 a point. Lines and points are drawn as two triangles each.
 uint cornersOf(uint features) {

@@ -3,9 +3,9 @@
 // "High-performance software rasterization on GPUs" (HPG 2011), coverage by Pineda, "A parallel algorithm for polygon
 // rasterization" (SIGGRAPH 1988). docs/notes/tiles.md has the design.
 //
-// Each triangle is set up and makes a record in every tile in which it covers a pixel. A pixel keeps the nearest 8 to 32
-// of its fragments in registers, sorted, and shades them from the front; while some are left and still show, it takes the
-// next. Tiles with very many records collect their fragments and sort them all.
+// Each triangle is set up and makes a record in every tile in which it covers a pixel. A pixel keeps the nearest 8 to
+// 32 of its fragments in registers, sorted, and shades them from the front; while some are left and still show, it
+// takes the next. Tiles with very many records collect their fragments and sort them all.
 //
 // Cost: nothing is stored per fragment but in such deep tiles, and no fragment that is hidden is shaded. Memory: 52
 // bytes for a triangle in a tile, 12 bytes a tile; 16 bytes a fragment in deep tiles. A picture that needs more than
@@ -40,6 +40,7 @@
 #include "shaders/tiles_blend_constant.comp.h"
 #include "shaders/tiles_blend_msaa.comp.h"
 #include "shaders/tiles_blend_msaa_constant.comp.h"
+#include "shaders/tiles_corners.comp.h"
 #include "shaders/tiles_deep_blend.comp.h"
 #include "shaders/tiles_deep_blend_constant.comp.h"
 #include "shaders/tiles_deep_blend_msaa.comp.h"
@@ -67,8 +68,8 @@ namespace {
 constexpr std::uint32_t kSide = 8; // of a tile
 constexpr Access kIndirectRead{VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT};
 
-// Records of a tile that is not deep from the start, and how often it goes through 64 of them before it is. A CPU driver
-// ends loops that it takes for endless.
+// Records of a tile that is not deep from the start, and how often it goes through 64 of them before it is. A CPU
+// driver ends loops that it takes for endless.
 constexpr std::uint32_t kMostWalked = 16384;
 constexpr std::uint32_t kMostWalkedOnCpu = 2500;
 constexpr std::uint32_t kMostVisits = 8192;
@@ -77,7 +78,7 @@ constexpr std::uint32_t kMostVisitsOnCpu = 1024;
 std::uint32_t tilesOf(std::uint32_t pixels) { return (pixels + kSide - 1) / kSide; }
 
 void checkDevice(const Gpu& gpu) {
-  constexpr std::uint32_t kBuffers = 29; // that one shader reaches
+  constexpr std::uint32_t kBuffers = 32; // that one shader reaches
   constexpr std::uint32_t kSharedBytes = 28 << 10;
   const VkPhysicalDeviceLimits& limits = gpu.properties().limits;
   const char* lacks = nullptr;
@@ -128,6 +129,7 @@ class Tiles final : public Method {
   };
 
   std::uint32_t shuffles() const { return gpu_.features().wideSubgroups ? VK_TRUE : VK_FALSE; } // batch.glsl
+  std::uint32_t corners() const { return geometry_.cornerGroups() > 0 ? VK_TRUE : VK_FALSE; }   // geometry.glsl
   void makePipelines();
   std::span<const std::uint32_t> blendCode(std::uint32_t tileClass) const;
   std::span<const std::uint32_t> deepBlendCode() const;
@@ -164,11 +166,12 @@ class Tiles final : public Method {
   GpuBuffer classes_;     // shaders::TilesClasses
   Counters control_;      // shaders::TilesControl
   Unique<VkPipelineLayout> layout_;
+  Unique<VkPipeline> corners_;
   Unique<VkPipeline> setup_;
   Unique<VkPipeline> large_;
   Unique<VkPipeline> plan_;
   Unique<VkPipeline> scatter_;
-  Unique<VkPipeline> mean_; // of several samples
+  Unique<VkPipeline> mean_;                                       // of several samples
   std::array<Unique<VkPipeline>, shaders::TILES_CLASSES> blends_; // of each class
   std::optional<DeepPipelines> deep_;
   VkExtent2D extent_{};
@@ -213,7 +216,8 @@ PipelineConstants Tiles::shadingConstants() const {
           {1, geometry_.allFeatures()},
           {2, geometry_.textureCount()},
           {6, samples_},
-          {7, shuffles()}};
+          {7, shuffles()},
+          {8, corners()}};
 }
 
 std::span<const std::uint32_t> Tiles::blendCode(std::uint32_t tileClass) const {
@@ -244,11 +248,12 @@ Unique<VkPipeline> Tiles::makePipeline(std::span<const std::uint32_t> code, cons
 void Tiles::makePipelines() {
   using Code = std::span<const std::uint32_t>;
   const bool clipped = surfaces_.list().isClipped();
-  const PipelineConstants samples{{0, geometry_.anyFeatures()}, {6, samples_}};
+  const PipelineConstants samples{{0, geometry_.anyFeatures()}, {6, samples_}, {8, corners()}};
   setup_ = makePipeline(clipped ? Code(shaders::tiles_setup_clipped_comp) : Code(shaders::tiles_setup_comp),
                         "tiles setup", samples);
   large_ = makePipeline(clipped ? Code(shaders::tiles_large_clipped_comp) : Code(shaders::tiles_large_comp),
                         "tiles large", samples);
+  corners_ = makePipeline(shaders::tiles_corners_comp, "tiles corners");
   plan_ = makePipeline(shaders::tiles_plan_comp, "tiles plan");
   scatter_ = makePipeline(shaders::tiles_scatter_comp, "tiles scatter");
   for (std::uint32_t i = 0; i < shaders::TILES_CLASSES; ++i) {
@@ -376,11 +381,11 @@ void Tiles::takeMean(VkCommandBuffer commands, const Band& band) {
 void Tiles::drawBand(Frame& frame, const Band& band) {
   VkCommandBuffer commands = frame.commands();
   frame.images().cmdToComputeResolve(commands);
-  clear(commands, band);
-  frame.endPass("clear");
   surfaces_.cmdBindView(commands, layout_.get(), VK_PIPELINE_BIND_POINT_COMPUTE);
   const std::array<VkDescriptorSet, 3> sets{geometry_.textures(), geometry_.set(), set_.set()};
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 1, 3, sets.data(), 0, nullptr);
+  clear(commands, band);
+  frame.endPass("clear");
   if (samples_ > 1) takeMean(commands, band); // the blend writes over it, after barriers of the passes between
   rasterise(frame, band);
   blend(frame);
@@ -389,15 +394,17 @@ void Tiles::drawBand(Frame& frame, const Band& band) {
 }
 
 void Tiles::clear(VkCommandBuffer commands, const Band& band) {
-  // The last frame's or band's passes read and wrote them -> they are cleared and set.
-  cmdMemoryBarrier(commands, {kComputeRead.stages | kIndirectRead.stages, VK_ACCESS_2_NONE}, kClear);
+  // The last frame's or band's passes read and wrote them -> they are cleared, set and made.
+  cmdMemoryBarrier(commands, {kComputeRead.stages | kIndirectRead.stages, VK_ACCESS_2_NONE},
+                   {kClear.stages | kComputeWrite.stages, kClear.accesses | kComputeWrite.accesses});
+  if (corners() == VK_TRUE && band.top == 0) cmdDispatch(commands, corners_, geometry_.cornerGroups());
   vkCmdFillBuffer(commands, memory_.tileRecords().get(), 0, VK_WHOLE_SIZE, 0);
   if (deepPlanned_) vkCmdFillBuffer(commands, memory_.deepPixels().get(), 0, VK_WHOLE_SIZE, 0);
   vkCmdFillBuffer(commands, classes_.get(), 0, VK_WHOLE_SIZE, 0);
   const shaders::TilesFrame data = frameOf(band);
   vkCmdUpdateBuffer(commands, frameBuffer_.get(), 0, sizeof(data), &data);
-  // The clears and the frame's data -> all passes.
-  cmdMemoryBarrier(commands, kClear,
+  // The clears, the frame's data and the corners -> all passes.
+  cmdMemoryBarrier(commands, {kClear.stages | kComputeWrite.stages, kClear.accesses | kComputeWrite.accesses},
                    {kComputeReadWrite.stages, kComputeReadWrite.accesses | VK_ACCESS_2_UNIFORM_READ_BIT});
   control_.cmdClear(commands, kComputeReadWrite);
 }

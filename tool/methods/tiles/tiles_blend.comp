@@ -76,7 +76,8 @@ uint findNearest(uint count, uint from, ivec2 corner, float farthest, bool ended
   bool isEmpty = true;
 #define FORGET(i) nearestKeys[i] = NO_FRAGMENT;
   EACH_KEPT(FORGET)
-  for (uint base = 0u; base < count; base += TILES_PIXELS) {
+  uint base = 0u;
+  for (; base < count; base += TILES_PIXELS) {
     if (isFirst || !kOneBatch) {
       if (!isFirst || base > 0u) barrier(); // all have left the last batch
       uint number = base + thread;
@@ -93,14 +94,16 @@ uint findNearest(uint count, uint from, ivec2 corner, float farthest, bool ended
       }
       sortNewKeys();
       if (isEmpty) {
-        nearestKeys[0] = newKeys[0]; nearestKeys[1] = newKeys[1]; nearestKeys[2] = newKeys[2]; nearestKeys[3] = newKeys[3];
-        nearestKeys[4] = newKeys[4]; nearestKeys[5] = newKeys[5]; nearestKeys[6] = newKeys[6]; nearestKeys[7] = newKeys[7];
+#define TAKE_NEW(i) nearestKeys[i] = newKeys[i];
+        TAKE_NEW(0) TAKE_NEW(1) TAKE_NEW(2) TAKE_NEW(3) TAKE_NEW(4) TAKE_NEW(5) TAKE_NEW(6) TAKE_NEW(7)
         isEmpty = false;
       } else {
         left = min(left, mergeNewKeys());
       }
     }
+    if ((bits.x | bits.y) != 0u) sharedTooShort = 1u; // the driver has ended the loop
   }
+  if (base < count) sharedTooShort = 1u; // as above
   return left;
 }
 
@@ -140,7 +143,7 @@ void main() {
   if (!inside) pixel = ivec2(0);
   PixelLight light = lightBehind(pixel);
   float farthest = farthestDepth(pixel);
-  numberBits = max(uint(findMSB(max(count, 2u) * 2u - 1u)), 2u);
+  numberBits = max(uint(findMSB(max(count, 2u) * 2u - 1u)), 2u); // keys of depths have 30
   bool isEmpty = true;
   bool ended = !inside;
   bool isFirst = true;
@@ -170,8 +173,19 @@ void main() {
       sharedOrder[i / 2 * TILES_PIXELS + thread] = (nearestKeys[i] & numbers) | (nearestKeys[i | 1] & numbers) << 16;
     EACH_KEPT(STORE_KEPT)
     if (ties != 0u) settle(ties, kept);
+    uint k = 0u;
+#ifndef TILES_MSAA // of several samples it came out slower
+    // Up to the first that has the depth of another, which most pixels have not: nothing waits for what these take.
+    for (; k < kept && !ended; ++k) {
+      if ((ties >> k & 1u) != 0u && alikeFrom(k, ties, kept) > 1u) break;
+      alikeFirst = k;
+      blendAlike(light, pixel, thread, 1u);
+      isEmpty = false;
+      if (hasEnough(light)) ended = true;
+    }
+#endif
     uint singles = 0u; // at one depth, more than whose order their colours decide
-    for (uint k = 0u; k < kept && !ended;) {
+    while (k < kept && !ended) {
       uint alike = singles > 0u ? 1u : alikeFrom(k, ties, kept);
       if (alike > TILES_TIES) singles = alike;
       if (singles > 0u) {
@@ -184,19 +198,21 @@ void main() {
       k += alike;
       if (hasEnough(light)) ended = true;
     }
+    if (k < kept && !ended) sharedTooShort = 1u; // as above
     if (left == NO_FRAGMENT) ended = true;
     if (!ended && kept == 0u) { // more than there is room for have one depth
       sharedTooShort = 1u;
       ended = true;
     }
     from = end;
-    if (!ended && i + 1u < turns) sharedGoesOn[turn] = 1u;
-    if (!ended && i + 1u == turns) sharedTooShort = 1u;
+    if (!ended) sharedGoesOn[turn] = 1u;
     barrier();
     if (sharedGoesOn[turn] == 0u) break;
     if (thread == 0u) sharedGoesOn[turn ^ 1u] = 0u;
     barrier();
   }
+  if (!ended) sharedTooShort = 1u; // too many turns, or as above
+  barrier();
   if (sharedTooShort != 0u) {
     if (thread == 0u) addDeep(tile, count);
     return;

@@ -15,9 +15,22 @@ namespace vitrail::tool {
 
 namespace {
 
-constexpr std::uint32_t kGeometryBindings = 12;
+constexpr std::uint32_t kGeometryBindings = 15;
+constexpr std::uint64_t kMostCornerBytes = 1U << 30U; // of each of two buffers
+constexpr std::uint32_t kCornerBytes = 16;
 constexpr VkBufferUsageFlags kTableUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr Access kTableRead{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT};
+
+// Of the work groups of all draws, of which each has its first, that of each.
+std::vector<std::uint32_t> drawsOfGroups(std::span<const shaders::TilesDraw> draws,
+                                         std::uint32_t shaders::TilesDraw::*first, std::uint32_t groups) {
+  std::vector<std::uint32_t> ofGroups(std::max(groups, 1U));
+  for (std::uint32_t i = 0; i < draws.size() && groups > 0; ++i) {
+    const std::uint32_t end = i + 1 < draws.size() ? draws[i + 1].*first : groups;
+    std::fill(ofGroups.begin() + draws[i].*first, ofGroups.begin() + end, i);
+  }
+  return ofGroups;
+}
 
 template <typename Value>
 GpuBuffer uploadTable(Gpu& gpu, const std::vector<Value>& values, const char* name) {
@@ -42,6 +55,7 @@ TilesGeometry::TilesGeometry(const MethodHost& host)
                        std::pair(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VkShaderStageFlags{VK_SHADER_STAGE_COMPUTE_BIT})),
            "tiles geometry") {
   listDraws(host.surfaces);
+  planCorners();
   listTextures(host.surfaces);
   makeTextureLayout();
   makeTextureSet();
@@ -70,6 +84,7 @@ void TilesGeometry::listDraws(const Surfaces& surfaces) {
       item.firstWords[i] = static_cast<std::uint32_t>(place.offsets.at(i) / sizeof(std::uint32_t));
       item.vertexWords[i] = static_cast<std::uint32_t>(place.strides.at(i) / sizeof(std::uint32_t));
     }
+    item.vertices = place.vertices;
     const std::uint64_t triangles = std::uint64_t{item.triangles} * item.instances;
     triangles_ += triangles;
     groups += (triangles + shaders::TILES_GROUP - 1) / shaders::TILES_GROUP;
@@ -87,6 +102,22 @@ void TilesGeometry::listDraws(const Surfaces& surfaces) {
   groups_ = static_cast<std::uint32_t>(groups);
   draws_ = static_cast<std::uint32_t>(list_.size());
   if (list_.empty()) list_.emplace_back(); // something to bind
+}
+
+// Each vertex of each instance has a place among all, unless these take too much.
+void TilesGeometry::planCorners() {
+  std::uint64_t groups = 0;
+  for (std::uint32_t i = 0; i < draws_; ++i) {
+    const std::uint64_t corners = std::uint64_t{list_[i].vertices} * list_[i].instances;
+    list_[i].firstCorner = static_cast<std::uint32_t>(corners_);
+    list_[i].firstCornerGroup = static_cast<std::uint32_t>(groups);
+    corners_ += corners;
+    groups += (corners + shaders::TILES_GROUP - 1) / shaders::TILES_GROUP;
+  }
+  const std::uint64_t most =
+      std::min<std::uint64_t>({kMostCornerBytes, gpu_.properties().limits.maxStorageBufferRange, gpu_.maxAllocation()});
+  if (corners_ * kCornerBytes > most) corners_ = groups = 0;
+  cornerGroups_ = static_cast<std::uint32_t>(groups);
 }
 
 // Textures of all draws in one table, each once.
@@ -173,13 +204,16 @@ void TilesGeometry::writeSet(const Surfaces& surfaces) {
     const std::uint32_t first = list_[i].firstInstance;
     for (std::uint32_t k = first; k < first + list_[i].instances; ++k) ofInstances[k] = {i, scene.sourceOf(k)};
   }
-  std::vector<std::uint32_t> ofGroups(std::max(groups_, 1U));
-  for (std::uint32_t i = 0; i < draws_; ++i) {
-    const std::uint32_t end = i + 1 < draws_ ? list_[i + 1].firstGroup : groups_;
-    std::fill(ofGroups.begin() + list_[i].firstGroup, ofGroups.begin() + end, i);
-  }
+  const auto ofGroups = drawsOfGroups(list_, &shaders::TilesDraw::firstGroup, groups_);
+  const auto ofCornerGroups = drawsOfGroups(list_, &shaders::TilesDraw::firstCornerGroup, cornerGroups_);
   drawBuffer_ = uploadTable(gpu_, list_, "tiles draws");
   groupDraws_ = uploadTable(gpu_, ofGroups, "tiles draws of groups");
+  cornerGroupDraws_ = uploadTable(gpu_, ofCornerGroups, "tiles draws of corner groups");
+  const std::uint64_t corners = std::max<std::uint64_t>(corners_, 1);
+  const bool areLit = (allFeatures_ & shaders::FEATURE_UNLIT) == 0;
+  cornerPlaces_ = GpuBuffer(gpu_, corners * kCornerBytes, kTableUsage, MemoryKind::Device, "tiles corners");
+  cornerNormals_ =
+      GpuBuffer(gpu_, (areLit ? corners : 1) * kCornerBytes, kTableUsage, MemoryKind::Device, "tiles corner normals");
   instanceDraws_ = uploadTable(gpu_, ofInstances, "tiles draws of instances");
   std::array<const GpuBuffer*, kGeometryBindings> buffers{};
   for (std::size_t i = 0; i < kStreamCount; ++i) buffers.at(i) = &scene.streams().buffer(i);
@@ -189,6 +223,9 @@ void TilesGeometry::writeSet(const Surfaces& surfaces) {
   buffers[9] = &drawBuffer_;
   buffers[10] = &instanceDraws_;
   buffers[11] = &groupDraws_;
+  buffers[12] = &cornerPlaces_;
+  buffers[13] = &cornerNormals_;
+  buffers[14] = &cornerGroupDraws_;
   for (std::uint32_t i = 0; i < kGeometryBindings; ++i) {
     checkReach(gpu_, *buffers.at(i), i < kStreamCount ? "vertices" : i == 6 ? "indices" : "objects");
     set_.writeBuffer(i, buffers.at(i)->get(), buffers.at(i)->size());

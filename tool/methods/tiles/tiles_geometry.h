@@ -24,6 +24,8 @@ class TilesGeometry {
   std::uint32_t draws() const { return draws_; }
   std::uint32_t groups() const { return groups_; } // work groups that set up all triangles
   std::uint64_t triangles() const { return triangles_; }
+  // Work groups that bring the vertices into clip space. 0: there is no room for that, and shaders do without.
+  std::uint32_t cornerGroups() const { return cornerGroups_; }
   std::uint32_t anyFeatures() const { return anyFeatures_; }
   std::uint32_t allFeatures() const { return allFeatures_; }
   std::uint32_t textureCount() const { return textureCount_; }
@@ -33,6 +35,7 @@ class TilesGeometry {
  private:
   void listDraws(const Surfaces& surfaces);
   void listTextures(const Surfaces& surfaces);
+  void planCorners();
   void makeTextureLayout();
   void makeTextureSet();
   std::uint32_t texturePlaces() const { return constantTextures_ ? shaders::TILES_CONSTANT_TEXTURES : textureCount_; }
@@ -45,12 +48,17 @@ class TilesGeometry {
   GpuBuffer drawBuffer_;
   GpuBuffer instanceDraws_;
   GpuBuffer groupDraws_;
+  GpuBuffer cornerPlaces_;
+  GpuBuffer cornerNormals_;
+  GpuBuffer cornerGroupDraws_;
   Unique<VkDescriptorSetLayout> textureLayout_;
   Unique<VkDescriptorPool> texturePool_;
   VkDescriptorSet textureSet_ = VK_NULL_HANDLE;
   bool constantTextures_ = false;
   std::uint32_t draws_ = 0;
   std::uint32_t groups_ = 0;
+  std::uint32_t cornerGroups_ = 0;
+  std::uint64_t corners_ = 0;
   std::uint64_t triangles_ = 0;
   std::uint32_t anyFeatures_ = 0;
   std::uint32_t allFeatures_ = 0xffffffffU;

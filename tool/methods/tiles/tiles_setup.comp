@@ -85,15 +85,18 @@ Triangle halfOf(VitrailViewport viewport, vec4 a, vec4 b, uint corners, uvec2 so
   return t;
 }
 
-vec4 cornerOf(uint draw, InstancePlace place, uint vertex) { return clipOf(worldOf(place, positionOf(draw, vertex))); }
+// A vertex of an instance in clip space.
+vec4 clipAt(uint draw, uint instance, uint vertex) {
+  if (kCorners) return cornerPlaces[cornerOf(draw, instance, vertex)];
+  return clipOf(worldOf(placeOf(instance), positionOf(draw, vertex)));
+}
 
 // The corners of a triangle, line or point in clip space.
 VitrailPolygon polygonOf(uint draw, uint corners, uvec2 source) {
-  InstancePlace place = placeOf(source.y);
   uint first = firstIndexOf(draw, corners, source.x);
   VitrailPolygon polygon;
   for (uint i = 0u; i < corners; ++i) {
-    vec4 clip = cornerOf(draw, place, indices[first + i]);
+    vec4 clip = clipAt(draw, source.y, indices[first + i]);
     if (corners == 2u) clip.xy += clip.w * frame.depth.zw; // as surface.vert
     polygon.corners[i] = clip;
   }
@@ -298,11 +301,10 @@ uint setUp(uint draw, uvec2 number, inout Small small) {
   bool isWhole;
   Triangle t;
   if (corners == 3u) { // without arrays, which are slow
-    InstancePlace place = placeOf(number.y);
     uint first = firstIndexOf(draw, corners, number.x);
-    vec4 a = cornerOf(draw, place, indices[first]);
-    vec4 b = cornerOf(draw, place, indices[first + 1u]);
-    vec4 c = cornerOf(draw, place, indices[first + 2u]);
+    vec4 a = clipAt(draw, number.y, indices[first]);
+    vec4 b = clipAt(draw, number.y, indices[first + 1u]);
+    vec4 c = clipAt(draw, number.y, indices[first + 2u]);
     if (vitrailIsOutside(a, b, c)) return 0u;
     isWhole = !vitrailNeedsClipping(viewport, a) && !vitrailNeedsClipping(viewport, b) &&
               !vitrailNeedsClipping(viewport, c);
@@ -341,6 +343,7 @@ uint setUp(uint draw, uvec2 number, inout Small small) {
 
 void main() {
   uint group = flatGroup();
+  if (group >= drawOfGroup.length()) return; // the last row is longer
   uint draw = drawOfGroup[group];
   uint number = (group - draws[draw].firstGroup) * TILES_GROUP + gl_LocalInvocationIndex;
   uint triangles = draws[draw].triangles;

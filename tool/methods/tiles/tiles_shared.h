@@ -35,6 +35,10 @@ struct TilesDraw {
   uint materialNumber;
   uint features;
   uint mirrored;
+  uint vertices;         // of the mesh
+  uint firstCorner;      // of the first instance's vertices, if corners are kept
+  uint firstCornerGroup; // the first work group that makes these
+  uint drawPadding;
   uint firstWords[TILES_STREAMS];  // where its vertices begin, in words
   uint vertexWords[TILES_STREAMS]; // of a vertex; 0: all have the first
   uint textures[SLOT_COUNT];       // which of the table each slot samples
@@ -66,8 +70,8 @@ struct TilesFrame {
   float lightMost; // that one surface sends to the eye
   uint mostWalked; // records of a tile that is not deep from the start
   uint mostVisits; // how often a tile may go through TILES_PIXELS records before it is left to others
+  uint framePadding0;
   uint framePadding1;
-  uint framePadding2;
   vec4 clipPlanes[CLIP_PLANE_COUNT]; // of clip space
 };
 
@@ -102,7 +106,7 @@ struct TilesControl {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(TilesDraw) == 144);
+static_assert(sizeof(TilesDraw) == 160);
 static_assert(sizeof(TilesMaterial) == 768);
 static_assert(sizeof(TilesFrame) == 208);
 static_assert(sizeof(TilesDispatch) == 16);
