@@ -446,6 +446,28 @@ TEST_F(TilesTest, BudgetsDoNotChangeABit) {
   }
 }
 
+// More vertices than shaders of small devices reach in clip space, most of which no triangle has: those that are there
+// are transformed for each triangle and fragment.
+TEST_F(TilesTest, VerticesThatHaveNoRoomInClipSpaceAreRight) {
+  constexpr std::size_t kVertices = (std::size_t{1} << 20U) + 1; // of 16 bytes and 8 objects: more than 128 MiB
+  BuiltinOptions options;
+  options.count = 8;
+  Scene scene = makeBuiltinScene("spheres", options);
+  const RenderOptions picture = usualOptions(scene, 96, 54);
+  const Picture expected = draw("tiles", scene, picture).picture;
+  for (Mesh& mesh : scene.meshes) {
+    const auto pad = [](auto& values) {
+      if (!values.empty()) values.resize(kVertices, values.back());
+    };
+    pad(mesh.positions);
+    pad(mesh.normals);
+    mesh.tangents.clear();
+    mesh.texCoords0.clear();
+    mesh.texCoords1.clear();
+  }
+  EXPECT_LE(largestDifference(draw("tiles", scene, picture).picture, expected), 1);
+}
+
 // ---- Several samples
 
 TEST_F(TilesTest, SeveralSamplesAreThoseOfLists) {
