@@ -313,7 +313,6 @@ shaders::TilesFrame Tiles::frameOf(const Band& band) const {
   data.tilesY = tilesOf(band.bottom - band.top);
   data.top = band.top;
   data.bottom = band.bottom;
-  data.draws = geometry_.draws();
   data.largeBlocks = (data.tilesX + shaders::TILES_LARGE_BLOCK - 1) / shaders::TILES_LARGE_BLOCK;
   const TilesNeeds& capacity = memory_.capacity();
   data.recordCapacity = static_cast<std::uint32_t>(capacity.records);

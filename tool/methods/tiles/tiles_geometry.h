@@ -21,7 +21,6 @@ class TilesGeometry {
   VkDescriptorSetLayout layout() const { return set_.layout(); }
   VkDescriptorSet set() const { return set_.set(); }
 
-  std::uint32_t draws() const { return draws_; }
   std::uint32_t groups() const { return groups_; } // work groups that set up all triangles
   std::uint64_t triangles() const { return triangles_; }
   // Work groups that bring the vertices into clip space. 0: there is no room for that, and shaders do without.

@@ -58,7 +58,6 @@ struct TilesFrame {
   uint tilesY; // of the band
   uint top;    // the band's first row of pixels, and the one behind its last
   uint bottom;
-  uint draws;
   uint largeBlocks; // TILES_LARGE_BLOCKs in a row
   uint recordCapacity;
   uint largeCapacity;
@@ -72,6 +71,7 @@ struct TilesFrame {
   uint mostVisits; // how often a tile may go through TILES_PIXELS records before it is left to others
   uint framePadding0;
   uint framePadding1;
+  uint framePadding2;
   vec4 clipPlanes[CLIP_PLANE_COUNT]; // of clip space
 };
 
