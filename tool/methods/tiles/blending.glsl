@@ -109,8 +109,8 @@ uint visibleSamples(PixelLight light, uint record, ivec2 pixel, uint thread) {
 #ifdef TILES_MSAA
 #define THROUGH(front) (front).transmittance
 #else
-#define THROUGH(front) \
-  ((kAnyFeatures & (FEATURE_ADDITIVE | FEATURE_TRANSMISSION)) == 0u ? (front).transmittance.aaaa : (front).transmittance)
+const bool kThroughVaries = (kAnyFeatures & (FEATURE_ADDITIVE | FEATURE_TRANSMISSION)) != 0u;
+#define THROUGH(front) (kThroughVaries ? (front).transmittance : (front).transmittance.aaaa)
 #endif
 
 void put(inout PixelLight light, vec4 color, uint blend, uint visible) {

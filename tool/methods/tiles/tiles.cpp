@@ -533,7 +533,8 @@ FrameStats Tiles::stats() const {
   stats.complete = cutPixels_ == 0;
   stats.errorBound = 0.5 + shaders::TILES_STOP + 0.05;
   stats.tiles = bandTiles_ > 0 ? (tilesOf(extent_.height) + bandTiles_ - 1) / bandTiles_ : 1;
-  stats.totalBytes = memory_.bytes() + frameBuffer_.size() + classes_.size() + control_.bytes();
+  stats.nodesBytes = memory_.bytes(); // what the budget is for
+  stats.totalBytes = memory_.bytes() + geometry_.bytes() + frameBuffer_.size() + classes_.size() + control_.bytes();
   return stats;
 }
 

@@ -1,5 +1,5 @@
-// Brings each vertex of each instance into clip space, and its normal into the world, so that this is not done again for
-// each triangle and each fragment.
+// Brings each vertex of each instance into clip space, and its normal into the world, so that this is not done again
+// for each triangle and each fragment.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define TILES_MAKES_CORNERS

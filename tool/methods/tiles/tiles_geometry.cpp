@@ -232,4 +232,9 @@ void TilesGeometry::writeSet(const Surfaces& surfaces) {
   }
 }
 
+std::uint64_t TilesGeometry::bytes() const {
+  return drawBuffer_.size() + instanceDraws_.size() + groupDraws_.size() + cornerGroupDraws_.size() +
+         cornerPlaces_.size() + cornerNormals_.size();
+}
+
 } // namespace vitrail::tool

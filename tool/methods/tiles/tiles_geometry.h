@@ -25,6 +25,8 @@ class TilesGeometry {
   std::uint64_t triangles() const { return triangles_; }
   // Work groups that bring the vertices into clip space. 0: there is no room for that, and shaders do without.
   std::uint32_t cornerGroups() const { return cornerGroups_; }
+  // Of the buffers that the scene does not have without this method, the corners' above all.
+  std::uint64_t bytes() const;
   std::uint32_t anyFeatures() const { return anyFeatures_; }
   std::uint32_t allFeatures() const { return allFeatures_; }
   std::uint32_t textureCount() const { return textureCount_; }
