@@ -423,6 +423,49 @@ TEST(ViewMethodsTest, ShowsAnotherPictureBesideIt) {
   view.expectClosesWell();
 }
 
+// By linked-list on a Vulkan device pictures stay there, are not waited for, and what does not fit says so until it
+// does.
+TEST(ViewMethodsTest, PicturesStayOnTheDeviceAndGrow) {
+  const TemporaryFolder folder;
+  View view(folder, {"--scene", "planes", "--count", "24", "--device", "llvmpipe", "--validate"});
+  const Json first = view.shown();
+  ASSERT_FALSE(first.is_null());
+  EXPECT_TRUE(first["onDevice"]);
+  EXPECT_FALSE(first["complete"]); // the first pool is a guess
+  EXPECT_GT(first["missing"], 0);
+  for (const char* pass : {"opaque", "collect", "resolve", "encode"})
+    EXPECT_TRUE(first["passes"].contains(pass)) << pass;
+  const Json shown = view.settled();
+  EXPECT_TRUE(shown["onDevice"]);
+  EXPECT_TRUE(shown["exact"]);
+  EXPECT_EQ(shown["missing"], 0);
+  EXPECT_EQ(shown["tiles"], 1);
+  view.desk.key("Tab");
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(differing(view.desk.look(), drawn(folder, shown["command"])), 0U) << shown["command"];
+  view.expectClosesWell();
+}
+
+TEST(ViewMethodsTest, WhatTheBudgetDoesNotHoldIsDrawnInTilesAtRest) {
+  const TemporaryFolder folder;
+  View view(folder,
+            {"--scene", "planes", "--count", "24", "--device", "llvmpipe", "--validate", "--memory-budget", "24"});
+  const Json first = view.shown();
+  ASSERT_FALSE(first.is_null());
+  EXPECT_FALSE(first["complete"]);
+  Json shown = view.settled();
+  EXPECT_GT(shown["tiles"], 1);
+  EXPECT_TRUE(shown["exact"]);
+  view.desk.key("Left");
+  EXPECT_FALSE(view.shown()["complete"]); // while it moves
+  shown = view.settled();
+  EXPECT_GT(shown["tiles"], 1);
+  view.desk.key("Tab");
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(differing(view.desk.look(), drawn(folder, shown["command"])), 0U) << shown["command"];
+  view.expectClosesWell();
+}
+
 TEST(ViewMethodsTest, Peels) {
   const TemporaryFolder folder;
   View view(folder, {"--scene", "interlocked", "--peel", "2", "--validate"});

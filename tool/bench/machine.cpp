@@ -46,7 +46,7 @@ Machine machineOf(const Device& device) {
   vkGetPhysicalDeviceProperties2(gpu.physicalDevice(), &properties);
   machine.device = gpu.properties().deviceName;
   machine.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
-  machine.api = "Vulkan 1.3";
+  machine.api = kVulkanApi;
   if (gl != nullptr) machine.api += fmt::format(" and {} ({}, {})", gl->api(), gl->name(), gl->driver());
   machine.isCpu = gpu.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   return machine;

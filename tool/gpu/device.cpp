@@ -320,7 +320,9 @@ struct Gpu::Impl {
   VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
+  std::mutex queueMutex;
   std::uint32_t queueFamily = 0;
+  bool presents = false;
   VkPhysicalDeviceProperties properties{};
   GpuFeatures features;
   VkPhysicalDeviceMemoryProperties memoryProperties{};
@@ -408,7 +410,9 @@ Gpu::Gpu(const GpuOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->instance = createInstance(options.validate ? &impl_->log : nullptr, options.instanceExtensions);
   if (options.validate) impl_->createMessenger();
   std::vector<VkPhysicalDevice> devices = enumerate(impl_->instance);
-  std::erase_if(devices, [&](VkPhysicalDevice device) { return !presents(impl_->instance, device, options); });
+  if (options.onlyPresenting) {
+    std::erase_if(devices, [&](VkPhysicalDevice device) { return !tool::presents(impl_->instance, device, options); });
+  }
   if (devices.empty()) throw GpuError("no Vulkan device shows pictures in a window here");
   const DeviceSummary chosen = choose(summarizeAll(devices), options);
   impl_->physicalDevice = devices[chosen.index];
@@ -417,7 +421,8 @@ Gpu::Gpu(const GpuOptions& options) : impl_(std::make_unique<Impl>()) {
   vkGetPhysicalDeviceProperties(impl_->physicalDevice, &impl_->properties);
   vkGetPhysicalDeviceMemoryProperties(impl_->physicalDevice, &impl_->memoryProperties);
   impl_->features = supportedFeatures(impl_->physicalDevice);
-  impl_->createDevice(static_cast<bool>(options.presents));
+  impl_->presents = options.presents && tool::presents(impl_->instance, impl_->physicalDevice, options);
+  impl_->createDevice(impl_->presents);
 }
 
 Gpu::~Gpu() = default;
@@ -425,13 +430,29 @@ Gpu::~Gpu() = default;
 VkInstance Gpu::instance() const { return impl_->instance; }
 VkPhysicalDevice Gpu::physicalDevice() const { return impl_->physicalDevice; }
 VkDevice Gpu::device() const { return impl_->device; }
-VkQueue Gpu::queue() const { return impl_->queue; }
 std::uint32_t Gpu::queueFamily() const { return impl_->queueFamily; }
 const VkPhysicalDeviceProperties& Gpu::properties() const { return impl_->properties; }
 const GpuFeatures& Gpu::features() const { return impl_->features; }
 const VkPhysicalDeviceMemoryProperties& Gpu::memoryProperties() const { return impl_->memoryProperties; }
 
 std::uint64_t Gpu::maxAllocation() const { return impl_->maxAllocation; }
+std::uint64_t Gpu::localMemory() const { return largestLocalHeap(impl_->physicalDevice); }
+bool Gpu::presents() const { return impl_->presents; }
+
+VkResult Gpu::submit(const VkSubmitInfo2& info, VkFence fence) {
+  const std::lock_guard lock(impl_->queueMutex);
+  return vkQueueSubmit2(impl_->queue, 1, &info, fence);
+}
+
+VkResult Gpu::present(const VkPresentInfoKHR& info) {
+  const std::lock_guard lock(impl_->queueMutex);
+  return vkQueuePresentKHR(impl_->queue, &info);
+}
+
+VkResult Gpu::waitIdle() {
+  const std::lock_guard lock(impl_->queueMutex);
+  return impl_->device == VK_NULL_HANDLE ? VK_SUCCESS : vkDeviceWaitIdle(impl_->device);
+}
 
 void Gpu::close() {
   if (impl_->device != VK_NULL_HANDLE) vkDestroyDevice(impl_->device, nullptr);

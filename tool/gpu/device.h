@@ -14,6 +14,8 @@
 
 namespace vitrail::tool {
 
+inline constexpr const char* kVulkanApi = "Vulkan 1.3"; // what it draws with
+
 // What `vitrail info` shows of a device.
 struct DeviceSummary {
   std::uint32_t index = 0; // what --device takes
@@ -41,13 +43,14 @@ struct GpuOptions {
   bool validate = false;
   bool onlyGpus = false; // isUsableGpu()
   // For windows: what the instance is made with beside the tool's own, and whether a queue family shows pictures in
-  // them. With it the device has VK_KHR_swapchain.
+  // them. With it a device that does has VK_KHR_swapchain, and `onlyPresenting` leaves the others out.
   std::vector<const char*> instanceExtensions{};
   std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t queueFamily)> presents{};
+  bool onlyPresenting = false;
 };
 
 // Instance, device and one queue with graphics and compute, made for Vulkan 1.3 with dynamic rendering,
-// synchronization2 and those of GpuFeatures that the device has.
+// synchronization2 and those of GpuFeatures that the device has. Several threads may use it at once.
 class Gpu {
  public:
   explicit Gpu(const GpuOptions& options);
@@ -58,14 +61,20 @@ class Gpu {
   VkInstance instance() const;
   VkPhysicalDevice physicalDevice() const;
   VkDevice device() const;
-  VkQueue queue() const;
   std::uint32_t queueFamily() const;
+  bool presents() const; // GpuOptions::presents
   const VkPhysicalDeviceProperties& properties() const;
   // What the device was made with.
   const GpuFeatures& features() const;
   const VkPhysicalDeviceMemoryProperties& memoryProperties() const;
   // The largest single allocation, in bytes.
   std::uint64_t maxAllocation() const;
+  std::uint64_t localMemory() const; // bytes of the largest device-local heap
+
+  // The queue's calls, one at a time: what a thread submits comes behind all that any has submitted before.
+  VkResult submit(const VkSubmitInfo2& info, VkFence fence);
+  VkResult present(const VkPresentInfoKHR& info);
+  VkResult waitIdle(); // for all that was submitted
 
   // Destroys the device, so that validationErrors() also tells of objects that outlived it. Nothing else may be called
   // afterwards.

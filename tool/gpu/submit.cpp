@@ -1,6 +1,7 @@
 #include "submit.h"
 
 #include <cstdint>
+#include <utility>
 
 #include "vk.h"
 
@@ -29,6 +30,11 @@ Submitter::Submitter(Gpu& gpu) : gpu_(gpu) {
   setDebugName(gpu.device(), VK_OBJECT_TYPE_FENCE, fence, "commands executed");
 }
 
+Submitter::~Submitter() {
+  const VkFence fence = fence_.get();
+  if (!pending_.empty()) vkWaitForFences(gpu_.device(), 1, &fence, VK_TRUE, UINT64_MAX);
+}
+
 VkCommandBuffer Submitter::begin() {
   check(vkResetCommandPool(gpu_.device(), pool_.get(), 0), "vkResetCommandPool");
   auto begin = vkStruct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
@@ -38,6 +44,11 @@ VkCommandBuffer Submitter::begin() {
 }
 
 void Submitter::execute(const std::string& what) {
+  submit(what);
+  wait();
+}
+
+void Submitter::submit(const std::string& what) {
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer (" + what + ")");
 
   auto commandInfo = vkStruct<VkCommandBufferSubmitInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO);
@@ -45,8 +56,14 @@ void Submitter::execute(const std::string& what) {
   auto submit = vkStruct<VkSubmitInfo2>(VK_STRUCTURE_TYPE_SUBMIT_INFO_2);
   submit.commandBufferInfoCount = 1;
   submit.pCommandBufferInfos = &commandInfo;
+  check(gpu_.submit(submit, fence_.get()), "vkQueueSubmit2 (" + what + ")");
+  pending_ = what;
+}
+
+void Submitter::wait() {
+  if (pending_.empty()) return;
   const VkFence fence = fence_.get();
-  check(vkQueueSubmit2(gpu_.queue(), 1, &submit, fence), "vkQueueSubmit2 (" + what + ")");
+  const std::string what = std::exchange(pending_, {});
   check(vkWaitForFences(gpu_.device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences (" + what + ")");
   check(vkResetFences(gpu_.device(), 1, &fence), "vkResetFences");
 }

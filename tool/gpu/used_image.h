@@ -26,10 +26,11 @@ class UsedImage {
   void cmdClear(VkCommandBuffer commands, const VkClearColorValue& value);
   // What it holds is not needed any more; the next use waits for the last one.
   void discard() { layout_ = VK_IMAGE_LAYOUT_UNDEFINED; }
+
+ private:
   // What it holds is not needed any more, and nobody uses it.
   void forget();
 
- private:
   GpuImage image_;
   VkImageLayout layout_ = VK_IMAGE_LAYOUT_UNDEFINED;
   Access access_;

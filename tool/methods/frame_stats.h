@@ -24,8 +24,9 @@ struct FrameStats {
   std::uint32_t approximatePixels = 0;
   std::uint32_t cutPixels = 0; // pixels that the driver did not let the method finish
   std::uint32_t layersMax = 0;
-  double layersMean = 0.0; // over pixels that hold at least one fragment; 0 where there are none
-  std::uint32_t tiles = 1; // areas that were collected and resolved one after the other
+  double layersMean = 0.0;        // over pixels that hold at least one fragment; 0 where there are none
+  std::uint32_t tiles = 1;        // areas that were collected and resolved one after the other
+  std::uint32_t nodeCapacity = 0; // of pictures that were drawn in flight: nodes that there was room for
   std::uint64_t nodesBytes = 0;
   std::uint64_t headsBytes = 0;
   std::uint64_t totalBytes = 0;             // all that the method keeps on the device for its target

@@ -35,6 +35,10 @@ struct MethodTarget {
   std::optional<std::uint64_t> memoryBudget;
   bool surfaces = true;                            // whether there is anything transparent
   std::function<void(std::uint32_t tiles)> onTile; // where not empty, told how many tiles of a picture are done
+  // More than 1: pictures are drawn without waiting for any (Method::drawsInFlight), and so many may be pending at
+  // once. What a method has to replace meanwhile it replaces behind waitForFrames().
+  std::uint32_t framesInFlight = 1;
+  std::function<void()> waitForFrames;
 };
 
 class Method {
@@ -66,6 +70,15 @@ class Method {
 
   // What was reported of the picture, and what was taken of the method's choices.
   virtual FrameStats stats() const = 0;
+
+  // Whether the target's pictures are drawn in flight: draw() draws each once, into the memory that there is, which
+  // follows what pictures need, and neither waits nor submits; finish() and stats() are left out. A picture of another
+  // target, or for which the device has no room so, is drawn by the calls above.
+  virtual bool drawsInFlight() const { return false; }
+  // The number of the picture that draw() drew last, and what was reported of one that the GPU has executed, before the
+  // one `framesInFlight` behind it is drawn.
+  virtual std::uint64_t lastPicture() const { return 0; }
+  virtual FrameStats statsOf(std::uint64_t /*picture*/) { return stats(); }
 };
 
 } // namespace vitrail::tool

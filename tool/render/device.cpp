@@ -26,14 +26,16 @@ Device::Device(const DeviceOptions& options) {
     reason_ = options.name.empty() ? "name one with --device" : "leave --device cpu out";
     return;
   }
+  GpuOptions gpu{options.name, options.validate, false, options.instanceExtensions, options.presents, false};
   if (!options.name.empty() || options.wish == Wish::Vulkan) {
-    gpu_ = std::make_unique<Gpu>(GpuOptions{options.name, options.validate});
+    gpu_ = std::make_unique<Gpu>(gpu);
     return;
   }
   const bool onlyGpus = options.wish == Wish::Fastest;
   if (onlyGpus && !mayHaveGpu()) return;
   try {
-    gpu_ = std::make_unique<Gpu>(GpuOptions{{}, options.validate, onlyGpus});
+    gpu.onlyGpus = onlyGpus;
+    gpu_ = std::make_unique<Gpu>(gpu);
   } catch (const GpuError& error) { // the processor can do it too
     reason_ = error.what();
   }

@@ -1,10 +1,13 @@
 // What pictures are drawn on: a Vulkan device, an OpenGL device, the processor by Vitrail's own rasteriser.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "../gpu/device.h"
 #include "../methods/method_options.h"
@@ -32,6 +35,9 @@ struct DeviceOptions {
   Wish wish = Wish::Fastest;
   bool vulkan = true;  // false: no Vulkan device, whatever is wished
   bool openGl = false; // an OpenGL device beside it
+  // As GpuOptions has them, of windows that may show the Vulkan device's pictures.
+  std::vector<const char*> instanceExtensions{};
+  std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t queueFamily)> presents{};
 };
 
 // The processor is always there and takes the method `cpu`; the Vulkan device takes all others, and the OpenGL device

@@ -10,7 +10,11 @@ const uint SRGB_8 = 0u;
 const uint SRGB_16 = 1u;
 
 layout(set = 0, binding = 0, rgba16f) uniform readonly image2D colorImage;
+#ifdef ENCODE_IMAGE // whose texels are the same codes, of SRGB_8
+layout(set = 0, binding = 1, rgba8) uniform writeonly image2D pixelImage;
+#else
 layout(set = 0, binding = 1, std430) writeonly buffer PixelBlock { uint pixels[]; }; // one band of rows
+#endif
 
 layout(push_constant) uniform Band {
   uint width;
@@ -29,17 +33,27 @@ float encode(float linear) {
 
 uint quantize(float v, float most) { return uint(v * most + 0.5); }
 
+#ifdef ENCODE_IMAGE
+void store8(uvec2 pixel, uint at, uvec4 codes) { imageStore(pixelImage, ivec2(pixel), vec4(codes) / 255.0); }
+#else
+void store8(uvec2 pixel, uint at, uvec4 codes) {
+  pixels[at] = codes.r | codes.g << 8 | codes.b << 16 | codes.a << 24;
+}
+#endif
+
 void main() {
   uvec2 local = gl_GlobalInvocationID.xy;
   uvec2 pixel = uvec2(local.x, firstRow + local.y);
   if (pixel.x >= width || local.y >= rows || pixel.y >= height) return;
   vec4 color = imageLoad(colorImage, ivec2(pixel));
   uint at = local.y * width + pixel.x;
+#ifndef ENCODE_IMAGE
   if (kEncoding > SRGB_16) {
     pixels[2u * at] = packHalf2x16(color.rg);
     pixels[2u * at + 1u] = packHalf2x16(color.ba);
     return;
   }
+#endif
   float alpha = saturate(color.a);
   vec3 straight = alpha > 0.0 ? color.rgb / alpha : vec3(0.0);
   float most = kEncoding == SRGB_16 ? 65535.0 : 255.0;
@@ -54,11 +68,13 @@ void main() {
     coded = mix(light, coded, alpha) / raised;
     alpha = raised;
   }
+  uvec4 codes = uvec4(quantize(coded.r, most), quantize(coded.g, most), quantize(coded.b, most), quantize(alpha, most));
+#ifndef ENCODE_IMAGE
   if (kEncoding == SRGB_16) {
-    pixels[2u * at] = quantize(coded.r, most) | quantize(coded.g, most) << 16;
-    pixels[2u * at + 1u] = quantize(coded.b, most) | quantize(alpha, most) << 16;
-  } else {
-    pixels[at] = quantize(coded.r, most) | quantize(coded.g, most) << 8 | quantize(coded.b, most) << 16 |
-                 quantize(alpha, most) << 24;
+    pixels[2u * at] = codes.r | codes.g << 16;
+    pixels[2u * at + 1u] = codes.b | codes.a << 16;
+    return;
   }
+#endif
+  store8(pixel, at, codes);
 }

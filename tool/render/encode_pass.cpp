@@ -5,27 +5,17 @@
 
 #include "../gpu/barrier.h"
 #include "../gpu/pipeline.h"
+#include "encode_shared.h"
 #include "shaders/encode.comp.h"
 
 namespace vitrail::tool {
 
 namespace {
 
-struct Band { // the push constants of encode.comp
-  std::uint32_t width;
-  std::uint32_t height;
-  std::uint32_t firstRow;
-  std::uint32_t rows;
-};
-
-constexpr std::uint32_t kGroupSide = 8;
-
 // A band's offset in the buffer is a multiple of 256 bytes, the largest alignment that a device may ask for.
 constexpr std::uint32_t kRowAlignment = 64;
 
 std::uint32_t pixelBytes(Encoding encoding) { return encoding == Encoding::Srgb8 ? 4 : 8; }
-
-std::uint32_t bandGroups(std::uint32_t pixels) { return (pixels + kGroupSide - 1) / kGroupSide; }
 
 } // namespace
 
@@ -35,7 +25,7 @@ EncodePass::EncodePass(Gpu& gpu)
            {{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT},
             {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC, VK_SHADER_STAGE_COMPUTE_BIT}},
            "encode"),
-      layout_(makePipelineLayout(gpu, {set_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(Band)}, "encode")),
+      layout_(makePipelineLayout(gpu, {set_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(EncodeBand)}, "encode")),
       pipeline_(makeComputePipeline(gpu, layout_.get(), shaders::encode_comp, "encode")) {}
 
 std::uint64_t EncodePass::rowBytes() const { return std::uint64_t{extent_.width} * pixelBytes(encoding_); }
@@ -70,12 +60,12 @@ void EncodePass::cmdEncode(VkCommandBuffer commands) const {
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
   const VkDescriptorSet set = set_.set();
   for (std::uint32_t row = 0; row < extent_.height; row += bandRows_) {
-    const Band band{extent_.width, extent_.height, row, std::min(bandRows_, extent_.height - row)};
+    const EncodeBand band{extent_.width, extent_.height, row, std::min(bandRows_, extent_.height - row)};
     const std::uint64_t offset = row * rowBytes();
     const auto dynamicOffset = static_cast<std::uint32_t>(offset);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set, 1, &dynamicOffset);
     vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(band), &band);
-    vkCmdDispatch(commands, bandGroups(band.width), bandGroups(band.rows), 1);
+    vkCmdDispatch(commands, encodeGroups(band.width), encodeGroups(band.rows), 1);
   }
   // The encoding shader writes the pixels -> the host reads them after the fence.
   cmdMemoryBarrier(commands, {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT},

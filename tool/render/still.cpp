@@ -18,9 +18,12 @@ struct StillRenderer::Impl {
   Stage stage;                    // the method's target holds views of its images
   std::unique_ptr<Method> method; // draws on it
   EncodePass encode;
+  std::uint64_t encodedImages = 0; // of the stage, that `encode` reads: which those are
   Timers timers;
 
   Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, const MethodOptions& chosen);
+  void setSize(VkExtent2D size);
+  MethodTarget targetOf(const RenderOptions& picture);
   void prepare(const RenderOptions& picture);
   bool draw(const Background& background, bool encoded);
   FrameReport drawUntilComplete(const RenderOptions& picture, bool encoded);
@@ -39,18 +42,30 @@ StillRenderer::Impl::Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, c
   warnOfPoints(scene, stage.surfaces().pointSize(), gpu.properties().deviceName, warnings);
 }
 
+void StillRenderer::Impl::setSize(VkExtent2D size) {
+  if (stage.hasSize(size)) return;
+  method->releaseTarget();
+  stage.setSize(size);
+}
+
 void StillRenderer::Impl::prepare(const RenderOptions& picture) {
   checkPictureOptions(options.name, picture.memoryBudget.has_value());
-  PictureImages& images = stage.images();
-  if (const VkExtent2D extent{picture.width, picture.height}; !stage.hasSize(extent)) {
-    method->releaseTarget();
-    stage.setSize(extent);
-    encode.setSource(images.color().get());
+  const VkExtent2D size{picture.width, picture.height};
+  setSize(size);
+  stage.images().setPart(size);
+  if (encodedImages != stage.imagesMade()) {
+    encode.setSource(stage.images().color().get());
+    encodedImages = stage.imagesMade();
   }
   encode.setEncoding(picture.encoding);
   stage.setView(picture.view);
+  method->setTarget(targetOf(picture));
+}
+
+MethodTarget StillRenderer::Impl::targetOf(const RenderOptions& picture) {
+  PictureImages& images = stage.images();
   MethodTarget target;
-  target.extent = images.extent();
+  target.extent = images.size();
   target.color = images.color().get().view();
   target.opaque = images.multisampled().view();
   target.depth = images.sampledDepth();
@@ -58,7 +73,7 @@ void StillRenderer::Impl::prepare(const RenderOptions& picture) {
   target.memoryBudget = picture.memoryBudget;
   target.onTile = picture.onTile;
   target.surfaces = !stage.surfaces().scene().transparentDraws().empty();
-  method->setTarget(target);
+  return target;
 }
 
 // Draws a picture. False: the method has made room, and the picture must be drawn again.
@@ -83,7 +98,7 @@ FrameReport StillRenderer::Impl::drawUntilComplete(const RenderOptions& picture,
       device, [&] { return draw(picture.background, encoded); }, [&] { return method->stats(); });
   FrameReport report = reportOf(stats, picture, options, timers.milliseconds());
   report.device = device;
-  report.api = "Vulkan 1.3";
+  report.api = kVulkanApi;
   report.warnings = warnings;
   report.peakBytes = stage.gpu().peakMemory();
   return report;
@@ -112,7 +127,18 @@ StillRenderer::StillRenderer(Gpu& gpu, Scene&& scene, std::optional<float> opaci
   impl_ = std::make_unique<Impl>(gpu, scene, info, method);
 }
 
+StillRenderer::StillRenderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity, const MethodOptions& method,
+                             std::uint32_t framesInFlight)
+    : impl_(std::make_unique<Impl>(
+          gpu, scene, StageInfo{opacity, DrawOrder::Forward, method.samples, nullptr, framesInFlight}, method)) {}
+
 StillRenderer::~StillRenderer() = default;
+
+Stage& StillRenderer::stage() { return impl_->stage; }
+Method& StillRenderer::method() { return *impl_->method; }
+void StillRenderer::setSize(VkExtent2D size) { impl_->setSize(size); }
+MethodTarget StillRenderer::targetOf(const RenderOptions& picture) { return impl_->targetOf(picture); }
+const std::vector<std::string>& StillRenderer::warnings() const { return impl_->warnings; }
 
 RenderResult StillRenderer::render(const RenderOptions& options) {
   RenderResult result;

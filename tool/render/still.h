@@ -8,8 +8,10 @@
 #include <optional>
 
 #include "../gpu/device.h"
+#include "../methods/method.h"
 #include "../methods/method_options.h"
 #include "../stage/draw_order.h"
+#include "../stage/stage.h"
 #include "renderer.h"
 
 namespace vitrail::tool {
@@ -29,6 +31,18 @@ class StillRenderer final : public Renderer {
 
   RenderResult render(const RenderOptions& options) override;
   FrameReport measure(const RenderOptions& options) override;
+
+  // For a driver that draws other pictures of the scene in between (interactive.h): the same device's Stage, which
+  // allows so many frames in flight, and the Method. None of its frames is pending when this class draws.
+  StillRenderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity, const MethodOptions& method,
+                std::uint32_t framesInFlight);
+  Stage& stage();
+  Method& method();
+  // Draws on images of that size from now on, where they had another. No frame is pending.
+  void setSize(VkExtent2D size);
+  // What the method is given of a picture on the stage's images.
+  MethodTarget targetOf(const RenderOptions& picture);
+  const std::vector<std::string>& warnings() const;
 
  private:
   struct Impl;

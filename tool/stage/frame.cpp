@@ -28,8 +28,13 @@ void Frame::submitAndWait() {
 }
 
 void Frame::finish() {
-  submitter_.execute("frame");
+  submit();
+  submitter_.wait();
   timers_.addSubmission();
+}
+
+void Frame::submit() {
+  submitter_.submit("frame");
   commands_ = VK_NULL_HANDLE;
 }
 

@@ -43,6 +43,8 @@ class Frame {
   void submitAndWait();
   // The same, and nothing is recorded any more.
   void finish();
+  // The same without waiting: that is left to who has the Submitter, and the Timers' addSubmission() with it.
+  void submit();
 
  private:
   Submitter& submitter_;

@@ -62,7 +62,7 @@ Unique<VkImageView> makeAspectView(Gpu& gpu, const GpuImage& depth, VkImageAspec
 
 } // namespace
 
-PictureImages::PictureImages(Gpu& gpu, const PictureImagesInfo& info) : info_(info) {
+PictureImages::PictureImages(Gpu& gpu, const PictureImagesInfo& info) : info_(info), part_(info.extent) {
   checkExtent(gpu, info.extent);
   color_ = UsedImage(makeColor(gpu, info, VK_SAMPLE_COUNT_1_BIT, "colour image"));
   depth_ = UsedImage(makeDepth(gpu, info));
@@ -78,9 +78,9 @@ PictureImages::PictureImages(Gpu& gpu, const PictureImagesInfo& info) : info_(in
 }
 
 void PictureImages::cmdBeginOpaque(VkCommandBuffer commands, const VkClearColorValue& background) {
-  color_.forget();
-  multisampled_.forget();
-  depth_.forget();
+  color_.discard();
+  multisampled_.discard();
+  depth_.discard();
   Scope scope = wholeScope();
   scope.colors.push_back({.image = &drawn(), .clear = background});
   scope.depth = {.image = &depth_, .depth = AspectUse::Write, .clear = VkClearDepthStencilValue{0.0F, 0}};

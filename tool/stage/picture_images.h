@@ -32,7 +32,10 @@ class PictureImages {
     return stencil ? VK_FORMAT_D32_SFLOAT_S8_UINT : VK_FORMAT_D32_SFLOAT;
   }
 
-  VkExtent2D extent() const { return info_.extent; }
+  VkExtent2D size() const { return info_.extent; }
+  // What of it frames draw, from the top left corner: all, until a part is chosen.
+  VkExtent2D extent() const { return part_; }
+  void setPart(VkExtent2D part) { part_ = part; }
   VkSampleCountFlagBits samples() const { return info_.samples; }
   VkFormat depthFormat() const { return depthFormat(info_.stencil); }
   const GpuImage& multisampled() const { return multisampled_.get(); } // none at one sample
@@ -46,7 +49,7 @@ class PictureImages {
   UsedImage& depth() { return depth_; }
 
   // Begins a rendering scope over the whole picture that clears colour to `background`, depth to 0, the far plane, and
-  // stencil to 0. What the images held is lost; nobody uses them any more.
+  // stencil to 0. What the images held is lost, once those who use them are done.
   void cmdBeginOpaque(VkCommandBuffer commands, const VkClearColorValue& background);
 
   // A scope over the whole picture without attachments.
@@ -73,6 +76,7 @@ class PictureImages {
 
  private:
   PictureImagesInfo info_;
+  VkExtent2D part_{};
   UsedImage color_;
   UsedImage multisampled_;
   UsedImage depth_;

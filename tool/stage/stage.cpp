@@ -54,7 +54,7 @@ SurfacePipelines opaquePipelines(const Surfaces& surfaces, const PictureImagesIn
 Stage::Stage(Gpu& gpu, const Scene& scene, const StageInfo& info)
     : gpu_(gpu),
       imagesInfo_{{}, {}, sampleFlag(gpu, info.samples)},
-      surfaces_(gpu, scene, info.opacity, info.order, info.released) {}
+      surfaces_(gpu, scene, info.opacity, info.order, info.released, info.framesInFlight) {}
 
 void Stage::setNeeds(const ImageNeeds& needs) {
   static_cast<ImageNeeds&>(imagesInfo_) = needs;
@@ -64,13 +64,14 @@ void Stage::setNeeds(const ImageNeeds& needs) {
 }
 
 bool Stage::hasSize(VkExtent2D extent) const {
-  return extent.width == images_.extent().width && extent.height == images_.extent().height;
+  return extent.width == images_.size().width && extent.height == images_.size().height;
 }
 
 void Stage::setSize(VkExtent2D extent) {
   images_ = PictureImages(); // first: the old size and the new one need not fit together
   imagesInfo_.extent = extent;
   images_ = PictureImages(gpu_, imagesInfo_);
+  ++imagesMade_;
 }
 
 void Stage::setView(const View& view) {

@@ -18,6 +18,7 @@ struct StageInfo {
   DrawOrder order = DrawOrder::Forward; // of the transparent draws
   std::uint32_t samples = 1;            // of a pixel
   Scene* released = nullptr;            // the same scene, whose geometry is let go of as it has been copied; or null
+  std::uint32_t framesInFlight = 1;     // that may be pending at once
 };
 
 class Stage {
@@ -37,7 +38,10 @@ class Stage {
   bool hasSize(VkExtent2D extent) const;
   // Makes images of another size, in place of the old ones. Throws GpuError.
   void setSize(VkExtent2D extent);
-  // Looks at the scene so, through images that have their size. No frame is pending.
+  // Which images those are: how often they have been made.
+  std::uint64_t imagesMade() const { return imagesMade_; }
+  // Looks at the scene so, through images that have their size, or the part of them that is drawn. No frame is pending
+  // that was recorded `framesInFlight` views ago.
   void setView(const View& view);
 
   // Draws the background, opaque and alpha-masked surfaces, as the pass "opaque".
@@ -59,6 +63,7 @@ class Stage {
   PictureImagesInfo imagesInfo_;
   Surfaces surfaces_;
   PictureImages images_;
+  std::uint64_t imagesMade_ = 0;
   std::optional<OpaquePass> opaque_;
 };
 

@@ -63,31 +63,36 @@ SurfacePipelines::SurfacePipelines(const Surfaces& surfaces, std::span<const Gpu
   }
 }
 
-Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released)
+Surfaces::Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released,
+                   std::uint32_t framesInFlight)
     : gpu_(gpu),
       scene_(gpu, scene, opacity, order, released),
       pointSize_(drawnPointSize(gpu, scene.pointSize)),
       list_(scene_, scene, scene_.lightCount()),
-      viewBuffer_(gpu, sizeof(shaders::FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::Upload,
-                  "frame data"),
-      frameSet_(gpu,
-                {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kSurfaceStages},
-                 {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, kSurfaceStages},
-                 {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSurfaceStages}},
-                "frame") {
+      views_(framesInFlight) {
   checkClipPlanes(gpu, scene);
-  frameSet_.writeBuffer(0, viewBuffer_.get(), viewBuffer_.size());
-  frameSet_.writeBuffer(1, scene_.materials().get(), sizeof(shaders::MaterialData));
-  frameSet_.writeBuffer(2, scene_.lights().get(), scene_.lights().size());
+  for (ViewSlot& view : views_) {
+    view.buffer = GpuBuffer(gpu, sizeof(shaders::FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::Upload,
+                            "frame data");
+    view.set = SingleSet(gpu,
+                         {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kSurfaceStages},
+                          {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, kSurfaceStages},
+                          {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSurfaceStages}},
+                         "frame");
+    view.set.writeBuffer(0, view.buffer.get(), view.buffer.size());
+    view.set.writeBuffer(1, scene_.materials().get(), sizeof(shaders::MaterialData));
+    view.set.writeBuffer(2, scene_.lights().get(), scene_.lights().size());
+  }
 }
 
 void Surfaces::setView(const shaders::FrameData& view) {
   list_.setView(view);
-  std::memcpy(viewBuffer_.mapped(), &list_.view(), sizeof(view));
+  view_ = (view_ + 1) % views_.size();
+  std::memcpy(views_[view_].buffer.mapped(), &list_.view(), sizeof(view));
 }
 
 void Surfaces::cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout, VkPipelineBindPoint point) const {
-  const VkDescriptorSet set = frameSet_.set();
+  const VkDescriptorSet set = views_[view_].set.set();
   const std::uint32_t offset = 0; // of no draw
   vkCmdBindDescriptorSets(commands, point, layout, 0, 1, &set, 1, &offset);
 }
@@ -122,7 +127,7 @@ void Surfaces::cmdDraw(VkCommandBuffer commands, std::span<const GpuDraw> draws,
 void Surfaces::cmdBind(VkCommandBuffer commands, VkPipelineLayout layout, const GpuDraw& draw,
                        const GpuDraw* before) const {
   if (before == nullptr || before->material != draw.material) {
-    const std::array<VkDescriptorSet, 2> sets{frameSet_.set(), scene_.textures(draw.material)};
+    const std::array<VkDescriptorSet, 2> sets{views_[view_].set.set(), scene_.textures(draw.material)};
     const std::uint32_t offset = draw.material * kUniformStride<shaders::MaterialData>;
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 2, sets.data(), 1, &offset);
   }

@@ -51,8 +51,9 @@ float drawnPointSize(const Gpu& gpu, float wanted);
 
 class Surfaces {
  public:
-  // As GpuScene. Throws GpuError.
-  Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released = nullptr);
+  // As GpuScene. `framesInFlight`: how many frames, each with a view of its own, may be pending. Throws GpuError.
+  Surfaces(Gpu& gpu, const Scene& scene, std::optional<float> opacity, DrawOrder order, Scene* released = nullptr,
+           std::uint32_t framesInFlight = 1);
 
   Gpu& gpu() const { return gpu_; }
   const GpuScene& scene() const { return scene_; }
@@ -60,11 +61,13 @@ class Surfaces {
   const SurfaceList& list() const { return list_; }
   const std::vector<SurfaceRun>& transparentRuns() const { return list_.transparentRuns(); }
 
-  // As SurfaceList. No frame is pending.
+  std::uint32_t framesInFlight() const { return static_cast<std::uint32_t>(views_.size()); }
+
+  // As SurfaceList, for the frames to come. No frame that was recorded `framesInFlight` views ago is pending.
   void setView(const shaders::FrameData& view);
   const shaders::FrameData& view() const { return list_.view(); }
 
-  VkDescriptorSetLayout frameLayout() const { return frameSet_.layout(); } // set 0
+  VkDescriptorSetLayout frameLayout() const { return views_[0].set.layout(); } // set 0
   // Binds set 0 for shaders that read the view and the lights alone.
   void cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout,
                    VkPipelineBindPoint point = VK_PIPELINE_BIND_POINT_GRAPHICS) const;
@@ -82,8 +85,12 @@ class Surfaces {
   GpuScene scene_;
   float pointSize_;
   SurfaceList list_;
-  GpuBuffer viewBuffer_; // shaders::FrameData
-  SingleSet frameSet_;
+  struct ViewSlot {
+    GpuBuffer buffer; // shaders::FrameData
+    SingleSet set;    // set 0
+  };
+  std::vector<ViewSlot> views_;
+  std::size_t view_ = 0; // of the frames to come
 };
 
 } // namespace vitrail::tool

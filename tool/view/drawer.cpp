@@ -22,9 +22,16 @@ bool sameScene(const RenderArguments& a, const RenderArguments& b) {
          a.load.variant == b.load.variant;
 }
 
+// Whether a picture at rest is left to drawExactly(): one that does not fit the memory whole, that the driver cut
+// short, or that may show nothing, which is then said.
+bool needsExact(const FrameReport& report) {
+  return report.fragmentsMissing > 0 || report.cutPixels > 0 || report.fragmentsRequested == 0;
+}
+
 } // namespace
 
-Drawer::Drawer(const Device& device, void (*onNews)()) : device_(device), onNews_(onNews), thread_([this] { run(); }) {}
+Drawer::Drawer(const Device& device, bool sharesImages, void (*onNews)())
+    : device_(device), sharesImages_(sharesImages), onNews_(onNews), thread_([this] { run(); }) {}
 
 Drawer::~Drawer() {
   {
@@ -85,20 +92,23 @@ void Drawer::run() {
   if (device_.gl() != nullptr) device_.gl()->comeToThread(); // what is made with it stays on this thread
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return ends_ || wanted_ || wantedPick_; });
+    const bool goesOn = !begun_.empty() || again_;
+    if (!goesOn) changed_.wait(lock, [this] { return ends_ || wanted_ || wantedPick_; });
     if (ends_) break;
-    const std::optional<Wanted> wanted = std::exchange(wanted_, std::nullopt);
+    std::optional<Wanted> wanted = std::exchange(wanted_, std::nullopt);
     std::optional<Picked> picking;
-    if (!wanted) picking = std::exchange(wantedPick_, std::nullopt); // pictures first: they load what is picked in
-    doing_ = wanted ? "drawing" : "picking";
+    // Pictures first: they load what is picked in.
+    if (!wanted && !goesOn) picking = std::exchange(wantedPick_, std::nullopt);
+    const bool isPicture = !picking;
+    doing_ = isPicture ? "drawing" : "picking";
     lock.unlock();
     std::exception_ptr error;
     try {
-      wanted ? draw(*wanted) : pick(*picking);
+      work(std::move(wanted), std::move(picking));
     } catch (...) {
       error = std::current_exception();
     }
-    if (error && wanted) letGo(); // it may be half made, or on a device that is lost
+    if (error && isPicture) letGo(); // it may be half made, or on a device that is lost
     lock.lock();
     if (error) error_ = error;
     doing_.clear();
@@ -111,8 +121,24 @@ void Drawer::run() {
   if (device_.gl() != nullptr) device_.gl()->leaveThread();
 }
 
+// One step: what is wanted now is begun, else what was begun before is finished.
+void Drawer::work(std::optional<Wanted> wanted, std::optional<Picked> picking) {
+  if (picking) return pick(*picking);
+  if (wanted) {
+    again_.reset(); // for a newer one
+    mostNodes_ = 0;
+  } else if (begun_.empty()) {
+    wanted = std::exchange(again_, std::nullopt);
+  }
+  if (wanted) draw(*wanted);
+  if (begun_.size() == InteractiveRenderer::kFramesInFlight || (!wanted && !begun_.empty())) finish();
+}
+
 // What was made of the scene.
 void Drawer::letGo() {
+  begun_.clear();
+  again_.reset();
+  interactive_ = nullptr;
   renderer_.reset();
   beside_.reset();
   picker_.reset();
@@ -181,8 +207,16 @@ void Drawer::prepare(const RenderArguments& arguments) {
     return;
   say("preparing " + arguments.method.name);
   onNews_();
+  finishAll();
+  interactive_ = nullptr;
   renderer_.reset(); // what it holds on the device first
-  renderer_ = device_.makeRenderer(*scene_, arguments.opacity, DrawOrder::Forward, arguments.method);
+  if (device_.gpu() != nullptr && InteractiveRenderer::draws(arguments.method)) {
+    auto made = std::make_unique<InteractiveRenderer>(*device_.gpu(), *scene_, arguments.opacity, arguments.method);
+    interactive_ = made.get();
+    renderer_ = std::move(made);
+  } else {
+    renderer_ = device_.makeRenderer(*scene_, arguments.opacity, DrawOrder::Forward, arguments.method);
+  }
   rendererArguments_ = arguments;
 }
 
@@ -245,25 +279,97 @@ void Drawer::draw(const Wanted& wanted) {
   choose(wanted.arguments);
   prepare(wanted.arguments);
   say("drawing");
+  if (interactive_ == nullptr || !begin(wanted)) drawExactly(wanted);
+}
+
+RenderOptions Drawer::optionsOf(const Wanted& wanted) const {
   RenderArguments arguments = wanted.arguments;
   arguments.width = std::max(arguments.width / wanted.coarse, 1U);
   arguments.height = std::max(arguments.height / wanted.coarse, 1U);
   RenderOptions options = pictureOf(arguments, *scene_);
   if (arguments.memoryBudget) options.memoryBudget = std::uint64_t{*arguments.memoryBudget} << 20U;
   options.peel = arguments.peel.value_or(0);
+  return options;
+}
+
+// Begins a picture that is not waited for. False: it cannot be drawn so.
+bool Drawer::begin(const Wanted& wanted) {
+  const RenderOptions options = optionsOf(wanted);
+  const bool readsBack = !sharesImages_ || wanted.rests || wanted.beside.kind == Beside::Kind::Error;
+  const auto start = std::chrono::steady_clock::now();
+  if (!interactive_->draw(options, {wanted.arguments.width, wanted.arguments.height}, readsBack)) {
+    finishAll();
+    return false;
+  }
+  begun_.push_back({wanted, options.view, start});
+  if (wanted.beside.kind != Beside::Kind::Nothing) finishAll(); // the other picture is drawn behind it
+  return true;
+}
+
+// Waits for the oldest picture that was begun.
+void Drawer::finish() {
+  const Begun begun = std::move(begun_.front());
+  begun_.pop_front();
+  InteractivePicture picture = interactive_->finish();
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begun.start;
+  Drawn drawn;
+  drawn.wanted = begun.wanted;
+  drawn.view = begun.view;
+  drawn.width = picture.part.width;
+  drawn.height = picture.part.height;
+  if (sharesImages_) drawn.image = std::move(picture.image);
+  const RenderOptions options = optionsOf(begun.wanted);
+  const bool hasAlpha = options.background.kind == Background::Kind::Transparent;
+  drawn.picture = {drawn.width, drawn.height, hasAlpha, std::move(picture.pixels)};
+  drawn.report = std::move(picture.report);
+  drawn.milliseconds = drawn.report.frameMs > 0.0 ? drawn.report.frameMs : took.count();
+  drawn.warnings = scene_->warnings;
+  const bool isNewest = begun_.empty();
+  const bool again = isNewest && isAgain(begun.wanted, drawn.report);
+  drawBeside(begun.wanted, options, drawn);
+  drawn.warnings.insert(drawn.warnings.end(), drawn.report.warnings.begin(), drawn.report.warnings.end());
+  if (isNewest && begun.wanted.rests && !again && needsExact(drawn.report)) return drawExactly(begun.wanted);
+  if (again) {
+    again_ = begun.wanted;
+    drawn.wanted.rests = false; // not yet
+  }
+  give(std::move(drawn));
+}
+
+void Drawer::finishAll() {
+  while (!begun_.empty()) finish();
+}
+
+// Whether a picture lacks surfaces for which there will be room when it is drawn again.
+bool Drawer::isAgain(const Wanted& wanted, const FrameReport& report) {
+  if (report.fragmentsMissing == 0 || wanted.arguments.method.nodeCapacity > 0) return false;
+  if (report.nodeCapacity <= mostNodes_) return false; // the budget has no more
+  mostNodes_ = report.nodeCapacity;
+  return true;
+}
+
+// Draws as `render` does, however often or in however many parts that takes.
+void Drawer::drawExactly(const Wanted& wanted) {
+  const RenderOptions options = optionsOf(wanted);
   const auto start = std::chrono::steady_clock::now();
   RenderResult result = renderer_->render(options);
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   Drawn drawn;
   drawn.wanted = wanted;
   drawn.view = options.view;
+  drawn.width = options.width;
+  drawn.height = options.height;
   drawn.picture = std::move(result.picture);
   drawn.report = std::move(result.report);
   drawn.milliseconds = took.count();
   drawn.warnings = scene_->warnings;
   drawBeside(wanted, options, drawn);
   drawn.warnings.insert(drawn.warnings.end(), drawn.report.warnings.begin(), drawn.report.warnings.end());
-  if (result.isEmpty) drawn.warnings.push_back(nothingSeenWarning(*scene_, seenOf(options, arguments.opacity)));
+  if (result.isEmpty) drawn.warnings.push_back(nothingSeenWarning(*scene_, seenOf(options, wanted.arguments.opacity)));
+  give(std::move(drawn));
+}
+
+void Drawer::give(Drawn drawn) {
   const std::lock_guard lock(mutex_);
   drawn_ = std::move(drawn);
   shownScene_ = facts_;

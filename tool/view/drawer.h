@@ -1,8 +1,12 @@
-// Draws the pictures that a window shows, on a thread of its own, so that the window is never waited for.
+// Draws the pictures that a window shows, on a thread of its own, so that the window is never waited for. By the method
+// linked-list on a Vulkan device they are drawn by InteractiveRenderer and stay on the device, else one by one, and go
+// through the host's memory.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -14,6 +18,7 @@
 #include "../commands/render_options.h"
 #include "../image/color_map.h"
 #include "../render/device.h"
+#include "../render/interactive.h"
 #include "../render/pick.h"
 
 namespace vitrail::tool {
@@ -38,6 +43,8 @@ struct Wanted {
   RenderArguments arguments;
   std::uint32_t coarse = 1;
   Beside beside{};
+  bool rests = false; // nothing moves: it is drawn until it is what `render` draws, and the host gets its pixels
+  std::uint64_t number = 0;
 };
 
 // What a window has to know of a scene.
@@ -62,9 +69,12 @@ struct Picked {
 struct Drawn {
   Wanted wanted;
   View view;
-  Picture picture;
-  Picture beside;       // empty: nothing
-  double largest = 0.0; // number that `beside` shows: surfaces, or 1/255
+  std::uint32_t width = 0; // of the picture
+  std::uint32_t height = 0;
+  std::shared_ptr<const GpuImage> image; // as InteractivePicture has it; null: the host alone has the picture
+  Picture picture;                       // without pixels: the device alone has it
+  Picture beside;                        // empty: nothing
+  double largest = 0.0;                  // number that `beside` shows: surfaces, or 1/255
   FrameReport report;
   double milliseconds = 0.0; // for the picture, without what had to be made once
   std::vector<std::string> warnings;
@@ -72,8 +82,9 @@ struct Drawn {
 
 class Drawer {
  public:
-  // The device outlives it. `onNews` is called from the thread where take() or takeError() has something new.
-  Drawer(const Device& device, void (*onNews)());
+  // The device outlives it. `sharesImages`: the window shows pictures with the same Gpu, and takes images of it.
+  // `onNews` is called from the thread where take() or takeError() has something new.
+  Drawer(const Device& device, bool sharesImages, void (*onNews)());
   // Waits for the picture at hand.
   ~Drawer();
   Drawer(const Drawer&) = delete;
@@ -96,8 +107,23 @@ class Drawer {
   [[nodiscard]] std::string doing() const;
 
  private:
+  // A picture that is drawn without waiting for it.
+  struct Begun {
+    Wanted wanted;
+    View view;
+    std::chrono::steady_clock::time_point start;
+  };
+
   void run();
+  void work(std::optional<Wanted> wanted, std::optional<Picked> picking);
   void draw(const Wanted& wanted);
+  RenderOptions optionsOf(const Wanted& wanted) const;
+  bool begin(const Wanted& wanted);
+  void finish();
+  void finishAll();
+  bool isAgain(const Wanted& wanted, const FrameReport& report);
+  void drawExactly(const Wanted& wanted);
+  void give(Drawn drawn);
   void pick(Picked& picked);
   void drawBeside(const Wanted& wanted, const RenderOptions& options, Drawn& drawn);
   Renderer& besideRenderer(const RenderArguments& arguments, const MethodOptions& method);
@@ -108,6 +134,7 @@ class Drawer {
   void say(const std::string& doing);
 
   const Device& device_;
+  bool sharesImages_;
   void (*onNews_)();
 
   // Shared.
@@ -128,7 +155,11 @@ class Drawer {
   std::shared_ptr<const SceneFacts> facts_;
   RenderArguments sceneArguments_; // of scene_
   std::unique_ptr<Renderer> renderer_;
-  RenderArguments rendererArguments_; // of renderer_
+  InteractiveRenderer* interactive_ = nullptr; // the same, where it is one
+  std::deque<Begun> begun_;                    // what it has pending
+  std::optional<Wanted> again_;                // it was drawn, and is not as it should be
+  std::uint32_t mostNodes_ = 0;                // that pictures in a row had room for, whose room did not suffice
+  RenderArguments rendererArguments_;          // of renderer_
   std::unique_ptr<Renderer> beside_;
   MethodOptions besideMethod_;
   std::optional<float> besideOpacity_;

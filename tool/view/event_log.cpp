@@ -42,6 +42,8 @@ EventLog::EventLog(const std::string& file) {
 void EventLog::shown(const Drawn& drawn, const std::string& command) {
   if (!file_) return;
   const FrameReport& report = drawn.report;
+  nlohmann::json passes = nlohmann::json::object();
+  for (const auto& [name, milliseconds] : report.passesMs) passes[name] = milliseconds;
   write(file_.get(), {{"event", "shown"},
                       {"method", report.method},
                       {"device", report.device},
@@ -53,6 +55,10 @@ void EventLog::shown(const Drawn& drawn, const std::string& command) {
                       {"exact", isExact(report)},
                       {"fragments", report.fragmentsRequested},
                       {"layersMax", report.layersMax},
+                      {"missing", report.fragmentsMissing},
+                      {"tiles", report.tiles},
+                      {"passes", passes},
+                      {"onDevice", drawn.image != nullptr},
                       {"milliseconds", drawn.milliseconds},
                       {"beside", nameOf(drawn)},
                       {"largest", drawn.largest},

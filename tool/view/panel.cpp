@@ -214,20 +214,25 @@ void showPicked(const PanelState& state) {
   }
 }
 
+// A line for the whole picture and one for each pass, over the last pictures, all on one scale.
 void showTimes(const PanelState& state, const Drawn& drawn) {
-  const FrameReport& report = drawn.report;
-  std::vector<float> times(state.milliseconds.begin(), state.milliseconds.end());
-  if (!times.empty()) {
-    const float most = *std::ranges::max_element(times);
-    ImGui::PlotLines("##times", times.data(), static_cast<int>(times.size()), 0,
-                     fmt::format("{:.2f} ms a picture", drawn.milliseconds).c_str(), 0.0F, 1.1F * most,
-                     ImVec2(-1.0F, 50.0F));
-  }
-  double longest = 1.0e-6;
-  for (const auto& [name, milliseconds] : report.passesMs) longest = std::max(longest, milliseconds);
-  for (const auto& [name, milliseconds] : report.passesMs) {
-    ImGui::ProgressBar(static_cast<float>(milliseconds / longest), ImVec2(-1.0F, 0.0F),
-                       fmt::format("{}: {:.3f} ms", name, milliseconds).c_str());
+  if (state.times.empty()) return;
+  const auto timeOf = [](const PassTimes& passes, const std::string& pass) {
+    double sum = 0.0;
+    for (const auto& [name, milliseconds] : passes) sum += pass.empty() || name == pass ? milliseconds : 0.0;
+    return static_cast<float>(sum);
+  };
+  std::vector<float> values(state.times.size());
+  const auto plot = [&](const std::string& pass, const std::string& text, float height, float most) {
+    std::ranges::transform(state.times, values.begin(), [&](const PassTimes& passes) { return timeOf(passes, pass); });
+    if (most <= 0.0F) most = 1.1F * std::max(*std::ranges::max_element(values), 1.0e-6F);
+    ImGui::PlotLines(("##" + text).c_str(), values.data(), static_cast<int>(values.size()), 0, text.c_str(), 0.0F, most,
+                     ImVec2(ImGui::GetContentRegionAvail().x, height));
+    return most;
+  };
+  const float most = plot({}, fmt::format("{:.3f} ms a picture", drawn.milliseconds), 50.0F, 0.0F);
+  for (const auto& [name, milliseconds] : drawn.report.passesMs) {
+    plot(name, fmt::format("{}: {:.3f} ms", name, milliseconds), 1.6F * ImGui::GetFontSize(), most);
   }
 }
 
@@ -250,7 +255,14 @@ void showReport(const PanelState& state) {
   if (report.counted) {
     ImGui::Text("%llu fragments, at most %u in a pixel", static_cast<unsigned long long>(report.fragmentsRequested),
                 report.layersMax);
+    if (report.fragmentsMissing > 0) {
+      ImGui::Text("%llu of them without room", static_cast<unsigned long long>(report.fragmentsMissing));
+    }
     if (report.tiles > 1) ImGui::Text("drawn in %u tiles", report.tiles);
+    if (report.nodeCapacity > 0) {
+      ImGui::Text("%.0f%% of the pool used",
+                  100.0 * static_cast<double>(report.fragmentsStored) / static_cast<double>(report.nodeCapacity));
+    }
     if (report.totalBytes > 0)
       ImGui::Text("%.1f MiB for fragments", static_cast<double>(report.totalBytes) / 1048576.0);
   }

@@ -23,9 +23,9 @@ struct PanelState {
   const Picked* pickedBefore;
   Parts& parts;
   Beside& beside;
-  const Drawn* drawn;                    // the picture on the screen; null: none
-  std::string doing;                     // what the drawer is at
-  const std::deque<float>& milliseconds; // of the last pictures
+  const Drawn* drawn;                 // the picture on the screen; null: none
+  std::string doing;                  // what the drawer is at
+  const std::deque<PassTimes>& times; // of the last pictures, the newest last; all of one word where nothing is timed
 };
 
 struct PanelActions {

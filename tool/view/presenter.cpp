@@ -23,6 +23,11 @@ struct Constants {
   float offset[2];
 };
 
+// What ImGui knows a texture by: not 0, which stands for none.
+void* idOf(std::size_t texture, bool smooth) {
+  return reinterpret_cast<void*>(std::uintptr_t{2 * texture + (smooth ? 1U : 0U) + 1});
+}
+
 Unique<VkSampler> makeSampler(Gpu& gpu, VkFilter filter) {
   auto info = vkStruct<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
   info.magFilter = filter;
@@ -44,12 +49,10 @@ Unique<VkDescriptorSetLayout> makeSetLayout(Gpu& gpu) {
   return {gpu.device(), layout, vkDestroyDescriptorSetLayout};
 }
 
-// For three textures, in two ways each.
-Unique<VkDescriptorPool> makePool(Gpu& gpu) {
-  constexpr std::uint32_t kSets = 6;
-  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kSets};
+Unique<VkDescriptorPool> makePool(Gpu& gpu, std::uint32_t sets) {
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, sets};
   auto info = vkStruct<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-  info.maxSets = kSets;
+  info.maxSets = sets;
   info.poolSizeCount = 1;
   info.pPoolSizes = &size;
   VkDescriptorPool pool = VK_NULL_HANDLE;
@@ -76,50 +79,63 @@ Unique<VkPipeline> makeOverlayPipeline(Gpu& gpu, VkPipelineLayout layout, VkForm
 
 } // namespace
 
-Presenter::Presenter(Window& window, bool validate) : window_(window) {
-  GpuOptions options;
-  options.validate = validate;
-  options.instanceExtensions = window.instanceExtensions();
-  options.presents = Window::presents;
-  gpu_ = std::make_unique<Gpu>(options);
+Presenter::Presenter(Window& window, Gpu* shared, bool validate) : window_(window), gpu_(shared) {
+  if (gpu_ == nullptr || !gpu_->presents()) {
+    GpuOptions options;
+    options.validate = validate;
+    options.instanceExtensions = window.instanceExtensions();
+    options.presents = Window::presents;
+    options.onlyPresenting = true;
+    own_ = std::make_unique<Gpu>(options);
+    gpu_ = own_.get();
+  }
   Gpu& gpu = *gpu_;
   swapchain_ = std::make_unique<Swapchain>(gpu, window.makeSurface(gpu.instance()));
   setLayout_ = makeSetLayout(gpu);
-  sets_ = makePool(gpu);
+  sets_ = makePool(gpu, static_cast<std::uint32_t>(kFrames * kTextures * 2));
   samplers_ = {makeSampler(gpu, VK_FILTER_NEAREST), makeSampler(gpu, VK_FILTER_LINEAR)};
   layout_ = makePipelineLayout(gpu, {setLayout_.get()}, {VK_SHADER_STAGE_VERTEX_BIT, sizeof(Constants)}, "window");
   pipeline_ = makeOverlayPipeline(gpu, layout_.get(), swapchain_->format());
-  for (Slot& slot : slots_) {
-    auto poolInfo = vkStruct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
-    poolInfo.queueFamilyIndex = gpu.queueFamily();
-    VkCommandPool pool = VK_NULL_HANDLE;
-    check(vkCreateCommandPool(gpu.device(), &poolInfo, nullptr, &pool), "vkCreateCommandPool (window)");
-    slot.pool = {gpu.device(), pool, vkDestroyCommandPool};
-    auto bufferInfo = vkStruct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
-    bufferInfo.commandPool = pool;
-    bufferInfo.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    bufferInfo.commandBufferCount = 1;
-    check(vkAllocateCommandBuffers(gpu.device(), &bufferInfo, &slot.commands), "vkAllocateCommandBuffers (window)");
-    auto fenceInfo = vkStruct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
-    fenceInfo.flags = VK_FENCE_CREATE_SIGNALED_BIT;
-    VkFence fence = VK_NULL_HANDLE;
-    check(vkCreateFence(gpu.device(), &fenceInfo, nullptr, &fence), "vkCreateFence (window)");
-    slot.done = {gpu.device(), fence, vkDestroyFence};
-    const auto semaphoreInfo = vkStruct<VkSemaphoreCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO);
-    VkSemaphore semaphore = VK_NULL_HANDLE;
-    check(vkCreateSemaphore(gpu.device(), &semaphoreInfo, nullptr, &semaphore), "vkCreateSemaphore (window)");
-    slot.acquired = {gpu.device(), semaphore, vkDestroySemaphore};
-  }
+  for (Slot& slot : slots_) makeSlot(slot);
   makeFont();
   for (const std::size_t side : {0U, 1U}) setTexture(textures_[side], {1, 1}, {0, 0, 0, 0}, "picture");
 }
 
-Presenter::~Presenter() {
-  if (gpu_->device() != VK_NULL_HANDLE) vkDeviceWaitIdle(gpu_->device());
+void Presenter::makeSlot(Slot& slot) {
+  const VkDevice device = gpu_->device();
+  auto poolInfo = vkStruct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+  poolInfo.queueFamilyIndex = gpu_->queueFamily();
+  VkCommandPool pool = VK_NULL_HANDLE;
+  check(vkCreateCommandPool(device, &poolInfo, nullptr, &pool), "vkCreateCommandPool (window)");
+  slot.pool = {device, pool, vkDestroyCommandPool};
+  auto bufferInfo = vkStruct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+  bufferInfo.commandPool = pool;
+  bufferInfo.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  bufferInfo.commandBufferCount = 1;
+  check(vkAllocateCommandBuffers(device, &bufferInfo, &slot.commands), "vkAllocateCommandBuffers (window)");
+  auto fenceInfo = vkStruct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+  fenceInfo.flags = VK_FENCE_CREATE_SIGNALED_BIT;
+  VkFence fence = VK_NULL_HANDLE;
+  check(vkCreateFence(device, &fenceInfo, nullptr, &fence), "vkCreateFence (window)");
+  slot.done = {device, fence, vkDestroyFence};
+  const auto semaphoreInfo = vkStruct<VkSemaphoreCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO);
+  VkSemaphore semaphore = VK_NULL_HANDLE;
+  check(vkCreateSemaphore(device, &semaphoreInfo, nullptr, &semaphore), "vkCreateSemaphore (window)");
+  slot.acquired = {device, semaphore, vkDestroySemaphore};
+  const std::array<VkDescriptorSetLayout, 2> layouts = {setLayout_.get(), setLayout_.get()};
+  for (std::array<VkDescriptorSet, 2>& sets : slot.sets) {
+    auto allocate = vkStruct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+    allocate.descriptorPool = sets_.get();
+    allocate.descriptorSetCount = 2;
+    allocate.pSetLayouts = layouts.data();
+    check(vkAllocateDescriptorSets(device, &allocate, sets.data()), "vkAllocateDescriptorSets (window)");
+  }
 }
 
+Presenter::~Presenter() { gpu_->waitIdle(); }
+
 std::vector<std::string> Presenter::finish() {
-  vkDeviceWaitIdle(gpu_->device());
+  gpu_->waitIdle();
   for (Slot& slot : slots_) slot = {};
   textures_ = {};
   pipeline_ = {};
@@ -128,8 +144,9 @@ std::vector<std::string> Presenter::finish() {
   sets_ = {};
   setLayout_ = {};
   swapchain_.reset();
-  gpu_->close();
-  return gpu_->validationErrors();
+  if (own_ == nullptr) return {};
+  own_->close();
+  return own_->validationErrors();
 }
 
 void Presenter::makeFont() {
@@ -140,44 +157,48 @@ void Presenter::makeFont() {
   atlas.GetTexDataAsRGBA32(&pixels, &width, &height);
   const PixelSize size{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
   setTexture(textures_[kFont], size, {pixels, pixels + std::size_t{size.width} * size.height * 4}, "font");
-  atlas.SetTexID(textures_[kFont].sets[1]);
+  atlas.SetTexID(idOf(kFont, true));
   atlas.ClearTexData();
 }
 
 // Gives a texture other pixels, and an image of their size.
 void Presenter::setTexture(Texture& texture, PixelSize size, std::vector<std::uint8_t> pixels, const char* name) {
   texture.pixels = std::move(pixels);
-  const VkExtent2D extent = texture.image.info().extent;
-  if (extent.width == size.width && extent.height == size.height) return;
-  check(vkDeviceWaitIdle(gpu_->device()), "vkDeviceWaitIdle"); // frames in flight show the one before
+  // An image that somebody else has drawn is not written to.
+  if (texture.image && texture.isOwn) {
+    const VkExtent2D extent = texture.image->info().extent;
+    if (extent.width == size.width && extent.height == size.height) return;
+  }
+  texture.isOwn = true;
   GpuImageInfo info;
   info.extent = {size.width, size.height};
   info.format = kTextureFormat;
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  texture.image = GpuImage(*gpu_, info, name);
-  if (texture.sets[0] == VK_NULL_HANDLE) {
-    const std::array<VkDescriptorSetLayout, 2> layouts = {setLayout_.get(), setLayout_.get()};
-    auto allocate = vkStruct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-    allocate.descriptorPool = sets_.get();
-    allocate.descriptorSetCount = 2;
-    allocate.pSetLayouts = layouts.data();
-    check(vkAllocateDescriptorSets(gpu_->device(), &allocate, texture.sets.data()),
-          "vkAllocateDescriptorSets (window)");
-  }
-  for (std::size_t i = 0; i < 2; ++i) {
-    const VkDescriptorImageInfo image{samplers_[i].get(), texture.image.view(),
-                                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-    auto write = vkStruct<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
-    write.dstSet = texture.sets[i];
-    write.descriptorCount = 1;
-    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    write.pImageInfo = &image;
-    vkUpdateDescriptorSets(gpu_->device(), 1, &write, 0, nullptr);
+  texture.image = std::make_shared<GpuImage>(*gpu_, info, name); // frames in flight hold the one before
+}
+
+// A frame that is not pending takes the textures of now.
+void Presenter::holdTextures(Slot& slot) const {
+  for (std::size_t t = 0; t < kTextures; ++t) {
+    if (slot.images[t] == textures_[t].image) continue;
+    slot.images[t] = textures_[t].image;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const VkDescriptorImageInfo image{samplers_[i].get(), slot.images[t]->view(),
+                                        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+      auto write = vkStruct<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
+      write.dstSet = slot.sets[t][i];
+      write.descriptorCount = 1;
+      write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+      write.pImageInfo = &image;
+      vkUpdateDescriptorSets(gpu_->device(), 1, &write, 0, nullptr);
+    }
   }
 }
 
-void* Presenter::texture(Side side, bool smooth) const {
-  return textures_[static_cast<std::size_t>(side)].sets[smooth ? 1 : 0];
+void* Presenter::texture(Side side, bool smooth) { return idOf(static_cast<std::size_t>(side), smooth); }
+
+void Presenter::setPicture(Side side, std::shared_ptr<const GpuImage> image) {
+  textures_[static_cast<std::size_t>(side)] = {std::move(image), {}, false};
 }
 
 void Presenter::setPicture(Side side, const Picture& picture) {
@@ -200,7 +221,7 @@ void Presenter::fillTextures(Slot& slot) {
   for (Texture& texture : textures_) {
     if (texture.pixels.empty()) continue;
     std::memcpy(static_cast<std::byte*>(slot.pixels.mapped()) + offset, texture.pixels.data(), texture.pixels.size());
-    const GpuImage& image = texture.image;
+    const GpuImage& image = *texture.image;
     cmdImageBarrier(slot.commands, image.get(), image.range(), VK_IMAGE_LAYOUT_UNDEFINED,
                     {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_NONE}, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                     kCopyWrite);
@@ -287,7 +308,8 @@ void Presenter::draw(Slot& slot, const Swapchain::Image& image, ImDrawData& data
         const VkRect2D scissor{{left, top},
                                {static_cast<std::uint32_t>(right - left), static_cast<std::uint32_t>(bottom - top)}};
         vkCmdSetScissor(commands, 0, 1, &scissor);
-        auto* set = static_cast<VkDescriptorSet>(command.GetTexID());
+        const auto id = reinterpret_cast<std::uintptr_t>(command.GetTexID()) - 1;
+        const VkDescriptorSet set = slot.sets.at(id / 2)[id % 2];
         vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set, 0, nullptr);
         vkCmdDrawIndexed(commands, command.ElemCount, 1, firstIndex + command.IdxOffset,
                          firstVertex + static_cast<std::int32_t>(command.VtxOffset), 0);
@@ -315,6 +337,7 @@ bool Presenter::show(ImDrawData& data, bool vsync) {
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer (window)");
   fillTextures(slot);
+  holdTextures(slot);
   copyGeometry(slot, data);
   draw(slot, *image, data);
   check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer (window)");
@@ -339,7 +362,7 @@ void Presenter::submit(Slot& slot, const Swapchain::Image& image) const {
   info.pCommandBufferInfos = &commands;
   info.signalSemaphoreInfoCount = 1;
   info.pSignalSemaphoreInfos = &signal;
-  check(vkQueueSubmit2(gpu_->queue(), 1, &info, slot.done.get()), "vkQueueSubmit2 (window)");
+  check(gpu_->submit(info, slot.done.get()), "vkQueueSubmit2 (window)");
 }
 
 } // namespace vitrail::tool

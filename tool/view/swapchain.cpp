@@ -32,7 +32,7 @@ Unique<VkSemaphore> makeSemaphore(Gpu& gpu) {
 Swapchain::Swapchain(Gpu& gpu, VkSurfaceKHR surface) : gpu_(gpu), surface_(surface) { chooseFormat(); }
 
 Swapchain::~Swapchain() {
-  vkDeviceWaitIdle(gpu_.device());
+  gpu_.waitIdle();
   slots_.clear();
   vkDestroySwapchainKHR(gpu_.device(), swapchain_, nullptr);
   vkDestroySurfaceKHR(gpu_.instance(), surface_, nullptr);
@@ -56,7 +56,7 @@ void Swapchain::chooseFormat() {
 }
 
 void Swapchain::loseSurface(const Window& window) {
-  vkDeviceWaitIdle(gpu_.device());
+  gpu_.waitIdle();
   slots_.clear();
   vkDestroySwapchainKHR(gpu_.device(), std::exchange(swapchain_, VK_NULL_HANDLE), nullptr);
   vkDestroySurfaceKHR(gpu_.instance(), std::exchange(surface_, VK_NULL_HANDLE), nullptr);
@@ -88,7 +88,7 @@ bool Swapchain::fit(const Window& window, bool vsync) {
 }
 
 void Swapchain::make(const VkSurfaceCapabilitiesKHR& capabilities, VkExtent2D extent, bool vsync) {
-  check(vkDeviceWaitIdle(gpu_.device()), "vkDeviceWaitIdle");
+  check(gpu_.waitIdle(), "vkDeviceWaitIdle");
   auto info = vkStruct<VkSwapchainCreateInfoKHR>(VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR);
   info.surface = surface_;
   info.minImageCount = capabilities.minImageCount + 1;
@@ -154,7 +154,7 @@ void Swapchain::present(const Image& image) {
   info.swapchainCount = 1;
   info.pSwapchains = &swapchain_;
   info.pImageIndices = &image.index;
-  const VkResult result = vkQueuePresentKHR(gpu_.queue(), &info);
+  const VkResult result = gpu_.present(info);
   if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR || result == VK_ERROR_SURFACE_LOST_KHR) {
     stale_ = true;
     lost_ = result == VK_ERROR_SURFACE_LOST_KHR;

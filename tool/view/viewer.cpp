@@ -62,9 +62,10 @@ class Widgets {
 };
 
 // As `render` opens it, but for volumes, which are not known before the scene is.
-Device openDevice(const RenderArguments& arguments) {
+Device openDevice(const RenderArguments& arguments, const Window& window) {
   const bool openGl = arguments.method.api == Api::OpenGl;
-  Device device({arguments.device, arguments.validate, arguments.wish, !openGl, openGl});
+  Device device({arguments.device, arguments.validate, arguments.wish, !openGl, openGl, window.instanceExtensions(),
+                 Window::presents});
   if (device.gl() != nullptr) device.gl()->leaveThread(); // for the drawer's
   return device;
 }
@@ -90,11 +91,12 @@ class Viewer {
       : log_(arguments.events),
         initial_(arguments.picture),
         now_(arguments.picture),
-        device_(openDevice(arguments.picture)),
         window_(titleOf(arguments.picture), {arguments.picture.width, arguments.picture.height}),
+        device_(openDevice(arguments.picture, window_)),
         widgets_(window_),
-        presenter_(window_, arguments.picture.validate),
-        drawer_(std::make_unique<Drawer>(device_, Window::wake)) {
+        presenter_(window_, device_.gpu(), arguments.picture.validate),
+        drawer_(
+            std::make_unique<Drawer>(device_, device_.gpu() != nullptr && device_.gpu()->presents(), Window::wake)) {
     if (now_.wish == Wish::Fastest) now_.method = device_.exactMethod();
     if (device_.gpu() == nullptr && device_.gl() == nullptr) now_.device = std::string(kProcessor);
     initial_ = now_;
@@ -121,8 +123,8 @@ class Viewer {
   static bool isMinimised(PixelSize size) { return size.width == 0 || size.height == 0; }
   bool isMoving() const { return rotates_ || drags_; }
   bool isSettling() const { return since(lastMove_) < kSettle; }
-  // Whether the picture on the screen is a coarse one of what is seen.
-  bool wantsFull() const { return asked_ && asked_->coarse > 1; }
+  // Whether the picture that was asked for last is not the one for rest.
+  bool wantsFull() const { return asked_ && !asked_->rests; }
 
   void step() {
     const PixelSize size = window_.size();
@@ -182,7 +184,7 @@ class Viewer {
       const std::string error = wordsOf(caught);
       now_ = showing_;
       beside_ = drawn_->wanted.beside;
-      asked_ = Wanted{now_, 1, beside_};
+      asked_ = drawn_->wanted;
       isNavigating_ = false;
       rotates_ = false;
       log_.happened("error", error);
@@ -195,9 +197,13 @@ class Viewer {
     }
     std::optional<Drawn> drawn = drawer_->take();
     if (!drawn) return;
-    isAsked_ = false;
+    isAsked_ = asked_ && drawn->wanted.number != asked_->number;
     changed_ = true;
-    presenter_.setPicture(Presenter::Side::Picture, drawn->picture);
+    if (drawn->image) {
+      presenter_.setPicture(Presenter::Side::Picture, drawn->image);
+    } else {
+      presenter_.setPicture(Presenter::Side::Picture, drawn->picture);
+    }
     if (!drawn->beside.rgba.empty()) presenter_.setPicture(Presenter::Side::Beside, drawn->beside);
     const bool isOther = !drawn_ || drawer_->scene() != scene_;
     scene_ = drawer_->scene();
@@ -206,14 +212,15 @@ class Viewer {
       window_.setTitle(titleOf(showing_));
       initial_ = showing_;
       log_.happened("opened", nameOfScene(showing_));
-      milliseconds_.clear();
+      times_.clear();
       picked_.reset();
       pickedBefore_.reset();
     }
     if (drawn->wanted.coarse == 1) fullMilliseconds_ = drawn->milliseconds;
-    milliseconds_.push_back(static_cast<float>(drawn->milliseconds));
+    const bool isTimed = !drawn->report.passesMs.empty();
+    times_.push_back(isTimed ? drawn->report.passesMs : PassTimes{{"all", drawn->milliseconds}});
     constexpr std::size_t kKept = 120;
-    if (milliseconds_.size() > kKept) milliseconds_.pop_front();
+    if (times_.size() > kKept) times_.pop_front();
     log_.shown(*drawn, renderCommand(showing_, "picture.png"));
     drawn_ = std::move(drawn);
   }
@@ -285,7 +292,7 @@ class Viewer {
     } else {
       drags_ = false;
     }
-    if (rotates_ && scene_ && !isAsked_) {
+    if (rotates_ && scene_ && mayAsk()) {
       const double seconds = std::min(since(lastTurn_), 0.5);
       move([&](Navigation& navigation) { navigation.orbit(kDegreesOfASecond * seconds, 0.0); });
       lastTurn_ = Clock::now();
@@ -431,20 +438,36 @@ class Viewer {
   void askFor(PixelSize size) {
     now_.width = size.width;
     now_.height = size.height;
-    Wanted wanted{now_, 1, beside_};
-    if (isMoving() || isSettling()) wanted.coarse = coarseness();
+    Wanted wanted{now_, 1, beside_, !isMoving() && !isSettling(), (asked_ ? asked_->number : 0) + 1};
+    if (!wanted.rests) wanted.coarse = coarseness();
     const bool isSame = asked_ && asked_->coarse == wanted.coarse && asked_->beside == beside_ &&
                         renderCommand(asked_->arguments, "-") == renderCommand(now_, "-");
-    if (isSame) return;
+    if (isSame && (asked_->rests || !wanted.rests)) return;
+    if (isSame && isWhole()) { // it was drawn while something moved, and will do
+      asked_->rests = true;
+      return;
+    }
     asked_ = wanted;
     isAsked_ = true;
     isResting_ = false;
     drawer_->ask(std::move(wanted));
   }
 
+  // Whether the picture on the screen is what was asked for, in full, and the host has its pixels.
+  bool isWhole() const {
+    return drawn_ && !isAsked_ && drawn_->wanted.coarse == 1 && !drawn_->picture.rgba.empty() &&
+           (drawn_->wanted.rests || !drawn_->image);
+  }
+
+  // Whether the camera may go on by itself: as many pictures are on their way as can be.
+  bool mayAsk() const {
+    const bool several = drawn_ && drawn_->image != nullptr;
+    return !isAsked_ || (several && asked_->number < drawn_->wanted.number + InteractiveRenderer::kFramesInFlight);
+  }
+
   // Nothing is drawn until something happens: once, for scripts.
   void tellRest() {
-    if (isResting_ || isAsked_ || !drawn_ || drawn_->wanted.coarse != 1 || isMoving() || isSettling()) return;
+    if (isResting_ || isAsked_ || !isWhole() || isMoving() || isSettling()) return;
     isResting_ = true;
     log_.happened("rest", renderCommand(showing_, "picture.png"));
   }
@@ -462,16 +485,27 @@ class Viewer {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const ImVec2 corner = ImGui::GetIO().DisplaySize;
     if (drawn_->picture.hasAlpha) drawChecks(list, corner);
-    const bool fits = drawn_->picture.width == size.width && drawn_->picture.height == size.height;
-    list.AddImage(presenter_.texture(Presenter::Side::Picture, !fits), ImVec2(0.0F, 0.0F), corner);
+    const bool fits = drawn_->width == size.width && drawn_->height == size.height;
+    list.AddImage(Presenter::texture(Presenter::Side::Picture, !fits), ImVec2(0.0F, 0.0F), corner, ImVec2(0.0F, 0.0F),
+                  partOfTexture());
     if (!drawn_->beside.rgba.empty()) drawBeside(list, corner, fits);
+  }
+
+  // Where the picture ends in its texture. What is beyond a part is not blended in at its edge.
+  ImVec2 partOfTexture() const {
+    if (!drawn_->image) return {1.0F, 1.0F};
+    const VkExtent2D whole = drawn_->image->info().extent;
+    const auto end = [](std::uint32_t part, std::uint32_t all) {
+      return part == all ? 1.0F : (static_cast<float>(part) - 0.5F) / static_cast<float>(all);
+    };
+    return {end(drawn_->width, whole.width), end(drawn_->height, whole.height)};
   }
 
   // The other picture to the right of a line that is dragged, and what its colours stand for.
   void drawBeside(ImDrawList& list, const ImVec2& corner, bool fits) {
     const ImGuiIO& io = ImGui::GetIO();
     const float line = std::round(divider_ * corner.x);
-    list.AddImage(presenter_.texture(Presenter::Side::Beside, !fits), ImVec2(line, 0.0F), corner,
+    list.AddImage(Presenter::texture(Presenter::Side::Beside, !fits), ImVec2(line, 0.0F), corner,
                   ImVec2(line / corner.x, 0.0F), ImVec2(1.0F, 1.0F));
     list.AddLine(ImVec2(line, 0.0F), ImVec2(line, corner.y), IM_COL32(255, 160, 0, 255), 2.0F);
     const bool isNear = std::abs(io.MousePos.x - line) < 6.0F && !io.WantCaptureMouse;
@@ -520,10 +554,9 @@ class Viewer {
       const bool didRotate = rotates_;
       parts_.set(scene_, now_.objects);
       const ObjectChoice before = now_.objects;
-      const PanelActions actions =
-          drawPanel({now_, sorting_, rotates_, vsync_, device_, scene_.get(), picked_ ? &*picked_ : nullptr,
-                     pickedBefore_ ? &*pickedBefore_ : nullptr, parts_, beside_, drawn_ ? &*drawn_ : nullptr,
-                     drawer_->doing(), milliseconds_});
+      const PanelActions actions = drawPanel({now_, sorting_, rotates_, vsync_, device_, scene_.get(),
+                                              picked_ ? &*picked_ : nullptr, pickedBefore_ ? &*pickedBefore_ : nullptr,
+                                              parts_, beside_, drawn_ ? &*drawn_ : nullptr, drawer_->doing(), times_});
       if (rotates_ && !didRotate) lastTurn_ = Clock::now();
       if (actions.frame) frameFromHere();
       if (actions.reset) reset();
@@ -547,7 +580,7 @@ class Viewer {
   // Writes the picture on the screen, without the widgets.
   void save() {
     if (!drawn_) return;
-    if (drawn_->wanted.coarse != 1 || isAsked_) return say("the picture is not finished: press P again", false);
+    if (!isWhole()) return say("the picture is not finished: press P again", false);
     try {
       const std::string name = freeName();
       OutputFile file{std::filesystem::path(name)};
@@ -590,6 +623,7 @@ class Viewer {
     if (errors.empty() && isBusy && !now_.validate)
       std::_Exit(0); // nobody waits for a file that is not wanted any more
     drawer_.reset();
+    drawn_.reset(); // its image
     if (device_.gl() != nullptr) device_.gl()->comeToThread();
     if (!errors.empty()) throw std::runtime_error(errors.front());
     closeValidated(device_);
@@ -603,8 +637,8 @@ class Viewer {
   RenderArguments initial_; // of the scene
   RenderArguments now_;     // what is wanted
   RenderArguments showing_; // what the picture is of
-  Device device_;
   Window window_;
+  Device device_;
   Widgets widgets_;
   Presenter presenter_;
   std::unique_ptr<Drawer> drawer_;
@@ -622,7 +656,7 @@ class Viewer {
   std::optional<Wanted> asked_;
   bool isAsked_ = false; // and not drawn yet
   bool isResting_ = false;
-  std::deque<float> milliseconds_;
+  std::deque<PassTimes> times_;
   double fullMilliseconds_ = 0.0;
   bool rotates_ = false;
   bool drags_ = false;

@@ -57,7 +57,8 @@ std::span<const std::uint32_t> collectCode(bool media, bool coverage, bool addre
 
 bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
   return a.extent.width == b.extent.width && a.extent.height == b.extent.height && a.color == b.color &&
-         a.opaque == b.opaque && a.depth == b.depth && a.memoryBudget == b.memoryBudget && a.surfaces == b.surfaces;
+         a.opaque == b.opaque && a.depth == b.depth && a.memoryBudget == b.memoryBudget && a.surfaces == b.surfaces &&
+         a.framesInFlight == b.framesInFlight;
 }
 
 class LinkedList final : public Method, private ListPicture {
@@ -71,6 +72,9 @@ class LinkedList final : public Method, private ListPicture {
   void draw(Frame& frame) override;
   bool finish() override { return finishPicture(); }
   FrameStats stats() const override;
+  bool drawsInFlight() const override { return inFlight_; }
+  std::uint64_t lastPicture() const override { return frame_; }
+  FrameStats statsOf(std::uint64_t picture) override;
 
  private:
   bool makeTarget(const ListPool& pool) override;
@@ -80,7 +84,8 @@ class LinkedList final : public Method, private ListPicture {
   VitrailTileLimits tileLimits() const override;
   void drawArea(const VitrailRect& area, std::span<const SurfaceRun> runs) override;
   void wait() override { drawn_->submitAndWait(); }
-  VitrailStats readStats() const override;
+  VitrailStats readStats() const override { return readStats(frame_); }
+  VitrailStats readStats(std::uint64_t frame) const;
 
   void makeContext();
   void chooseResolve();
@@ -90,11 +95,14 @@ class LinkedList final : public Method, private ListPicture {
   // Whether the resolve makes the picture out of several samples.
   bool writesEveryPixel() const { return options_.samples > 1 && !needs_.perSample; }
   void drawCollecting(std::span<const SurfaceRun> runs);
+  void drawInFlight(const PictureImages& images);
+  FrameStats withChoices(FrameStats stats) const;
   void check(VkResult result, const char* call) const { ListPicture::check(resultOf(result), call); }
 
   // What pipelines differ in beside the options.
   struct PipelineKind {
     VitrailListBuild listBuild = VITRAIL_LIST_BUILD_DEFAULT;
+    VitrailOverflow overflow = VITRAIL_OVERFLOW_SKIP;
     bool depthFromW = false; // collect.frag
     bool operator==(const PipelineKind&) const = default;
   };
@@ -111,6 +119,7 @@ class LinkedList final : public Method, private ListPicture {
   vulkan::Target target_;
   std::uint64_t frame_ = 0; // of the target: rises with every area
   ListPool made_;           // what target_ was made for
+  bool inFlight_ = false;
   MethodTarget wanted_;
   Frame* drawn_ = nullptr;    // the frame at hand
   std::uint64_t counted_ = 0; // the target's bytes, as the Gpu counts them
@@ -176,6 +185,7 @@ void LinkedList::makeSurfaces() {
       options_.listBuild != VITRAIL_LIST_BUILD_DEFAULT ? options_.listBuild : context_.defaultListBuild(desc);
   PipelineKind kind;
   kind.listBuild = desc.listBuild;
+  kind.overflow = desc.overflow;
   // To spare the fragment shaders of GPUs; Mesa's CPU driver takes longer. Where samples are tested in the resolve,
   // depths are compared with those of the depth image.
   const bool isCpu = gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
@@ -183,6 +193,7 @@ void LinkedList::makeSurfaces() {
   kind.depthFromW = spares && !media_ && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
   const bool wantsUntested = media_ && media_->objects().anyNear();
   if (surfaces_ && kind == pipelines_ && (untested_ || !wantsUntested)) return;
+  if (wanted_.waitForFrames) wanted_.waitForFrames(); // which draw with those that there are
   pipelines_ = kind;
   const VitrailVkSpecialization specialization = context_.collectSpecialization(desc);
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
@@ -221,13 +232,14 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
   desc.maxLayers = options_.maxLayers;
   desc.listBuild = pipelines_.listBuild;
   // Skipped, the picture is drawn again, with a larger pool or in tiles.
-  desc.overflow = options_.nodeCapacity > 0 ? VITRAIL_OVERFLOW_APPROXIMATE : VITRAIL_OVERFLOW_SKIP;
+  const bool isShown = options_.nodeCapacity > 0 || wanted_.framesInFlight > 1; // and seen meanwhile
+  desc.overflow = isShown ? VITRAIL_OVERFLOW_APPROXIMATE : VITRAIL_OVERFLOW_SKIP;
   desc.colorFormat = PictureImages::kColorFormat;
   if (needs_.stencil) {
     desc.scope.stencilFormat = PictureImages::depthFormat(true);
     desc.scope.stencilMark = VK_TRUE;
   }
-  desc.framesInFlight = 1;
+  desc.framesInFlight = wanted_.framesInFlight;
   return desc;
 }
 
@@ -241,14 +253,18 @@ void LinkedList::setTarget(const MethodTarget& target) {
   wanted_ = target;
   if (media_) media_->setTarget(target);
   makeSurfaces();
-  start({.width = target.extent.width,
-         .height = target.extent.height,
-         .memoryBudget = target.memoryBudget,
-         .surfaces = target.surfaces,
-         .writesEveryPixel = writesEveryPixel(),
-         .words = media_.has_value(),
-         .listBuild = pipelines_.listBuild,
-         .onTile = target.onTile});
+  const ListPictureInfo picture{.width = target.extent.width,
+                                .height = target.extent.height,
+                                .memoryBudget = target.memoryBudget,
+                                .surfaces = target.surfaces,
+                                .writesEveryPixel = writesEveryPixel(),
+                                .words = media_.has_value(),
+                                .listBuild = pipelines_.listBuild,
+                                .onTile = target.onTile};
+  if (target.framesInFlight == 1) return start(picture);
+  constexpr std::uint64_t kShare = 2; // of the device's memory: there are other programs
+  inFlight_ = startInFlight(picture, gpu_.localMemory() / kShare);
+  reason().clear(); // without room pictures are drawn in another way
 }
 
 bool LinkedList::makeTarget(const ListPool& pool) {
@@ -301,14 +317,24 @@ void LinkedList::countMemory() {
 }
 
 void LinkedList::releaseTarget() {
+  if (wanted_.waitForFrames) wanted_.waitForFrames();
   target_ = vulkan::Target();
+  inFlight_ = false;
   wanted_ = {};
   gpu_.memoryFreed(std::exchange(counted_, 0));
 }
 
 void LinkedList::draw(Frame& frame) {
   drawn_ = &frame;
-  drawPicture();
+  inFlight_ ? drawInFlight(frame.images()) : drawPicture();
+}
+
+void LinkedList::drawInFlight(const PictureImages& images) {
+  if (isEmpty()) return;
+  const VitrailResult result = updateTarget();
+  if (result != VITRAIL_ERROR_OUT_OF_MEMORY)
+    ListPicture::check(result, "updating the target"); // else it stays as it was
+  drawArea({0, 0, images.extent().width, images.extent().height}, source_.list().transparentRuns());
 }
 
 void LinkedList::drawCollecting(std::span<const SurfaceRun> runs) {
@@ -346,14 +372,24 @@ void LinkedList::drawArea(const VitrailRect& part, std::span<const SurfaceRun> r
   frame.endPass("statistics");
 }
 
-VitrailStats LinkedList::readStats() const {
+VitrailStats LinkedList::readStats(std::uint64_t frame) const {
   VitrailStats stats{};
-  check(target_.readStats(frame_, stats), "vitrailVkReadStats");
+  check(target_.readStats(frame, stats), "vitrailVkReadStats");
   return stats;
 }
 
-FrameStats LinkedList::stats() const {
-  FrameStats result = totals();
+FrameStats LinkedList::stats() const { return withChoices(totals()); }
+
+FrameStats LinkedList::statsOf(std::uint64_t picture) {
+  if (isEmpty()) {
+    FrameStats nothing = totals();
+    nothing.complete = true;
+    return withChoices(nothing);
+  }
+  return withChoices(totalsOf(readStats(picture)));
+}
+
+FrameStats LinkedList::withChoices(FrameStats result) const {
   result.resolve = nameOf(options_.resolve);
   result.listBuild = nameOf(pipelines_.listBuild);
   if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT && (options_.samples == 1 || needs_.perSample)) {

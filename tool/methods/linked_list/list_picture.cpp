@@ -52,6 +52,35 @@ void ListPicture::start(const ListPictureInfo& info) {
   inTiles_ = !buildsAll || !makeWholeTarget(info.surfaces ? guess : 0); // drawTiles() knows how large tiles are
 }
 
+bool ListPicture::startInFlight(const ListPictureInfo& info, std::uint64_t most) {
+  info_ = info;
+  plan_ = TilePlan();
+  stats_ = {};
+  nothing_ = !info.surfaces && !info.writesEveryPixel;
+  if (nothing_) return true;
+  if (info.listBuild == VITRAIL_LIST_BUILD_COMPUTE && pixels() > VITRAIL_LIST_BUILD_COMPUTE_MAX_PIXELS) return false;
+  ListPool pool;
+  if (options_.nodeCapacity > 0) {
+    pool.nodeCapacity = options_.nodeCapacity;
+    return makeTarget(pool);
+  }
+  pool.memoryBudget = info.memoryBudget.value_or(most);
+  const std::uint64_t guess = std::min({kNodesPerPixel * pixels(), kLargestGuess, mostNodes()});
+  pool.nodeCapacity = static_cast<std::uint32_t>(std::max<std::uint64_t>(info.surfaces ? guess : 0, 1));
+  return makeTarget(pool);
+}
+
+FrameStats ListPicture::totalsOf(const VitrailStats& stats) {
+  stats_ = {};
+  stats_.tiles = 0;
+  stats_.complete = true;
+  coveredPixels_ = 0;
+  add(stats);
+  FrameStats result = totals();
+  result.nodeCapacity = stats.nodeCapacity;
+  return result;
+}
+
 // A target that is neither enlarged nor drawn in tiles.
 void ListPicture::makeFixedTarget(bool buildsAll) {
   if (!buildsAll) {

@@ -48,6 +48,12 @@ class ListPicture {
   // What pictures are like from now on; makes a target for them.
   void start(const ListPictureInfo& info);
   void setOnTile(std::function<void(std::uint32_t tiles)> onTile) { info_.onTile = std::move(onTile); }
+  // The same for pictures that are not waited for, each of which is drawn once, into a pool that follows what the last
+  // ones needed, up to the budget, else up to `most` bytes. False: there is no room for such a target.
+  bool startInFlight(const ListPictureInfo& info, std::uint64_t most);
+  bool isEmpty() const { return nothing_; } // there is nothing to draw
+  // What was counted of a picture that was drawn so.
+  FrameStats totalsOf(const VitrailStats& stats);
   // Draws one. The opaque scene has been drawn.
   void drawPicture();
   // Once it is drawn: false where it must be drawn again, for which there is room now.

@@ -26,17 +26,20 @@ Media::Media(const MethodHost& host, VkDescriptorSetLayout lists, std::uint32_t 
     : gpu_(host.gpu),
       samples_(samples),
       list_(host.surfaces.scene(), host.scene),
-      buffer_(gpu_, list_.table().size() * sizeof(shaders::MediaObject), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-              MemoryKind::Upload, "objects that absorb"),
-      set_(gpu_,
-           {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT},
-            {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT},
-            {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT},
-            {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}},
-           "media"),
-      layout_(makePipelineLayout(gpu_, {lists, set_.layout()},
-                                 {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(shaders::MediaView)}, "media resolve")) {
-  set_.writeBuffer(0, buffer_.get(), buffer_.size());
+      slots_(host.surfaces.framesInFlight()) {
+  for (Slot& slot : slots_) {
+    slot.buffer = GpuBuffer(gpu_, list_.table().size() * sizeof(shaders::MediaObject),
+                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryKind::Upload, "objects that absorb");
+    slot.set = SingleSet(gpu_,
+                         {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT},
+                          {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT},
+                          {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT},
+                          {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}},
+                         "media");
+    slot.set.writeBuffer(0, slot.buffer.get(), slot.buffer.size());
+  }
+  layout_ = makePipelineLayout(gpu_, {lists, slots_[0].set.layout()},
+                               {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(shaders::MediaView)}, "media resolve");
 }
 
 Unique<VkPipeline> Media::makePipeline(bool anyNear) {
@@ -47,20 +50,23 @@ Unique<VkPipeline> Media::makePipeline(bool anyNear) {
 }
 
 void Media::setTarget(const MethodTarget& target) {
-  set_.writeImage(1, target.color, VK_IMAGE_LAYOUT_GENERAL);
-  set_.writeImage(2, target.depth, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
-  if (samples_ > 1) set_.writeImage(3, target.opaque, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  for (Slot& slot : slots_) {
+    slot.set.writeImage(1, target.color, VK_IMAGE_LAYOUT_GENERAL);
+    slot.set.writeImage(2, target.depth, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+    if (samples_ > 1) slot.set.writeImage(3, target.opaque, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  }
 }
 
 void Media::setView(const shaders::FrameData& view) {
   list_.setView(view);
-  std::memcpy(buffer_.mapped(), list_.table().data(), list_.table().size() * sizeof(shaders::MediaObject));
+  slot_ = (slot_ + 1) % slots_.size();
+  std::memcpy(slots_[slot_].buffer.mapped(), list_.table().data(), list_.table().size() * sizeof(shaders::MediaObject));
   Unique<VkPipeline>& pipeline = pipelines_.at(list_.anyNear() ? 1 : 0);
   if (pipeline.get() == VK_NULL_HANDLE) pipeline = makePipeline(list_.anyNear());
 }
 
 void Media::cmdResolve(VkCommandBuffer commands, VkDescriptorSet lists, VkExtent2D area) const {
-  const std::array<VkDescriptorSet, 2> sets{lists, set_.set()};
+  const std::array<VkDescriptorSet, 2> sets{lists, slots_[slot_].set.set()};
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipelines_.at(list_.anyNear() ? 1 : 0).get());
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0,
                           static_cast<std::uint32_t>(sets.size()), sets.data(), 0, nullptr);

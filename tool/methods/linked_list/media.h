@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "../../gpu/descriptors.h"
 #include "../../gpu/pipeline.h"
@@ -20,7 +21,7 @@ class Media {
 
   // Writes the picture of `target`, whose depth is sampled.
   void setTarget(const MethodTarget& target);
-  // How the surfaces are seen now. No frame is pending.
+  // How the surfaces are seen by the frames to come, as Surfaces has it.
   void setView(const shaders::FrameData& view);
 
   const MediaObjects& objects() const { return list_; }
@@ -35,8 +36,12 @@ class Media {
   Gpu& gpu_;
   std::uint32_t samples_;
   MediaObjects list_;
-  GpuBuffer buffer_; // its table
-  SingleSet set_;
+  struct Slot {
+    GpuBuffer buffer; // its table
+    SingleSet set;
+  };
+  std::vector<Slot> slots_; // of each frame in flight
+  std::size_t slot_ = 0;    // of the frames to come
   Unique<VkPipelineLayout> layout_;
   std::array<Unique<VkPipeline>, 2> pipelines_; // for views without such objects and with them, once there are any
 };

@@ -1,0 +1,86 @@
+// Draws pictures for somebody who moves about in a scene: as fast as the device draws them, with several in flight, and
+// without waiting for any. Each is drawn once, into lists whose memory follows what the last pictures needed, within
+// the budget (vitrailVkUpdateTarget); its report says whether it is exact. The same scene can be drawn as StillRenderer
+// does, in between.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "../gpu/device.h"
+#include "../gpu/timers.h"
+#include "encode_image.h"
+#include "renderer.h"
+#include "still.h"
+
+namespace vitrail::tool {
+
+// A picture that the GPU has drawn.
+struct InteractivePicture {
+  // Its codes, in the top left corner: for fragment shaders, in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL. Whoever lets
+  // the GPU sample it holds it until that is done.
+  std::shared_ptr<const GpuImage> image;
+  VkExtent2D part{};
+  std::vector<std::uint8_t> pixels; // of the part, where they were asked for
+  FrameReport report;
+};
+
+class InteractiveRenderer final : public Renderer {
+ public:
+  static constexpr std::uint32_t kFramesInFlight = 2;
+
+  // Whether it draws by a method.
+  static bool draws(const MethodOptions& method);
+
+  // As StillRenderer. Throws GpuError.
+  InteractiveRenderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity, const MethodOptions& method);
+  ~InteractiveRenderer() override;
+
+  // Begins a picture of options.width and options.height, in the corner of images of `size`, neither smaller.
+  // `readsBack`: with its pixels. Fewer than kFramesInFlight are pending. False: the device has no room to draw so, and
+  // render() draws it. Throws GpuError.
+  bool draw(const RenderOptions& options, VkExtent2D size, bool readsBack);
+  std::size_t pending() const { return pending_.size(); } // that were begun and not finished
+  // Waits for the oldest of them.
+  InteractivePicture finish();
+
+  // None is pending.
+  RenderResult render(const RenderOptions& options) override;
+  FrameReport measure(const RenderOptions& options) override;
+
+ private:
+  // What belongs to a frame in flight.
+  struct Slot {
+    explicit Slot(Gpu& gpu) : submitter(gpu), timers(gpu, Frame::kMostPasses) {}
+    Submitter submitter;
+    Timers timers;
+    GpuBuffer pixels;
+  };
+  struct Pending {
+    Slot* slot = nullptr;
+    std::shared_ptr<EncodeImagePass::Output> output;
+    RenderOptions options;
+    std::uint64_t picture = 0; // of the method
+    bool readsBack = false;
+    std::optional<FrameStats> stats{}; // once the GPU is done
+  };
+
+  void setSize(VkExtent2D size);
+  std::shared_ptr<EncodeImagePass::Output> freeOutput();
+  void settle(Pending& pending);
+  void settleAll();
+
+  Gpu& gpu_;
+  MethodOptions method_;
+  StillRenderer still_;
+  EncodeImagePass encode_;
+  std::vector<std::shared_ptr<EncodeImagePass::Output>> outputs_; // of the stage's present images
+  std::uint64_t outputImages_ = 0;                                // which those are
+  std::vector<std::unique_ptr<Slot>> slots_;
+  std::size_t next_ = 0;
+  std::deque<Pending> pending_;
+};
+
+} // namespace vitrail::tool
