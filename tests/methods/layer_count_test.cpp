@@ -128,7 +128,11 @@ TEST(LayerCountOnProcessor, CountsInEveryBand) {
 }
 
 // No user chooses layer-count, which is not listed.
-TEST(LayerCountOptions, WhatIsNotAskedForIsNotRefused) { EXPECT_NO_THROW(checkPictureOptions(kLayerCount, false)); }
+TEST(LayerCountOptions, WhatIsNotAskedForIsNotRefused) {
+  MethodOptions method;
+  method.name = kLayerCount;
+  EXPECT_NO_THROW(checkPictureOptions(method, false, false));
+}
 
 } // namespace
 } // namespace vitrail::tool::test

@@ -78,9 +78,9 @@ const std::vector<MethodRow>& vulkanRows() {
       {.name = "linked-list",
        .exact = Exact::Everywhere,
        .orderFree = true,
-       .options = {"--nodes", "--resolve", "--msaa-resolve", "--layers", "--memory-budget"}},
+       .options = {"--nodes", "--resolve", "--msaa-resolve", "--layers", "--sorting", "--memory-budget", "--peel"}},
       {.name = "tiles", .exact = Exact::Everywhere, .orderFree = true, .options = {"--memory-budget"}},
-      {.name = "cpu", .exact = Exact::Everywhere, .orderFree = true, .options = {"--memory-budget"}},
+      {.name = "cpu", .exact = Exact::Everywhere, .orderFree = true, .options = {"--memory-budget", "--peel"}},
       {.name = "unsorted", .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "sorted", .exact = Exact::ParallelPanes, .options = {}, .wrongWhereSurfacesCross = true},
       {.name = "sorted-triangles", .exact = Exact::ParallelParts, .options = {}, .wrongWhereSurfacesCross = true},
@@ -554,17 +554,21 @@ TEST_P(MethodsTest, OptionsAreTakenOrRefused) {
        }},
       {"--layers", [](MethodOptions& o) { o.maxLayers = 4; }},
       {"--passes", [](MethodOptions& o) { o.passes = 4; }},
+      {"--sorting", [](MethodOptions& o) { o.sorted = false; }},
       {"--memory-budget", {}},
+      {"--peel", {}},
   };
   for (const auto& [name, set] : choices) {
     const auto& has = GetParam().options;
-    const bool taken = std::find(has.begin(), has.end(), name) != has.end();
+    const bool walks = name == "--sorting" || name == "--peel"; // the tool's own resolve, which OpenGL has not
+    const bool taken =
+        std::find(has.begin(), has.end(), name) != has.end() && !(walks && GetParam().api == Api::OpenGl);
     std::string reason;
     try {
       MethodOptions chosen = options();
       if (set) set(chosen);
       checkMethodOptions(chosen);
-      checkPictureOptions(chosen.name, !set);
+      checkPictureOptions(chosen, name == "--memory-budget", name == "--peel");
     } catch (const std::invalid_argument& error) {
       reason = error.what();
     }

@@ -62,6 +62,21 @@ TEST(Inside, PartsAreHiddenShownIsolatedAndPeeled) {
   EXPECT_GT(alone.rgba[middle + 2], alone.rgba[middle]);
 }
 
+// On the processor and on a GPU, in words and in the report.
+TEST(Inside, APeeledPictureSaysWhatItLacks) {
+  const TemporaryFolder folder;
+  writeWalls(folder);
+  for (const Words& how : {Words{}, Words{"--method", "linked-list", "--device", "llvmpipe"}}) {
+    Words words{"render", "walls.obj", "-o",     "a.png",  "--size", "32x32",
+                "--eye",  "0,0,3",     "--json", "a.json", "--peel"};
+    words.emplace_back("2");
+    words.insert(words.end(), how.begin(), how.end());
+    const ProcessResult result = vitrail(folder, words);
+    EXPECT_NE(result.out.find("exact without the 2 nearest surfaces of each pixel"), std::string::npos) << result.out;
+    EXPECT_EQ(Json::parse(readText(folder.file("a.json")))["peeled"], 2);
+  }
+}
+
 TEST(Inside, WhatCannotBeDoneIsRefused) {
   const TemporaryFolder folder;
   writeWalls(folder);
@@ -77,8 +92,11 @@ TEST(Inside, WhatCannotBeDoneIsRefused) {
   refuse({"render", "walls.obj", "-o", "a.png", "--fade", "near"}, 2, "NAME=A");
   refuse({"render", "walls.obj", "-o", "a.png", "--fade", "near=2"}, 2, "NAME=A");
   refuse({"render", "walls.obj", "-o", "a.png", "--fade", "door=0.5"}, 2, "no object is named");
-  refuse({"render", "walls.obj", "-o", "a.png", "--peel", "1", "--method", "weighted"}, 2, "method cpu");
-  refuse({"render", "walls.obj", "-o", "a.png", "--peel", "1", "--device", "llvmpipe"}, 2, "--peel");
+  refuse({"render", "walls.obj", "-o", "a.png", "--peel", "1", "--method", "weighted"}, 2, "linked-list, cpu");
+  refuse({"render", "walls.obj", "-o", "a.png", "--peel", "1", "--layers", "2"}, 2, "leave --layers out");
+  refuse({"render", "walls.obj", "-o", "a.png", "--peel", "1", "--sorting", "off"}, 2, "leave --sorting out");
+  refuse({"render", "walls.obj", "-o", "a.png", "--sorting", "off", "--layers", "2"}, 2, "leave --layers out");
+  refuse({"render", "walls.obj", "-o", "a.png", "--sorting", "off", "--method", "weighted"}, 2, "linked-list");
   refuse({"render", "walls.obj", "-o", "a.png", "--peel", "1", "--api", "opengl"}, 2, "--peel");
 }
 

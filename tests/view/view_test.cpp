@@ -466,14 +466,15 @@ TEST(ViewMethodsTest, WhatTheBudgetDoesNotHoldIsDrawnInTilesAtRest) {
   view.expectClosesWell();
 }
 
-TEST(ViewMethodsTest, Peels) {
-  const TemporaryFolder folder;
-  View view(folder, {"--scene", "interlocked", "--peel", "2", "--validate"});
+TEST_P(ViewTest, Peels) {
+  View view(folder_, with({"--scene", "interlocked", "--peel", "2"}));
+  view.settled();
+  view.desk.key("Left");
   const Json shown = view.settled();
-  EXPECT_EQ(shown["method"], "cpu");
-  view.desk.key("Tab");
-  std::this_thread::sleep_for(300ms);
-  EXPECT_EQ(differing(view.desk.look(), drawn(folder, shown["command"])), 0U) << shown["command"];
+  EXPECT_EQ(shown["method"], GetParam() == "cpu" ? "cpu" : "linked-list");
+  EXPECT_EQ(shown["peeled"], 2);
+  EXPECT_TRUE(shown["exact"]); // but for those
+  expectSameAsRendered(view, shown["command"]);
   view.expectClosesWell();
 }
 
@@ -504,10 +505,21 @@ TEST(ViewMethodsTest, SortsOrDoesNot) {
     view.desk.key(key);
     return view.settled();
   };
-  EXPECT_EQ(method("s")["method"], "unsorted");
-  EXPECT_EQ(method("s")["method"], "linked-list");
   const std::string command = method("bracketleft")["command"];
   EXPECT_NE(command.find("--layers 3"), std::string::npos) << command;
+  const Json off = method("s");
+  EXPECT_EQ(off["method"], "linked-list");
+  EXPECT_TRUE(off["onDevice"]);
+  EXPECT_FALSE(off["complete"]);
+  const std::string unsorted = off["command"];
+  EXPECT_NE(unsorted.find("--sorting off"), std::string::npos) << unsorted;
+  EXPECT_EQ(unsorted.find("--layers"), std::string::npos) << unsorted;
+  view.desk.key("Tab");
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(differing(view.desk.look(), drawn(folder, unsorted)), 0U) << unsorted;
+  const Json on = method("s");
+  EXPECT_TRUE(on["exact"]);
+  EXPECT_GT(differing(drawn(folder, on["command"]), drawn(folder, unsorted)), 100000U);
   view.expectClosesWell();
 }
 

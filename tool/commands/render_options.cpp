@@ -35,7 +35,9 @@ constexpr const char* kBlendHelp =
                         loop-64 and interlock: 8); depth-peeling leaves the others out; the layers
                         of multi-layer (default 4)
   --peel N              leaves out the N nearest transparent surfaces of each pixel: what they hide is
-                        seen. Drawn on the processor (method cpu)
+                        seen. Of linked-list and cpu
+  --sorting S           on (default), off: surfaces are blended in the order in which they arrive, as
+                        a lesson. Of linked-list
   --memory-budget MIB   for fragments, at least 1; a picture that needs more is drawn in tiles, the
                         same picture (default: what the device can give))";
 
@@ -82,6 +84,7 @@ void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   addPositive(command, "--passes", method.passes);
   addPositive(command, "--memory-budget", arguments.memoryBudget);
   addPositive(command, "--peel", arguments.peel);
+  addChoice(command, "--sorting", "on and off", method.sorted, sortingNamed);
   addChoice(command, "--nodes", "standard, compact and hdr", method.nodes, nodeFormatNamed);
   addChoice(command, "--resolve", "compute and fragment", method.resolve, resolveNamed);
   addChoice(command, "--list-build", "fragment and compute", method.listBuild, listBuildNamed);
@@ -99,24 +102,20 @@ std::string vulkanOption(const RenderArguments& arguments) {
   if (method.msaaResolve != defaults.msaaResolve) return "--msaa-resolve";
   if (method.maxLayers != defaults.maxLayers) return "--layers";
   if (method.passes != defaults.passes) return "--passes";
+  if (method.sorted != defaults.sorted) return "--sorting off";
   return arguments.validate ? "--validate" : "";
 }
 
 void chooseDevice(RenderArguments& arguments) {
   if (arguments.method.api == Api::OpenGl) { // which has a device of its own
-    if (arguments.peel) throw UsageError("--peel is drawn on the processor: leave --api out");
     arguments.wish = Wish::Vulkan;
     return;
   }
-  if (arguments.peel && arguments.methodName && arguments.methodName != kCpuMethod) {
-    throw UsageError("--peel is drawn by the method cpu: leave --method out, or name it");
-  }
-  const bool isCpuMethod = arguments.methodName == kCpuMethod || arguments.peel;
+  const bool isCpuMethod = arguments.methodName == kCpuMethod;
   const bool isCpuDevice = isProcessor(arguments.device);
   if (isCpuMethod && arguments.validate) throw UsageError("the method cpu is without Vulkan: leave --validate out");
   if (isCpuMethod && !isCpuDevice && !arguments.device.empty()) {
-    throw UsageError(arguments.peel ? "--peel is drawn on the processor: leave --device out, or name cpu"
-                                    : "the method cpu draws on the processor: leave --device out, or name cpu");
+    throw UsageError("the method cpu draws on the processor: leave --device out, or name cpu");
   }
   const std::string needsVulkan = isCpuMethod ? "" : vulkanOption(arguments);
   if (isCpuDevice && !needsVulkan.empty()) {
@@ -134,7 +133,7 @@ void chooseDevice(RenderArguments& arguments) {
 void checkMethod(const RenderArguments& arguments) {
   try {
     checkMethodOptions(arguments.method);
-    checkPictureOptions(arguments.method.name, arguments.memoryBudget.has_value());
+    checkPictureOptions(arguments.method, arguments.memoryBudget.has_value(), arguments.peel.has_value());
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }

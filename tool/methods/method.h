@@ -33,7 +33,8 @@ struct MethodTarget {
   VkImageView stencil = VK_NULL_HANDLE; // and the stencil beside it, where ImageNeeds::stencil has one
   // Bytes that the method may keep for fragments. Default: what the device can give. For methods that have it.
   std::optional<std::uint64_t> memoryBudget;
-  bool surfaces = true;                            // whether there is anything transparent
+  bool surfaces = true;   // whether there is anything transparent
+  std::uint32_t peel = 0; // the nearest surfaces of each pixel that are left out, where the method does that
   std::function<void(std::uint32_t tiles)> onTile; // where not empty, told how many tiles of a picture are done
   // More than 1: pictures are drawn without waiting for any (Method::drawsInFlight), and so many may be pending at
   // once. What a method has to replace meanwhile it replaces behind waitForFrames().

@@ -51,6 +51,11 @@ std::optional<VitrailResolve> resolveNamed(std::string_view name) { return choic
 std::optional<VitrailListBuild> listBuildNamed(std::string_view name) { return choiceIn(kListBuilds, name); }
 std::optional<VitrailMsaaResolve> msaaResolveNamed(std::string_view name) { return choiceIn(kMsaaResolves, name); }
 std::optional<StencilMark> stencilMarkNamed(std::string_view name) { return choiceIn(kStencilMarks, name); }
+std::optional<bool> sortingNamed(std::string_view name) {
+  if (name == "on") return true;
+  if (name == "off") return false;
+  return {};
+}
 std::optional<Api> apiNamed(std::string_view name) { return choiceIn(kApis, name); }
 std::optional<Overflow> overflowNamed(std::string_view name) { return choiceIn(kOverflows, name); }
 

@@ -38,6 +38,7 @@ struct MethodOptions {
   std::uint32_t memoryBudget = 0; // MiB of each picture; 0: what RenderOptions says
   std::uint32_t maxLayers = 0;    // the nearest of a pixel that are drawn as they are; 0: no bound, or the method's own
   std::uint32_t passes = 0;       // over the surfaces; 0: the method's own number
+  bool sorted = true;             // false: surfaces are blended in the order in which they arrive
 
   bool operator==(const MethodOptions&) const = default;
 };
@@ -57,6 +58,7 @@ std::optional<VitrailResolve> resolveNamed(std::string_view name);
 std::optional<VitrailListBuild> listBuildNamed(std::string_view name);
 std::optional<VitrailMsaaResolve> msaaResolveNamed(std::string_view name);
 std::optional<StencilMark> stencilMarkNamed(std::string_view name);
+std::optional<bool> sortingNamed(std::string_view name); // "on", "off"
 std::optional<Api> apiNamed(std::string_view name);
 std::optional<Overflow> overflowNamed(std::string_view name); // "grow", "approximate"
 

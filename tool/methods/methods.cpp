@@ -27,7 +27,8 @@ constexpr std::array kMethods{
                  .make = makeLinkedList,
                  .makeGl = makeGlLinkedList,
                  .options = kTakesSamples | kTakesNodes | kTakesResolve | kTakesListBuild | kTakesMsaaResolve |
-                            kTakesLayers | kTakesMemoryBudget | kTakesStencilMark | kTakesOverflow,
+                            kTakesLayers | kTakesMemoryBudget | kTakesStencilMark | kTakesOverflow | kTakesSorting |
+                            kTakesPeel,
                  .lists = true,
                  .orderIndependent = true},
     MethodTraits{.name = "tiles",
@@ -37,7 +38,7 @@ constexpr std::array kMethods{
                  .orderIndependent = true},
     MethodTraits{.name = kCpuMethod,
                  .help = "on the processor, without Vulkan; lists of any length",
-                 .options = kTakesSamples | kTakesMemoryBudget,
+                 .options = kTakesSamples | kTakesMemoryBudget | kTakesPeel,
                  .orderIndependent = true,
                  .onProcessor = true},
     MethodTraits{.name = "unsorted",
@@ -182,6 +183,25 @@ void checkTaken(const MethodOptions& options) {
   check("--overflow", kTakesOverflow, options.nodeCapacity != defaults.nodeCapacity);
   check("--memory-budget", kTakesMemoryBudget, options.memoryBudget != defaults.memoryBudget);
   check("--passes", kTakesPasses, options.passes != defaults.passes);
+  check("--sorting", kTakesSorting, options.sorted != defaults.sorted);
+}
+
+// Refuses what does not go with lists that the tool walks by itself, as `option` makes it.
+void checkWalked(const MethodOptions& options, std::string_view option) {
+  if (options.name == kCpuMethod) return;
+  if (options.api == Api::OpenGl) {
+    throw std::invalid_argument(
+        fmt::format("{} of {} is not there with --api opengl: leave one of them out", option, options.name));
+  }
+  if (options.maxLayers > 0) {
+    throw std::invalid_argument(fmt::format("{} walks complete lists: leave --layers out", option));
+  }
+  if (options.nodeCapacity > 0) {
+    throw std::invalid_argument(fmt::format("{} walks complete lists: leave --overflow out", option));
+  }
+  if (options.msaaResolve == VITRAIL_MSAA_RESOLVE_PER_SAMPLE) {
+    throw std::invalid_argument(fmt::format("{} is resolved per pixel: leave --msaa-resolve out", option));
+  }
 }
 
 void checkStored(const MethodOptions& options) {
@@ -237,11 +257,12 @@ void checkMethodOptions(const MethodOptions& options) {
   checkApi(options);
   checkTaken(options);
   checkStored(options);
+  if (!options.sorted) checkWalked(options, "--sorting off");
 }
 
 std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions& options) {
   const bool cut = !scene.clipPlanes.empty();
-  const bool walks = options.name == kListMethod && options.maxLayers == 0;
+  const bool walks = options.name == kListMethod && options.maxLayers == 0 && options.sorted;
   const Solids solids(scene, false);
   if (walks && !cut && solids.open()) {
     const std::uint32_t material = *solids.open();
@@ -253,14 +274,18 @@ std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions&
   if ((walks && !cut) || !solids.any()) return {};
   if (cut) return {"volumes are attenuated by the file's thickness, not by the true path: --clip-plane cuts them open"};
   return {options.name == kListMethod
-              ? "volumes are attenuated by the file's thickness, not by the true path: leave --layers out"
+              ? fmt::format("volumes are attenuated by the file's thickness, not by the true path: leave {} out",
+                            options.sorted ? "--layers" : "--sorting")
               : "volumes are attenuated by the file's thickness, not by the true path: use --method linked-list"};
 }
 
-void checkPictureOptions(std::string_view method, bool memoryBudget) {
-  if (memoryBudget && !traitsOf(method).takes(kTakesMemoryBudget)) {
-    refuse("--memory-budget", kTakesMemoryBudget, method);
-  }
+void checkPictureOptions(const MethodOptions& method, bool memoryBudget, bool peels) {
+  const MethodTraits& traits = traitsOf(method.name);
+  if (memoryBudget && !traits.takes(kTakesMemoryBudget)) refuse("--memory-budget", kTakesMemoryBudget, method.name);
+  if (!peels) return;
+  if (!traits.takes(kTakesPeel)) refuse("--peel", kTakesPeel, method.name);
+  checkWalked(method, "--peel");
+  if (!method.sorted) throw std::invalid_argument("--peel needs sorted surfaces: leave --sorting out");
 }
 
 } // namespace vitrail::tool

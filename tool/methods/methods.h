@@ -34,7 +34,9 @@ enum MethodOption : std::uint32_t {
   kTakesPasses = 1U << 6U,       // --passes
   kTakesMemoryBudget = 1U << 7U, // --memory-budget
   kTakesStencilMark = 1U << 8U,  // --stencil-mark
-  kTakesOverflow = 1U << 9U      // --overflow
+  kTakesOverflow = 1U << 9U,     // --overflow
+  kTakesSorting = 1U << 10U,     // --sorting
+  kTakesPeel = 1U << 11U         // --peel
 };
 
 // A row of the table.
@@ -73,8 +75,8 @@ std::unique_ptr<GlMethod> makeGlMethod(const GlMethodHost& host, const MethodOpt
 // not have, or for options that exclude each other.
 void checkMethodOptions(const MethodOptions& options);
 
-// The same for what is chosen with each picture: whether there is a memory budget.
-void checkPictureOptions(std::string_view method, bool memoryBudget);
+// The same for what is chosen with each picture: whether there is a memory budget, and whether surfaces are left out.
+void checkPictureOptions(const MethodOptions& method, bool memoryBudget, bool peels);
 
 // What the method draws otherwise of a scene than others would: lines as Scene::warnings has them.
 std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions& options);

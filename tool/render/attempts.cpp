@@ -40,6 +40,7 @@ FrameReport reportOf(const FrameStats& stats, const RenderOptions& picture, cons
   report.width = picture.width;
   report.height = picture.height;
   report.samples = method.samples;
+  report.peeled = picture.peel;
   if (!report.resolve.empty() && method.samples > 1) report.msaaResolve = nameOf(method.msaaResolve);
   report.passesMs = passes;
   for (const auto& [pass, milliseconds] : passes) report.frameMs += milliseconds;
@@ -54,6 +55,10 @@ bool mayBeBackground(const RenderOptions& picture, const RenderResult& drawn) {
     return true;
   };
   return picture.background.kind == Background::Kind::Sky || (isPlain(drawn.picture.rgba) && isPlain(drawn.deep.rgba));
+}
+
+std::string nothingPeeledWarning() {
+  return "nothing was peeled away: every surface that is seen is opaque; --opacity makes all of them translucent";
 }
 
 void warnOfPoints(const Scene& scene, float drawn, const std::string& name, std::vector<std::string>& warnings) {

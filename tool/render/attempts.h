@@ -23,6 +23,9 @@ FrameReport reportOf(const FrameStats& stats, const RenderOptions& picture, cons
 // more.
 bool mayBeBackground(const RenderOptions& picture, const RenderResult& drawn);
 
+// Why a picture that leaves out the nearest surfaces is like one that does not.
+std::string nothingPeeledWarning();
+
 // Warns where points are drawn with another size than the scene's. `drawn` is that of the device `name`.
 void warnOfPoints(const Scene& scene, float drawn, const std::string& name, std::vector<std::string>& warnings);
 

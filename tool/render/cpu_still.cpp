@@ -20,6 +20,7 @@
 #include "../image/large_array.h"
 #include "../methods/methods.h"
 #include "../scene/threads.h"
+#include "attempts.h"
 #include "rasterizer.h"
 
 namespace vitrail::tool {
@@ -258,9 +259,7 @@ FrameReport CpuStillRenderer::Impl::draw(const RenderOptions& picture, Encoded* 
   if (!report.pixelLayers.empty()) report.layersMax = std::ranges::max(report.pixelLayers);
   finish(report, picture, totals.clock.passes());
   if (picture.peel > 0 && !peeling.any) {
-    report.warnings.emplace_back(
-        "nothing was peeled away: every surface that is seen is opaque; --opacity makes all of "
-        "them translucent");
+    report.warnings.push_back(nothingPeeledWarning());
   }
   return report;
 }
@@ -319,6 +318,7 @@ void CpuStillRenderer::Impl::finish(FrameReport& report, const RenderOptions& pi
   report.width = picture.width;
   report.height = picture.height;
   report.samples = method.samples;
+  report.peeled = picture.peel;
   report.warnings = scene.warnings();
   report.peakBytes = peakMemory();
   report.passesMs = passes;

@@ -20,6 +20,7 @@ struct FrameReport : FrameStats {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t samples = 1;
+  std::uint32_t peeled = 0;          // the nearest surfaces of each pixel that were left out, as was asked for
   std::string msaaResolve;           // "per-pixel", "per-sample"; empty at one sample and where `resolve` is
   std::vector<std::string> warnings; // what the picture lacks, or shows otherwise than its file says
   std::uint64_t peakBytes = 0;       // the most device memory that the tool and the library held at once

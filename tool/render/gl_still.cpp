@@ -74,7 +74,7 @@ GlStillRenderer::Impl::Impl(Gl& gl, const Scene& scene, std::optional<float> opa
 }
 
 void GlStillRenderer::Impl::prepare(const RenderOptions& picture) {
-  checkPictureOptions(options.name, picture.memoryBudget.has_value());
+  checkPictureOptions(options, picture.memoryBudget.has_value(), picture.peel > 0);
   if (!stage.hasSize(picture.width, picture.height)) {
     method->releaseTarget();
     stage.setSize(picture.width, picture.height);

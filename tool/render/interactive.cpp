@@ -55,7 +55,7 @@ std::shared_ptr<EncodeImagePass::Output> InteractiveRenderer::freeOutput() {
 }
 
 bool InteractiveRenderer::draw(const RenderOptions& options, VkExtent2D size, bool readsBack) {
-  checkPictureOptions(method_.name, options.memoryBudget.has_value());
+  checkPictureOptions(method_, options.memoryBudget.has_value(), options.peel > 0);
   setSize(size);
   Stage& stage = still_.stage();
   Method& method = still_.method();
@@ -105,7 +105,7 @@ InteractivePicture InteractiveRenderer::finish() {
   picture.report = reportOf(*pending.stats, pending.options, method_, slot.timers.milliseconds());
   picture.report.device = gpu_.properties().deviceName;
   picture.report.api = kVulkanApi;
-  picture.report.warnings = still_.warnings();
+  picture.report.warnings = still_.warningsOf(pending.options, *pending.stats);
   picture.report.peakBytes = gpu_.peakMemory();
   const GpuImage* image = &pending.output->image;
   picture.image = std::shared_ptr<const GpuImage>(std::move(pending.output), image);

@@ -21,7 +21,9 @@ struct RenderOptions {
   // picture is the same. Default: what the device can give.
   std::optional<std::uint64_t> memoryBudget;
   Encoding encoding = Encoding::Srgb8;
-  std::uint32_t peel = 0; // the nearest transparent surfaces of each pixel that are left out; of CpuStillRenderer alone
+  // The nearest transparent surfaces of each pixel (with several samples, of each sample) that are left out. Of the
+  // methods linked-list and cpu.
+  std::uint32_t peel = 0;
   std::function<void(std::uint32_t tiles)> onTile; // told how many tiles are done, for people who wait
 };
 

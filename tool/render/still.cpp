@@ -24,6 +24,7 @@ struct StillRenderer::Impl {
   Impl(Gpu& gpu, const Scene& scene, const StageInfo& info, const MethodOptions& chosen);
   void setSize(VkExtent2D size);
   MethodTarget targetOf(const RenderOptions& picture);
+  std::vector<std::string> warningsOf(const RenderOptions& picture, const FrameStats& stats) const;
   void prepare(const RenderOptions& picture);
   bool draw(const Background& background, bool encoded);
   FrameReport drawUntilComplete(const RenderOptions& picture, bool encoded);
@@ -49,7 +50,7 @@ void StillRenderer::Impl::setSize(VkExtent2D size) {
 }
 
 void StillRenderer::Impl::prepare(const RenderOptions& picture) {
-  checkPictureOptions(options.name, picture.memoryBudget.has_value());
+  checkPictureOptions(options, picture.memoryBudget.has_value(), picture.peel > 0);
   const VkExtent2D size{picture.width, picture.height};
   setSize(size);
   stage.images().setPart(size);
@@ -71,9 +72,20 @@ MethodTarget StillRenderer::Impl::targetOf(const RenderOptions& picture) {
   target.depth = images.sampledDepth();
   target.stencil = images.sampledStencil();
   target.memoryBudget = picture.memoryBudget;
+  target.peel = picture.peel;
   target.onTile = picture.onTile;
   target.surfaces = !stage.surfaces().scene().transparentDraws().empty();
   return target;
+}
+
+std::vector<std::string> StillRenderer::Impl::warningsOf(const RenderOptions& picture, const FrameStats& stats) const {
+  std::vector<std::string> all = warnings;
+  if (picture.peel == 0) return all;
+  if (stats.fragmentsRequested == 0) all.push_back(nothingPeeledWarning());
+  if (stage.surfaces().scene().solids().any()) {
+    all.emplace_back("volumes are attenuated by the file's thickness, not by the true path: leave --peel out");
+  }
+  return all;
 }
 
 // Draws a picture. False: the method has made room, and the picture must be drawn again.
@@ -99,7 +111,7 @@ FrameReport StillRenderer::Impl::drawUntilComplete(const RenderOptions& picture,
   FrameReport report = reportOf(stats, picture, options, timers.milliseconds());
   report.device = device;
   report.api = kVulkanApi;
-  report.warnings = warnings;
+  report.warnings = warningsOf(picture, stats);
   report.peakBytes = stage.gpu().peakMemory();
   return report;
 }
@@ -138,7 +150,9 @@ Stage& StillRenderer::stage() { return impl_->stage; }
 Method& StillRenderer::method() { return *impl_->method; }
 void StillRenderer::setSize(VkExtent2D size) { impl_->setSize(size); }
 MethodTarget StillRenderer::targetOf(const RenderOptions& picture) { return impl_->targetOf(picture); }
-const std::vector<std::string>& StillRenderer::warnings() const { return impl_->warnings; }
+std::vector<std::string> StillRenderer::warningsOf(const RenderOptions& picture, const FrameStats& stats) const {
+  return impl_->warningsOf(picture, stats);
+}
 
 RenderResult StillRenderer::render(const RenderOptions& options) {
   RenderResult result;

@@ -42,7 +42,8 @@ class StillRenderer final : public Renderer {
   void setSize(VkExtent2D size);
   // What the method is given of a picture on the stage's images.
   MethodTarget targetOf(const RenderOptions& picture);
-  const std::vector<std::string>& warnings() const;
+  // What its report warns of.
+  std::vector<std::string> warningsOf(const RenderOptions& picture, const FrameStats& stats) const;
 
  private:
   struct Impl;

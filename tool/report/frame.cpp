@@ -37,6 +37,7 @@ Json jsonOf(const FrameReport& report) {
       {names::kLayers, layersOf(report)},
       {names::kApproximatePixels, report.approximatePixels},
       {names::kTiles, report.tiles},
+      {"peeled", report.peeled},
       {"memory",
        {{names::kNodesBytes, report.nodesBytes},
         {"heads_bytes", report.headsBytes},
@@ -49,9 +50,12 @@ Json jsonOf(const FrameReport& report) {
 
 // What is known of how right the picture is.
 std::string exactness(const FrameReport& report) {
-  if (isExact(report)) return "exact";
-  if (!report.complete) return "not exact";
-  return fmt::format("complete, within {:.0f}/255", std::ceil(report.errorBound));
+  std::string left; // what the words are about
+  if (report.peeled == 1) left = " without the nearest surface of each pixel";
+  if (report.peeled > 1) left = fmt::format(" without the {} nearest surfaces of each pixel", report.peeled);
+  if (isExact(report)) return "exact" + left;
+  if (!report.complete) return "not exact" + left;
+  return fmt::format("complete{}, within {:.0f}/255", left, std::ceil(report.errorBound));
 }
 
 } // namespace

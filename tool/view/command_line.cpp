@@ -106,6 +106,7 @@ void addMethod(Words& words, const RenderArguments& arguments) {
   if (method.listBuild != defaults.listBuild) words.raw("--list-build", std::string(nameOf(method.listBuild)));
   if (method.msaaResolve != defaults.msaaResolve) words.raw("--msaa-resolve", std::string(nameOf(method.msaaResolve)));
   if (method.maxLayers != 0) words.raw("--layers", fmt::format("{}", method.maxLayers));
+  if (!method.sorted) words.raw("--sorting", "off");
   if (method.passes != 0) words.raw("--passes", fmt::format("{}", method.passes));
   words.option("--memory-budget", arguments.memoryBudget);
   words.option("--peel", arguments.peel);

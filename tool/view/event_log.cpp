@@ -57,6 +57,7 @@ void EventLog::shown(const Drawn& drawn, const std::string& command) {
                       {"layersMax", report.layersMax},
                       {"missing", report.fragmentsMissing},
                       {"tiles", report.tiles},
+                      {"peeled", report.peeled},
                       {"passes", passes},
                       {"onDevice", drawn.image != nullptr},
                       {"milliseconds", drawn.milliseconds},

@@ -50,7 +50,7 @@ void showMethods(const PanelState& state) {
   }
   MethodOptions& method = arguments.method;
   const MethodTraits& traits = traitsOf(method.name);
-  if (traits.takes(kTakesLayers)) {
+  if (traits.takes(kTakesLayers) && method.sorted && arguments.peel.value_or(0) == 0) {
     auto layers = static_cast<int>(method.maxLayers);
     if (ImGui::SliderInt("sorted layers", &layers, 0, 64, layers == 0 ? "all" : "%d")) {
       method.maxLayers = static_cast<std::uint32_t>(std::max(layers, 0));
@@ -240,6 +240,9 @@ void showReport(const PanelState& state) {
   if (state.drawn == nullptr) return;
   const Drawn& drawn = *state.drawn;
   const FrameReport& report = drawn.report;
+  if (report.peeled > 0) {
+    ImGui::TextColored(ImVec4(0.9F, 0.9F, 0.4F, 1.0F), "without the %u nearest surfaces:", report.peeled);
+  }
   if (isExact(report)) {
     ImGui::TextColored(ImVec4(0.4F, 0.9F, 0.4F, 1.0F), "exact: within 1/255");
   } else if (report.complete) {

@@ -1,5 +1,7 @@
 #include "settings.h"
 
+#include <stdexcept>
+
 #include "../methods/methods.h"
 
 namespace vitrail::tool {
@@ -7,6 +9,18 @@ namespace vitrail::tool {
 namespace {
 
 constexpr const char* kUnsorted = "unsorted";
+
+// Whether it can leave surfaces out.
+bool canPeel(const MethodOptions& method) {
+  try {
+    MethodOptions checked = method;
+    if (traitsOf(method.name).onProcessor) checked.api = Api::Vulkan;
+    checkPictureOptions(checked, false, true);
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+  return true;
+}
 
 } // namespace
 
@@ -36,7 +50,7 @@ void chooseMethod(RenderArguments& arguments, const std::string& name) {
   if (traits.takes(kTakesLayers)) method.maxLayers = before.maxLayers;
   if (traits.takes(kTakesPasses)) method.passes = before.passes;
   if (!traits.takes(kTakesMemoryBudget)) arguments.memoryBudget.reset();
-  if (name != kCpuMethod) arguments.peel.reset();
+  if (traits.takes(kTakesSorting)) method.sorted = before.sorted;
   try {
     MethodOptions checked = method;
     if (traits.onProcessor) checked.api = Api::Vulkan;
@@ -47,21 +61,37 @@ void chooseMethod(RenderArguments& arguments, const std::string& name) {
     method.name = name;
     method.api = api;
   }
+  if (!canPeel(method)) arguments.peel.reset();
 }
 
 void choosePeel(RenderArguments& arguments, std::uint32_t count) {
-  if (count > 0 && arguments.method.name != kCpuMethod) chooseMethod(arguments, std::string(kCpuMethod));
+  if (count > 0 && arguments.method.name == kListMethod) { // what does not go with it
+    arguments.method.sorted = true;
+    arguments.method.maxLayers = 0;
+    arguments.method.nodeCapacity = 0;
+    arguments.method.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
+  }
+  if (count > 0 && !canPeel(arguments.method)) chooseMethod(arguments, std::string(kCpuMethod));
   arguments.peel.reset();
   if (count > 0) arguments.peel = count;
 }
 
-bool Sorting::isOn(const RenderArguments& arguments) { return arguments.method.name != kUnsorted; }
+bool Sorting::isOn(const RenderArguments& arguments) {
+  return arguments.method.name != kUnsorted && arguments.method.sorted;
+}
 
 bool Sorting::isChoice(const Device& device) { return device.gpu() != nullptr || device.gl() != nullptr; }
 
 void Sorting::set(RenderArguments& arguments, bool on) {
   if (on == isOn(arguments)) return;
-  if (!on) {
+  if (arguments.method.name == kListMethod && arguments.method.api == Api::Vulkan) {
+    arguments.method.sorted = on;
+    if (on) return;
+    arguments.peel.reset(); // what does not go with it
+    arguments.method.maxLayers = 0;
+    arguments.method.nodeCapacity = 0;
+    arguments.method.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
+  } else if (!on) {
     sorted_.method = arguments.method;
     sorted_.memoryBudget = arguments.memoryBudget;
     hasSorted_ = true;

@@ -15,10 +15,12 @@ std::vector<std::string> methodsOf(const Device& device);
 // Draws by another method: what it does not take of the options of the one before is as it is by default.
 void chooseMethod(RenderArguments& arguments, const std::string& name);
 
-// Leaves out so many of the nearest surfaces of each pixel: drawn by the method cpu.
+// Leaves out so many of the nearest surfaces of each pixel, by the method of now where that can, else by the method
+// cpu.
 void choosePeel(RenderArguments& arguments, std::uint32_t count);
 
-// As the fragments are sorted, or blended in the order in which they are drawn.
+// As the fragments are sorted, or not: linked-list on a Vulkan device blends its lists in the order in which fragments
+// arrived; instead of other methods unsorted draws, which blends in the order of drawing.
 class Sorting {
  public:
   [[nodiscard]] static bool isOn(const RenderArguments& arguments);

@@ -426,7 +426,7 @@ class Viewer {
   }
 
   void changeLayers(int step) {
-    if (!traitsTake(kTakesLayers)) return;
+    if (!traitsTake(kTakesLayers) || !now_.method.sorted || now_.peel) return;
     now_.method.maxLayers =
         static_cast<std::uint32_t>(std::clamp(static_cast<int>(now_.method.maxLayers) + step, 0, 64));
   }

@@ -14,6 +14,7 @@
 #include "../methods.h"
 #include "list_picture.h"
 #include "media.h"
+#include "plain_resolve.h"
 #include "shaders/collect.frag.h"
 #include "shaders/collect_address.frag.h"
 #include "shaders/collect_coverage.frag.h"
@@ -58,7 +59,7 @@ std::span<const std::uint32_t> collectCode(bool media, bool coverage, bool addre
 bool sameTarget(const MethodTarget& a, const MethodTarget& b) {
   return a.extent.width == b.extent.width && a.extent.height == b.extent.height && a.color == b.color &&
          a.opaque == b.opaque && a.depth == b.depth && a.memoryBudget == b.memoryBudget && a.surfaces == b.surfaces &&
-         a.framesInFlight == b.framesInFlight;
+         a.framesInFlight == b.framesInFlight && (a.peel > 0) == (b.peel > 0);
 }
 
 class LinkedList final : public Method, private ListPicture {
@@ -92,6 +93,11 @@ class LinkedList final : public Method, private ListPicture {
   void makeSurfaces();
   VitrailVkTargetDesc targetDesc() const;
   void countMemory();
+  // Who resolves the lists of the picture that is wanted: the library where it is neither.
+  bool isPlain() const { return wanted_.peel > 0 || !options_.sorted; }
+  bool isMedia() const { return media_ && !isPlain(); }
+  bool hostResolves() const { return isMedia() || isPlain(); }
+  void cmdResolve(VkCommandBuffer commands, const VkRect2D& area);
   // Whether the resolve makes the picture out of several samples.
   bool writesEveryPixel() const { return options_.samples > 1 && !needs_.perSample; }
   void drawCollecting(std::span<const SurfaceRun> runs);
@@ -103,6 +109,8 @@ class LinkedList final : public Method, private ListPicture {
   struct PipelineKind {
     VitrailListBuild listBuild = VITRAIL_LIST_BUILD_DEFAULT;
     VitrailOverflow overflow = VITRAIL_OVERFLOW_SKIP;
+    bool media = false;      // isMedia()
+    bool plain = false;      // isPlain()
     bool depthFromW = false; // collect.frag
     bool operator==(const PipelineKind&) const = default;
   };
@@ -112,8 +120,9 @@ class LinkedList final : public Method, private ListPicture {
   MethodOptions options_;
   ImageNeeds needs_;
   vulkan::Context context_;
-  std::optional<Media> media_; // where objects absorb light: what resolves the lists then
-  PipelineKind pipelines_;     // of surfaces_
+  std::optional<Media> media_;        // where objects absorb light: what resolves the lists then
+  std::optional<PlainResolve> plain_; // once isPlain()
+  PipelineKind pipelines_;            // of surfaces_
   std::optional<SurfacePipelines> surfaces_;
   std::optional<SurfacePipelines> untested_; // the same without a depth test, where media_ asks for them
   vulkan::Target target_;
@@ -186,19 +195,21 @@ void LinkedList::makeSurfaces() {
   PipelineKind kind;
   kind.listBuild = desc.listBuild;
   kind.overflow = desc.overflow;
+  kind.media = isMedia();
+  kind.plain = isPlain();
   // To spare the fragment shaders of GPUs; Mesa's CPU driver takes longer. Where samples are tested in the resolve,
   // depths are compared with those of the depth image.
   const bool isCpu = gpu_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   const bool spares = !isCpu || kind.listBuild == VITRAIL_LIST_BUILD_COMPUTE;
-  kind.depthFromW = spares && !media_ && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
-  const bool wantsUntested = media_ && media_->objects().anyNear();
+  kind.depthFromW = spares && !isMedia() && source_.view().eye.w < 0.5F && (options_.samples == 1 || coverage);
+  const bool wantsUntested = isMedia() && media_->objects().anyNear();
   if (surfaces_ && kind == pipelines_ && (untested_ || !wantsUntested)) return;
   if (wanted_.waitForFrames) wanted_.waitForFrames(); // which draw with those that there are
   pipelines_ = kind;
   const VitrailVkSpecialization specialization = context_.collectSpecialization(desc);
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
-    info.fragmentShader = collectCode(media_.has_value(), coverage, address);
-    if (media_) info.vertexShader = shaders::surface_object_vert;
+    info.fragmentShader = collectCode(kind.media, coverage, address);
+    if (kind.media) info.vertexShader = shaders::surface_object_vert;
     for (std::size_t i = 0; i < specialization.count; ++i) {
       info.constants.emplace_back(specialization.entries[i].constantID, specialization.data[i]);
     }
@@ -225,8 +236,8 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
   desc.samples = flagOf(options_.samples);
   desc.nodeFormat = options_.nodes;
   desc.depthOrder = VITRAIL_DEPTH_NEAREST_IS_ONE;
-  desc.resolve = media_ ? VITRAIL_RESOLVE_HOST : options_.resolve;
-  desc.userWords = media_ ? VK_TRUE : VK_FALSE;
+  desc.resolve = hostResolves() ? VITRAIL_RESOLVE_HOST : options_.resolve;
+  desc.userWords = isMedia() ? VK_TRUE : VK_FALSE;
   desc.msaaResolve = options_.msaaResolve;
   desc.postDepthCoverage = options_.samples > 1 && gpu_.features().postDepthCoverage ? VK_TRUE : VK_FALSE;
   desc.maxLayers = options_.maxLayers;
@@ -235,7 +246,7 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
   const bool isShown = options_.nodeCapacity > 0 || wanted_.framesInFlight > 1; // and seen meanwhile
   desc.overflow = isShown ? VITRAIL_OVERFLOW_APPROXIMATE : VITRAIL_OVERFLOW_SKIP;
   desc.colorFormat = PictureImages::kColorFormat;
-  if (needs_.stencil) {
+  if (needs_.stencil && !hostResolves()) {
     desc.scope.stencilFormat = PictureImages::depthFormat(true);
     desc.scope.stencilMark = VK_TRUE;
   }
@@ -246,19 +257,24 @@ VitrailVkTargetDesc LinkedList::targetDesc() const {
 void LinkedList::setTarget(const MethodTarget& target) {
   if (media_) media_->setView(source_.view());
   if (wanted_.color != VK_NULL_HANDLE && sameTarget(target, wanted_)) {
+    wanted_.peel = target.peel;
     setOnTile(target.onTile);
     return makeSurfaces();
   }
   releaseTarget();
   wanted_ = target;
   if (media_) media_->setTarget(target);
+  if (isPlain()) {
+    if (!plain_) plain_.emplace(gpu_, context_.descriptorSetLayout(), options_.samples, options_.sorted);
+    plain_->setTarget(target);
+  }
   makeSurfaces();
   const ListPictureInfo picture{.width = target.extent.width,
                                 .height = target.extent.height,
                                 .memoryBudget = target.memoryBudget,
                                 .surfaces = target.surfaces,
                                 .writesEveryPixel = writesEveryPixel(),
-                                .words = media_.has_value(),
+                                .words = isMedia(),
                                 .listBuild = pipelines_.listBuild,
                                 .onTile = target.onTile};
   if (target.framesInFlight == 1) return start(picture);
@@ -275,7 +291,7 @@ bool LinkedList::makeTarget(const ListPool& pool) {
   desc.nodeCapacity = pool.nodeCapacity;
   desc.memoryBudget = pool.memoryBudget;
   desc.areaPixels = pool.areaPixels;
-  if (!media_) {
+  if (!hostResolves()) {
     desc.views.count = 1;
     desc.views.color = &wanted_.color;
     if (options_.samples > 1 && !needs_.perSample) desc.views.opaque = &wanted_.opaque;
@@ -339,7 +355,7 @@ void LinkedList::drawInFlight(const PictureImages& images) {
 
 void LinkedList::drawCollecting(std::span<const SurfaceRun> runs) {
   Frame& frame = *drawn_;
-  if (!media_ || !media_->objects().anyNear()) return frame.drawSurfaces(*surfaces_, target_.descriptorSet(), runs);
+  if (!isMedia() || !media_->objects().anyNear()) return frame.drawSurfaces(*surfaces_, target_.descriptorSet(), runs);
   frame.drawSurfaces(*surfaces_, target_.descriptorSet(), media_->objects().part(runs, false));
   frame.drawSurfaces(*untested_, target_.descriptorSet(), media_->objects().part(runs, true));
 }
@@ -358,18 +374,26 @@ void LinkedList::drawArea(const VitrailRect& part, std::span<const SurfaceRun> r
   if (pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE) frame.endPass("collect");
   target_.collected(commands);
   frame.endPass(pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE ? "build lists" : "collect");
-  if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT) {
-    cmdBeginScope(commands, images.resolveScope(commands, area));
-    target_.resolve(commands);
-    vkCmdEndRendering(commands);
-  } else {
-    images.cmdToComputeResolve(commands);
-    target_.resolve(commands);
-    if (media_) media_->cmdResolve(commands, target_.descriptorSet(), area.extent);
-  }
+  cmdResolve(commands, area);
   frame.endPass("resolve");
   target_.end(commands);
   frame.endPass("statistics");
+}
+
+void LinkedList::cmdResolve(VkCommandBuffer commands, const VkRect2D& area) {
+  PictureImages& images = drawn_->images();
+  if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT && !hostResolves()) {
+    cmdBeginScope(commands, images.resolveScope(commands, area));
+    target_.resolve(commands);
+    vkCmdEndRendering(commands);
+    return;
+  }
+  images.cmdToComputeResolve(commands);
+  target_.resolve(commands);
+  if (isMedia()) media_->cmdResolve(commands, target_.descriptorSet(), area.extent);
+  if (isPlain()) {
+    plain_->cmdResolve(commands, target_.descriptorSet(), area.extent, wanted_.peel, wanted_.framesInFlight > 1);
+  }
 }
 
 VitrailStats LinkedList::readStats(std::uint64_t frame) const {
@@ -390,9 +414,11 @@ FrameStats LinkedList::statsOf(std::uint64_t picture) {
 }
 
 FrameStats LinkedList::withChoices(FrameStats result) const {
-  result.resolve = nameOf(options_.resolve);
+  result.resolve = nameOf(isPlain() ? VITRAIL_RESOLVE_COMPUTE : options_.resolve);
+  result.complete = result.complete && options_.sorted;
   result.listBuild = nameOf(pipelines_.listBuild);
-  if (options_.resolve == VITRAIL_RESOLVE_FRAGMENT && (options_.samples == 1 || needs_.perSample)) {
+  const bool isDrawn = options_.resolve == VITRAIL_RESOLVE_FRAGMENT && !hostResolves();
+  if (isDrawn && (options_.samples == 1 || needs_.perSample)) {
     result.stencilMark = needs_.stencil ? "on" : "off";
   }
   return result;
