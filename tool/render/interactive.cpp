@@ -16,7 +16,11 @@ bool InteractiveRenderer::draws(const MethodOptions& method) {
 
 InteractiveRenderer::InteractiveRenderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity,
                                          const MethodOptions& method)
-    : gpu_(gpu), method_(method), still_(gpu, scene, opacity, method, kFramesInFlight), encode_(gpu) {
+    : gpu_(gpu),
+      method_(method),
+      still_(gpu, scene, opacity, method, kFramesInFlight),
+      facts_(drawFactsOf(scene)),
+      encode_(gpu) {
   for (std::uint32_t i = 0; i < kFramesInFlight; ++i) slots_.push_back(std::make_unique<Slot>(gpu));
 }
 
@@ -110,6 +114,12 @@ InteractivePicture InteractiveRenderer::finish() {
   const GpuImage* image = &pending.output->image;
   picture.image = std::shared_ptr<const GpuImage>(std::move(pending.output), image);
   return picture;
+}
+
+std::vector<PickedLayer> InteractiveRenderer::pick(const RenderOptions& options, std::uint32_t x, std::uint32_t y) {
+  still_.stage().setView(options.view, {options.width, options.height});
+  if (!picker_) picker_.emplace(still_.stage().surfaces(), facts_);
+  return picker_->at(options.view, options.width, options.height, x, y);
 }
 
 RenderResult InteractiveRenderer::render(const RenderOptions& options) { return still_.render(options); }

@@ -12,6 +12,7 @@
 #include "../gpu/device.h"
 #include "../gpu/timers.h"
 #include "encode_image.h"
+#include "gpu_pick.h"
 #include "renderer.h"
 #include "still.h"
 
@@ -46,6 +47,11 @@ class InteractiveRenderer final : public Renderer {
   // Waits for the oldest of them.
   InteractivePicture finish();
 
+  // What is under a pixel of such a picture, from its lists (gpu_pick.h). None is pending. Throws GpuError.
+  std::vector<PickedLayer> pick(const RenderOptions& options, std::uint32_t x, std::uint32_t y);
+  // The GPU's time for that.
+  [[nodiscard]] double pickMilliseconds() const { return picker_ ? picker_->milliseconds() : 0.0; }
+
   // None is pending.
   RenderResult render(const RenderOptions& options) override;
   FrameReport measure(const RenderOptions& options) override;
@@ -75,6 +81,8 @@ class InteractiveRenderer final : public Renderer {
   Gpu& gpu_;
   MethodOptions method_;
   StillRenderer still_;
+  std::vector<DrawFacts> facts_; // of the scene
+  std::optional<GpuPicker> picker_;
   EncodeImagePass encode_;
   std::vector<std::shared_ptr<EncodeImagePass::Output>> outputs_; // of the stage's present images
   std::uint64_t outputImages_ = 0;                                // which those are

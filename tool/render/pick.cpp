@@ -32,19 +32,46 @@ glm::dvec3 unprojected(const View& view, const glm::dvec2& place, double depth, 
 
 } // namespace
 
+std::vector<DrawFacts> drawFactsOf(const Scene& scene) {
+  std::vector<DrawFacts> facts;
+  facts.reserve(scene.draws.size());
+  for (const Draw& draw : scene.draws) facts.push_back({draw.object, draw.material});
+  return facts;
+}
+
+std::vector<PickedLayer> pickedOf(std::span<const VitrailLayer> layers, const std::vector<bool>& isOpaque,
+                                  const std::vector<DrawFacts>& facts, const PickedPixel& pixel) {
+  const glm::dvec2 place(2.0 * (pixel.x + 0.5) / pixel.width - 1.0, 2.0 * (pixel.y + 0.5) / pixel.height - 1.0);
+  const double aspect = static_cast<double>(pixel.width) / pixel.height;
+  std::vector<PickedLayer> picked;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const VitrailLayer& layer = layers[i];
+    if (i > 0 && isFilterOf(layer, layers[i - 1])) {
+      picked.back().filter = {layer.color[0], layer.color[1], layer.color[2]};
+      continue;
+    }
+    PickedLayer& found = picked.emplace_back();
+    found.draw = layer.word;
+    found.object = facts[layer.word].object;
+    found.material = facts[layer.word].material;
+    const glm::dvec3 seen = unprojected(pixel.view, place, layer.depth, aspect);
+    found.distance = -seen.z;
+    found.point = glm::dvec3(glm::dmat4(pixel.view.cameraToWorld) * glm::dvec4(seen, 1.0));
+    found.color = {layer.color[0], layer.color[1], layer.color[2]};
+    found.alpha = isOpaque[i] ? 1.0F : layer.color[3];
+    found.blend = isOpaque[i] ? "opaque" : blendName(layer.blend);
+    if (isOpaque[i]) break;
+  }
+  return picked;
+}
+
 struct Picker::Impl {
   Rasterizer rasterizer{1};
   CpuScene scene;
-  struct DrawFacts {
-    std::uint32_t object;
-    std::uint32_t material;
-  };
   std::vector<DrawFacts> facts; // of the scene's draws
 
-  Impl(const Scene& given, std::optional<float> opacity) : scene(given, opacity, DrawOrder::Forward) {
-    facts.reserve(given.draws.size());
-    for (const Draw& draw : given.draws) facts.push_back({draw.object, draw.material});
-  }
+  Impl(const Scene& given, std::optional<float> opacity)
+      : scene(given, opacity, DrawOrder::Forward), facts(drawFactsOf(given)) {}
 };
 
 Picker::Picker(const Scene& scene, std::optional<float> opacity) : impl_(std::make_unique<Impl>(scene, opacity)) {}
@@ -79,28 +106,9 @@ std::vector<PickedLayer> Picker::at(const View& view, std::uint32_t width, std::
   VitrailStats stats{};
   impl_->rasterizer.render(frame, draws, stats);
 
-  const glm::dvec2 place(2.0 * (x + 0.5) / width - 1.0, 2.0 * (y + 0.5) / height - 1.0);
-  const double aspect = static_cast<double>(width) / height;
-  std::vector<PickedLayer> picked;
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    const VitrailLayer& layer = layers[i];
-    if (i > 0 && isFilterOf(layer, layers[i - 1])) {
-      picked.back().filter = {layer.color[0], layer.color[1], layer.color[2]};
-      continue;
-    }
-    PickedLayer& found = picked.emplace_back();
-    found.draw = layer.word;
-    found.object = impl_->facts[layer.word].object;
-    found.material = impl_->facts[layer.word].material;
-    const glm::dvec3 seen = unprojected(view, place, layer.depth, aspect);
-    found.distance = -seen.z;
-    found.point = glm::dvec3(glm::dmat4(view.cameraToWorld) * glm::dvec4(seen, 1.0));
-    found.color = {layer.color[0], layer.color[1], layer.color[2]};
-    found.alpha = isOpaque[layer.word] ? 1.0F : layer.color[3];
-    found.blend = isOpaque[layer.word] ? "opaque" : blendName(layer.blend);
-    if (isOpaque[layer.word]) break;
-  }
-  return picked;
+  std::vector<bool> opaqueLayers;
+  for (const VitrailLayer& layer : layers) opaqueLayers.push_back(isOpaque[layer.word]);
+  return pickedOf(layers, opaqueLayers, impl_->facts, {view, width, height, x, y});
 }
 
 } // namespace vitrail::tool

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,25 @@ struct PickedLayer {
   std::string blend;      // "over", "premultiplied", "additive", "multiply", "opaque"
   glm::vec3 filter{1.0F}; // what passes through is multiplied by it
 };
+
+// Of a draw of a scene.
+struct DrawFacts {
+  std::uint32_t object = ObjectTree::none;
+  std::uint32_t material = 0;
+};
+std::vector<DrawFacts> drawFactsOf(const Scene& scene);
+
+struct PickedPixel {
+  const View& view;
+  std::uint32_t width;
+  std::uint32_t height;
+  std::uint32_t x;
+  std::uint32_t y;
+};
+
+// What a sorted list of a pixel says, whose layers' words are draws, with reversed depths: to the nearest opaque one.
+std::vector<PickedLayer> pickedOf(std::span<const VitrailLayer> layers, const std::vector<bool>& isOpaque,
+                                  const std::vector<DrawFacts>& facts, const PickedPixel& pixel);
 
 // Holds a scene. Not for several threads at once.
 class Picker {

@@ -74,8 +74,9 @@ void Stage::setSize(VkExtent2D extent) {
   ++imagesMade_;
 }
 
-void Stage::setView(const View& view) {
-  const VkExtent2D extent = images_.extent();
+void Stage::setView(const View& view) { setView(view, images_.extent()); }
+
+void Stage::setView(const View& view, VkExtent2D extent) {
   surfaces_.setView(makeFrameData(view, extent.width, extent.height, surfaces_.scene().origin()));
 }
 

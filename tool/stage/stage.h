@@ -43,6 +43,8 @@ class Stage {
   // Looks at the scene so, through images that have their size, or the part of them that is drawn. No frame is pending
   // that was recorded `framesInFlight` views ago.
   void setView(const View& view);
+  // The same, of a picture of that size on no images.
+  void setView(const View& view, VkExtent2D extent);
 
   // Draws the background, opaque and alpha-masked surfaces, as the pass "opaque".
   void drawOpaque(Frame& frame, const Background& background);

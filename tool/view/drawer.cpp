@@ -53,7 +53,10 @@ void Drawer::ask(Wanted wanted) {
 void Drawer::askPick(RenderArguments arguments, std::uint32_t x, std::uint32_t y) {
   {
     const std::lock_guard lock(mutex_);
-    wantedPick_ = Picked{std::move(arguments), x, y, {}, {}};
+    wantedPick_.emplace();
+    wantedPick_->arguments = std::move(arguments);
+    wantedPick_->x = x;
+    wantedPick_->y = y;
   }
   changed_.notify_one();
 }
@@ -190,14 +193,24 @@ void Drawer::pick(Picked& picked) {
   if (!scene_) return;
   load(picked.arguments);
   choose(picked.arguments);
+  const RenderOptions options = pictureOf(picked.arguments, *scene_);
+  const auto start = std::chrono::steady_clock::now();
+  picked.scene = facts_;
+  if (interactive_ != nullptr && rendererArguments_.opacity == picked.arguments.opacity) {
+    picked.layers = interactive_->pick(options, picked.x, picked.y);
+    picked.byDevice = true;
+    picked.milliseconds = interactive_->pickMilliseconds();
+    const std::lock_guard lock(mutex_);
+    picked_ = std::move(picked);
+    return;
+  }
   if (!picker_ || pickerOpacity_ != picked.arguments.opacity) {
     picker_.reset();
     picker_ = std::make_unique<Picker>(*scene_, picked.arguments.opacity);
     pickerOpacity_ = picked.arguments.opacity;
   }
-  const RenderOptions options = pictureOf(picked.arguments, *scene_);
   picked.layers = picker_->at(options.view, options.width, options.height, picked.x, picked.y);
-  picked.scene = facts_;
+  picked.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   const std::lock_guard lock(mutex_);
   picked_ = std::move(picked);
 }

@@ -64,6 +64,8 @@ struct Picked {
   std::uint32_t y = 0;
   std::vector<PickedLayer> layers;
   std::shared_ptr<const SceneFacts> scene{}; // that they are of
+  bool byDevice = false;                     // from the lists of the Vulkan device that draws; else by the processor
+  double milliseconds = 0.0;                 // of it, for them
 };
 
 struct Drawn {

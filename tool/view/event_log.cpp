@@ -71,10 +71,18 @@ void EventLog::picked(const Picked& picked) {
   if (!file_) return;
   nlohmann::json layers = nlohmann::json::array();
   for (const PickedLayer& layer : picked.layers) {
-    layers.push_back(
-        {{"object", picked.scene->objects.path(layer.object)}, {"depth", layer.distance}, {"alpha", layer.alpha}});
+    layers.push_back({{"object", picked.scene->objects.path(layer.object)},
+                      {"material", layer.material},
+                      {"depth", layer.distance},
+                      {"color", {layer.color.r, layer.color.g, layer.color.b}},
+                      {"alpha", layer.alpha}});
   }
-  write(file_.get(), {{"event", "picked"}, {"x", picked.x}, {"y", picked.y}, {"layers", layers}});
+  write(file_.get(), {{"event", "picked"},
+                      {"x", picked.x},
+                      {"y", picked.y},
+                      {"layers", layers},
+                      {"byDevice", picked.byDevice},
+                      {"milliseconds", picked.milliseconds}});
 }
 
 void EventLog::happened(const std::string& event, const std::string& text) {

@@ -185,7 +185,7 @@ void showPicked(const PanelState& state) {
   const Picked& picked = *state.picked;
   const SceneFacts& scene = *picked.scene;
   if (!ImGui::CollapsingHeader("Picked", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  ImGui::Text("pixel %u,%u: %zu layers", picked.x, picked.y, picked.layers.size());
+  ImGui::Text("pixel %u,%u: %zu layers, %.2f ms", picked.x, picked.y, picked.layers.size(), picked.milliseconds);
   const float height = static_cast<float>(std::clamp<std::size_t>(picked.layers.size(), 1, 10));
   ImGui::BeginChild("layers", ImVec2(0.0F, (height + 1.0F) * ImGui::GetTextLineHeightWithSpacing()), true);
   for (std::size_t i = 0; i < picked.layers.size(); ++i) {

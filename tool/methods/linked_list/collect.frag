@@ -9,6 +9,11 @@
 #include "vitrail/collect.glsl"
 #endif
 
+#ifdef COLLECT_INSTANCE // fragments say of which instance they are, opaque ones too
+#include "render/pick_shared.h"
+layout(location = 15) flat in uint inObject;
+CONSTANT(2, bool kOpaque, false)
+#endif
 #ifdef COLLECT_MEDIA // the resolve follows light through objects
 #define SURFACE_TRUE_PATH
 #include "media_shared.h"
@@ -23,7 +28,11 @@ void collect(vec4 color, uint blend, uint word) {
   float depth = kDepthFromW ? fma(gl_FragCoord.w, frame.depth.y, frame.depth.x) : gl_FragCoord.z;
   vitrailCollect(color, blend, depth, word);
 }
+#ifdef COLLECT_INSTANCE
+void collect(vec4 color, uint blend) { collect(color, blend, inObject | (kOpaque ? PICK_OPAQUE : 0u)); }
+#else
 void collect(vec4 color, uint blend) { collect(color, blend, 0u); }
+#endif
 
 #ifdef COLLECT_MEDIA
 // A surface that encloses a volume: both fragments say of which object they are. The filter is stored whatever it does:
@@ -39,6 +48,12 @@ void collectSolid(Surface surface) {
 
 void main() {
   Surface surface = shadeSurface();
+#ifdef COLLECT_INSTANCE
+  if (kOpaque) {
+    collect(vec4(surface.color, 1.0), VITRAIL_OVER);
+    return;
+  }
+#endif
 #ifdef COLLECT_MEDIA
   if (isSolid()) {
     collectSolid(surface);

@@ -12,6 +12,7 @@
 #include "../../stage/picture_images.h"
 #include "../method.h"
 #include "../methods.h"
+#include "library_context.h"
 #include "list_picture.h"
 #include "media.h"
 #include "plain_resolve.h"
@@ -30,14 +31,6 @@ namespace vitrail::tool {
 namespace {
 
 constexpr std::uint32_t kDepthFromW = 1; // the constant of collect.frag
-
-std::uint32_t libraryFeatures(const GpuFeatures& features) {
-  std::uint32_t bits = 0;
-  if (features.poolByAddress) bits |= VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS;
-  if (features.dualSourceBlending) bits |= VITRAIL_VK_FEATURE_DUAL_SRC_BLEND;
-  if (features.sampleRateShading) bits |= VITRAIL_VK_FEATURE_SAMPLE_RATE_SHADING;
-  return bits;
-}
 
 VitrailResult resultOf(VkResult result) {
   if (result == VK_SUCCESS) return VITRAIL_SUCCESS;
@@ -146,17 +139,7 @@ LinkedList::LinkedList(const MethodHost& host, const MethodOptions& options)
 
 LinkedList::~LinkedList() { gpu_.memoryFreed(counted_); }
 
-void LinkedList::makeContext() {
-  VitrailVkContextDesc desc{};
-  desc.instance = gpu_.instance();
-  desc.physicalDevice = gpu_.physicalDevice();
-  desc.device = gpu_.device();
-  desc.getInstanceProcAddr = vkGetInstanceProcAddr;
-  desc.features = libraryFeatures(gpu_.features());
-  desc.log = rememberError;
-  desc.logUser = &reason();
-  check(vulkan::Context::create(desc, context_), "vitrailVkCreateContext");
-}
+void LinkedList::makeContext() { check(makeLibraryContext(gpu_, reason(), context_), "vitrailVkCreateContext"); }
 
 void LinkedList::chooseResolve() {
   const GpuFeatures& features = gpu_.features();
