@@ -1,6 +1,8 @@
 // Pictures that are drawn without waiting for any are those of the still renderer, bit for bit, where they say that
 // they are complete; the pool follows what they need, within the budget.
+#include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -179,6 +181,36 @@ TEST_F(InteractiveTest, WithoutRoomForHeadsItIsLeftToTheStillRenderer) {
   EXPECT_FALSE(renderer.draw(options, {320, 240}, true));
   EXPECT_EQ(renderer.pending(), 0U);
   EXPECT_TRUE(renderer.render(options).report.complete);
+}
+
+// A GPU always has the next frame: so many take less time in flight than one by one.
+TEST_F(InteractiveTest, FramesInFlightTakeLessTimeOnAGpu) {
+  if (gpu().properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) GTEST_SKIP() << "no GPU";
+  constexpr int kCount = 200;
+  const Scene scene = makeBuiltinScene("spheres", {});
+  const auto viewOf = [&](int i) {
+    RenderOptions options = usualOptions(scene, 1920, 1080);
+    options.view = frameScene(scene, Orbit{static_cast<float>(i), 20.0F, 1.0F}, 16.0F / 9.0F);
+    return options;
+  };
+  const auto time = [](const auto& draw) {
+    for (int i = 0; i < 20; ++i) draw(i);
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < kCount; ++i) draw(i);
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / kCount;
+  };
+  InteractiveRenderer renderer(gpu(), scene, {}, {});
+  double gpuTime = 0.0;
+  const double inFlight = time([&](int i) {
+    ASSERT_TRUE(renderer.draw(viewOf(i), {1920, 1080}, false));
+    if (renderer.pending() == InteractiveRenderer::kFramesInFlight) gpuTime = renderer.finish().report.frameMs;
+  });
+  while (renderer.pending() > 0) renderer.finish();
+  StillRenderer still(gpu(), scene);
+  const double oneByOne = time([&](int i) { still.render(viewOf(i)); });
+  std::printf("in flight %.3f ms a picture (GPU %.3f ms), one by one through the host %.3f ms\n", inFlight, gpuTime,
+              oneByOne);
+  EXPECT_LT(inFlight, oneByOne);
 }
 
 TEST_F(InteractiveTest, SizesChangeWhileFramesArePending) {

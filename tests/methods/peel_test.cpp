@@ -109,12 +109,14 @@ TEST_F(PeelTest, PicturesInFlightLackTheSame) {
   }
 }
 
-// The order of arrival, which on one processor is that of drawing: short lists, and long ones, which were sorted.
+// The order of arrival, which on one processor is that of drawing, and on a GPU nearly: short lists, and long ones,
+// which were sorted.
 TEST_F(PeelTest, WithoutSortingSurfacesAreBlendedAsTheyArrive) {
   for (const char* name : {"spheres", "hairball"}) {
     SCOPED_TRACE(name);
     const Scene scene = makeBuiltinScene(name, {});
     const RenderOptions options = usualOptions(scene, 160, 120);
+    const bool isCpu = gpu().properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     for (const std::uint32_t samples : {1U, 4U}) {
       MethodOptions unsorted;
       unsorted.name = "unsorted";
@@ -129,7 +131,7 @@ TEST_F(PeelTest, WithoutSortingSurfacesAreBlendedAsTheyArrive) {
         EXPECT_FALSE(arrived.report.complete);
         EXPECT_GT(off(arrived.picture, sorted), 1000U);
         EXPECT_LT(off(arrived.picture, renderOnce(gpu(), scene, options, {}, DrawOrder::Forward, unsorted).picture),
-                  sorted.rgba.size() / 500);
+                  sorted.rgba.size() / (isCpu ? 500 : 50));
       }
     }
   }
