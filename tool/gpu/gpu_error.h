@@ -11,4 +11,9 @@ struct GpuError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The driver has given the device up: what was made on it is of no use any more, and another one can be opened.
+struct DeviceLost : GpuError {
+  using GpuError::GpuError;
+};
+
 } // namespace vitrail::tool

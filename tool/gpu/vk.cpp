@@ -54,7 +54,7 @@ void check(VkResult result, const std::string& call) {
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
       throw GpuError(fmt::format("out of memory in {} ({}): use a smaller --size or model", call, resultName(result)));
     case VK_ERROR_DEVICE_LOST:
-      throw GpuError(fmt::format("the device was lost in {}: its driver stopped the work; try --device cpu", call));
+      throw DeviceLost(fmt::format("the device was lost in {}: its driver stopped the work; try --device cpu", call));
     default:
       throw GpuError(fmt::format("{} failed: {}", call, resultName(result)));
   }

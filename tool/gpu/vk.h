@@ -19,8 +19,8 @@ Struct vkStruct(VkStructureType type) {
 // The name of a result, as in "VK_ERROR_DEVICE_LOST".
 std::string resultName(VkResult result);
 
-// Throws GpuError where `result` is an error. `call` names what was asked for, as in "vkCreateBuffer (vertices)".
-// Exhausted memory and a lost device are put in words that say what to do.
+// Throws GpuError where `result` is an error, DeviceLost where it says so. `call` names what was asked for, as in
+// "vkCreateBuffer (vertices)". Exhausted memory and a lost device are put in words that say what to do.
 void check(VkResult result, const std::string& call);
 
 // Names an object for validation messages and debuggers. Does nothing where the instance has no debug utilities.

@@ -42,6 +42,10 @@ void showMethods(const PanelState& state) {
       if (ImGui::Selectable(name.c_str(), name == arguments.method.name)) chooseMethod(arguments, name);
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(traitsOf(name).help).c_str());
     }
+    for (const MissingMethod& missing : missingMethodsOf(state.device)) {
+      ImGui::Selectable(missing.name.c_str(), false, ImGuiSelectableFlags_Disabled);
+      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", missing.reason.c_str());
+    }
     ImGui::EndCombo();
   }
   if (Sorting::isChoice(state.device)) {

@@ -1,14 +1,25 @@
 #include "settings.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "../methods/methods.h"
+#include "../methods/shared/device_needs.h"
 
 namespace vitrail::tool {
 
 namespace {
 
 constexpr const char* kUnsorted = "unsorted";
+
+// Why a device does not draw by a method; empty: it does.
+std::string lackOf(const Device& device, std::string_view name) {
+  const MethodTraits& traits = traitsOf(name);
+  if (traits.onProcessor || (device.gl() != nullptr && traits.makeGl != nullptr)) return {};
+  if (device.gpu() != nullptr) return lackFor(*device.gpu(), name);
+  if (device.gl() != nullptr) return "the method " + std::string(name) + " is not there with OpenGL";
+  return "the method " + std::string(name) + " needs a Vulkan device";
+}
 
 // Whether it can leave surfaces out.
 bool canPeel(const MethodOptions& method) {
@@ -27,11 +38,17 @@ bool canPeel(const MethodOptions& method) {
 std::vector<std::string> methodsOf(const Device& device) {
   std::vector<std::string> names;
   for (const std::string_view name : methodNames()) {
-    const MethodTraits& traits = traitsOf(name);
-    const bool byGl = device.gl() != nullptr && traits.makeGl != nullptr;
-    if (traits.onProcessor || device.gpu() != nullptr || byGl) names.emplace_back(name);
+    if (lackOf(device, name).empty()) names.emplace_back(name);
   }
   return names;
+}
+
+std::vector<MissingMethod> missingMethodsOf(const Device& device) {
+  std::vector<MissingMethod> missing;
+  for (const std::string_view name : methodNames()) {
+    if (std::string lack = lackOf(device, name); !lack.empty()) missing.push_back({std::string(name), std::move(lack)});
+  }
+  return missing;
 }
 
 void chooseMethod(RenderArguments& arguments, const std::string& name) {

@@ -11,6 +11,12 @@ namespace vitrail::tool {
 
 // The methods that draw on a device, by name.
 std::vector<std::string> methodsOf(const Device& device);
+// All others, with the reason.
+struct MissingMethod {
+  std::string name;
+  std::string reason;
+};
+std::vector<MissingMethod> missingMethodsOf(const Device& device);
 
 // Draws by another method: what it does not take of the options of the one before is as it is by default.
 void chooseMethod(RenderArguments& arguments, const std::string& name);

@@ -81,6 +81,15 @@ std::string wordsOf(const std::exception_ptr& caught) {
   }
 }
 
+void rethrowIfLost(const std::exception_ptr& caught) {
+  try {
+    std::rethrow_exception(caught);
+  } catch (const DeviceLost&) {
+    throw;
+  } catch (const std::exception&) { // told in another way
+  }
+}
+
 std::string titleOf(const RenderArguments& arguments) {
   return fmt::format("{} - Vitrail", printable(nameOfScene(arguments)));
 }
@@ -92,13 +101,10 @@ class Viewer {
         initial_(arguments.picture),
         now_(arguments.picture),
         window_(titleOf(arguments.picture), {arguments.picture.width, arguments.picture.height}),
-        device_(openDevice(arguments.picture, window_)),
-        widgets_(window_),
-        presenter_(window_, device_.gpu(), arguments.picture.validate),
-        drawer_(
-            std::make_unique<Drawer>(device_, device_.gpu() != nullptr && device_.gpu()->presents(), Window::wake)) {
-    if (now_.wish == Wish::Fastest) now_.method = device_.exactMethod();
-    if (device_.gpu() == nullptr && device_.gl() == nullptr) now_.device = std::string(kProcessor);
+        widgets_(window_) {
+    open(now_);
+    if (now_.wish == Wish::Fastest) now_.method = device_->exactMethod();
+    if (device_->gpu() == nullptr && device_->gl() == nullptr) now_.device = std::string(kProcessor);
     initial_ = now_;
     showing_ = now_;
   }
@@ -106,12 +112,53 @@ class Viewer {
   void run() {
     while (!window_.isClosing()) {
       window_.wait(patience());
-      step();
+      try {
+        step();
+      } catch (const DeviceLost& lost) {
+        reopen(lost.what());
+      }
     }
     finish();
   }
 
  private:
+  // Opens what draws and what shows.
+  void open(const RenderArguments& arguments) {
+    device_.emplace(openDevice(arguments, window_));
+    Gpu* gpu = device_->gpu();
+    presenter_ = std::make_unique<Presenter>(window_, gpu, arguments.validate);
+    drawer_ = std::make_unique<Drawer>(*device_, gpu != nullptr && gpu->presents(), Window::wake);
+  }
+
+  // The device is lost: it is opened again, or, where that does not work or not for long, the processor draws.
+  void reopen(const std::string& reason) {
+    log_.happened("lost", reason);
+    ImGui::EndFrame(); // of the step that was not finished
+    const bool again = lastLoss_ && since(*lastLoss_) < kSecondsBetweenLosses;
+    lastLoss_ = Clock::now();
+    drawer_.reset();
+    if (drawn_) drawn_->image.reset();
+    presenter_.reset();
+    if (device_->gl() != nullptr) device_->gl()->comeToThread();
+    device_.reset();
+    std::string now = "the device was lost, and is opened again";
+    try {
+      if (again) throw GpuError("the device was lost again");
+      open(now_);
+    } catch (const GpuError&) {
+      presenter_.reset();
+      now_.device = std::string(kProcessor);
+      now_.wish = Wish::Processor;
+      chooseMethod(now_, std::string(kCpuMethod));
+      now_.method.api = Api::Vulkan; // of no consequence there
+      open(now_);
+      now = "the device was lost: the processor draws now";
+    }
+    asked_.reset();
+    isAsked_ = false;
+    say(now, true);
+  }
+
   // How long nothing will change by itself, in seconds; negative: for ever.
   double patience() const {
     if (isMinimised(window_.size())) return -1.0;
@@ -145,7 +192,7 @@ class Viewer {
     const bool busy = ImGui::IsAnyMouseDown() || io.WantTextInput;
     if (busy || io.MouseWheel != 0.0F || changed_) restless_ = kFramesOfAChange;
     changed_ = false;
-    if (!presenter_.show(*ImGui::GetDrawData(), vsync_)) restless_ = std::max(restless_, 1);
+    if (!presenter_->show(*ImGui::GetDrawData(), vsync_)) restless_ = std::max(restless_, 1);
   }
 
   static bool sameCamera(const RenderArguments& a, const RenderArguments& b) {
@@ -180,6 +227,7 @@ class Viewer {
   void takeNews() {
     if (const std::exception_ptr caught = drawer_->takeError()) {
       isAsked_ = false;
+      rethrowIfLost(caught);
       if (!drawn_) std::rethrow_exception(caught); // there is nothing to go back to
       const std::string error = wordsOf(caught);
       now_ = showing_;
@@ -200,11 +248,11 @@ class Viewer {
     isAsked_ = asked_ && drawn->wanted.number != asked_->number;
     changed_ = true;
     if (drawn->image) {
-      presenter_.setPicture(Presenter::Side::Picture, drawn->image);
+      presenter_->setPicture(Presenter::Side::Picture, drawn->image);
     } else {
-      presenter_.setPicture(Presenter::Side::Picture, drawn->picture);
+      presenter_->setPicture(Presenter::Side::Picture, drawn->picture);
     }
-    if (!drawn->beside.rgba.empty()) presenter_.setPicture(Presenter::Side::Beside, drawn->beside);
+    if (!drawn->beside.rgba.empty()) presenter_->setPicture(Presenter::Side::Beside, drawn->beside);
     const bool isOther = !drawn_ || drawer_->scene() != scene_;
     scene_ = drawer_->scene();
     showing_ = drawn->wanted.arguments;
@@ -340,7 +388,7 @@ class Viewer {
         hasPanel_ = !hasPanel_;
         return;
       case GLFW_KEY_S:
-        if (Sorting::isChoice(device_)) sorting_.set(now_, !Sorting::isOn(now_));
+        if (Sorting::isChoice(*device_)) sorting_.set(now_, !Sorting::isOn(now_));
         return;
       case GLFW_KEY_M:
         return nextMethod(key.shift ? -1 : 1);
@@ -396,7 +444,7 @@ class Viewer {
   }
 
   void nextMethod(int step) {
-    const std::vector<std::string> names = methodsOf(device_);
+    const std::vector<std::string> names = methodsOf(*device_);
     const auto at = std::ranges::find(names, now_.method.name) - names.begin();
     const auto count = static_cast<std::ptrdiff_t>(names.size());
     chooseMethod(now_, names[static_cast<std::size_t>((at + step + count) % count)]);
@@ -404,8 +452,8 @@ class Viewer {
 
   // The exact one, or what that is compared with.
   std::string methodBeside() const {
-    const std::string exact = device_.exactMethod().name;
-    return now_.method.name == exact && Sorting::isChoice(device_) ? "unsorted" : exact;
+    const std::string exact = device_->exactMethod().name;
+    return now_.method.name == exact && Sorting::isChoice(*device_) ? "unsorted" : exact;
   }
 
   void nextBeside() {
@@ -554,7 +602,7 @@ class Viewer {
       const bool didRotate = rotates_;
       parts_.set(scene_, now_.objects);
       const ObjectChoice before = now_.objects;
-      const PanelActions actions = drawPanel({now_, sorting_, rotates_, vsync_, device_, scene_.get(),
+      const PanelActions actions = drawPanel({now_, sorting_, rotates_, vsync_, *device_, scene_.get(),
                                               picked_ ? &*picked_ : nullptr, pickedBefore_ ? &*pickedBefore_ : nullptr,
                                               parts_, beside_, drawn_ ? &*drawn_ : nullptr, drawer_->doing(), times_});
       if (rotates_ && !didRotate) lastTurn_ = Clock::now();
@@ -618,29 +666,30 @@ class Viewer {
   }
 
   void finish() {
-    const std::vector<std::string> errors = presenter_.finish();
+    const std::vector<std::string> errors = presenter_->finish();
     const bool isBusy = !drawer_->doing().empty();
     if (errors.empty() && isBusy && !now_.validate)
       std::_Exit(0); // nobody waits for a file that is not wanted any more
     drawer_.reset();
     drawn_.reset(); // its image
-    if (device_.gl() != nullptr) device_.gl()->comeToThread();
+    if (device_->gl() != nullptr) device_->gl()->comeToThread();
     if (!errors.empty()) throw std::runtime_error(errors.front());
-    closeValidated(device_);
+    closeValidated(*device_);
   }
 
-  static constexpr double kSettle = 0.15;           // seconds behind a move until the picture is fine again
-  static constexpr int kFramesOfAChange = 3;        // which ImGui takes to come to rest
-  static constexpr double kDegreesOfASecond = 20.0; // of the automatic rotation
+  static constexpr double kSecondsBetweenLosses = 30.0; // of the device: below that it is given up
+  static constexpr double kSettle = 0.15;               // seconds behind a move until the picture is fine again
+  static constexpr int kFramesOfAChange = 3;            // which ImGui takes to come to rest
+  static constexpr double kDegreesOfASecond = 20.0;     // of the automatic rotation
 
   EventLog log_;
   RenderArguments initial_; // of the scene
   RenderArguments now_;     // what is wanted
   RenderArguments showing_; // what the picture is of
   Window window_;
-  Device device_;
   Widgets widgets_;
-  Presenter presenter_;
+  std::optional<Device> device_; // always there but while it is opened
+  std::unique_ptr<Presenter> presenter_;
   std::unique_ptr<Drawer> drawer_;
   Sorting sorting_;
   Navigation navigation_;
@@ -666,6 +715,7 @@ class Viewer {
   bool isError_ = false;
   int restless_ = kFramesOfAChange; // frames to come in any case
   std::string notice_;
+  std::optional<Clock::time_point> lastLoss_;
   Clock::time_point lastMove_;
   Clock::time_point lastTurn_;
 };

@@ -35,8 +35,7 @@ constexpr VkFormat kLayerDepthFormat = VK_FORMAT_D32_SFLOAT;
 constexpr std::uint64_t kPixelBytes = 4 * 8 + 2 * 16 + 4;
 
 SurfacePipelines makePeel(const MethodHost& host, VkDescriptorSetLayout set) {
-  requireOf(host.gpu, host.gpu.features().primitiveNumbers, "does not number triangles for fragment shaders",
-            "depth-peeling", "reverse-depth-peeling");
+  requireDevice(host.gpu, "depth-peeling");
   const auto describe = [](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     info.fragmentShader = shaders::depth_peeling_frag;
     info.colors = {{PictureImages::kColorFormat, {}}, {PictureImages::kColorFormat, {}}, {kTakenFormat, {}}};

@@ -36,13 +36,7 @@ constexpr std::uint64_t kDualPixelBytes = 6 * 8 + 3 * 16;
 
 // Throws GpuError where the device cannot blend what a pass writes.
 Gpu& withBlending(Gpu& gpu) {
-  VkFormatProperties format{};
-  vkGetPhysicalDeviceFormatProperties(gpu.physicalDevice(), kFoundFormat, &format);
-  const bool depths = (format.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT) != 0;
-  const bool attachments = gpu.properties().limits.maxColorAttachments >= kAttachments;
-  requireOf(gpu, depths && gpu.features().independentBlending && attachments,
-            "does not blend five images each in its own way, one of 32-bit floats", "dual-depth-peeling",
-            "depth-peeling");
+  requireDevice(gpu, "dual-depth-peeling");
   return gpu;
 }
 

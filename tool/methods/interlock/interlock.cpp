@@ -31,7 +31,7 @@ class Interlock final : public NearestLayers {
 };
 
 Interlock::Interlock(const MethodHost& host, const MethodOptions& options)
-    : NearestLayers((requireInterlock(host.gpu, "interlock"), host), options),
+    : NearestLayers((requireDevice(host.gpu, "interlock"), host), options),
       surfaces_(makeSurfaces(host, shaders::interlock_frag, "interlock")) {}
 
 void Interlock::drawSurfaces(Frame& frame) {

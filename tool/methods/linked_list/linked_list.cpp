@@ -96,7 +96,10 @@ class LinkedList final : public Method, private ListPicture {
   void drawCollecting(std::span<const SurfaceRun> runs);
   void drawInFlight(const PictureImages& images);
   FrameStats withChoices(FrameStats stats) const;
-  void check(VkResult result, const char* call) const { ListPicture::check(resultOf(result), call); }
+  void check(VkResult result, const char* call) const {
+    if (result == VK_ERROR_DEVICE_LOST) tool::check(result, call);
+    ListPicture::check(resultOf(result), call);
+  }
 
   // What pipelines differ in beside the options.
   struct PipelineKind {

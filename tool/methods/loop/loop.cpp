@@ -29,7 +29,7 @@ namespace {
 
 bool isWide(const MethodHost& host, const MethodOptions& options) {
   if (options.name != "loop-64") return false;
-  requireOf(host.gpu, host.gpu.features().int64Atomics, "has no 64-bit atomics in buffers", "loop-64", "loop");
+  requireDevice(host.gpu, "loop-64");
   return true;
 }
 

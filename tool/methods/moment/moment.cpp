@@ -66,9 +66,7 @@ std::vector<PlaneInfo> momentPlanes(bool filters) {
 }
 
 SurfacePipelines makeAbsorbance(const MethodHost& host, bool filters, const Planes& planes) {
-  const GpuFeatures& features = host.gpu.features();
-  requireOf(host.gpu, features.independentBlending && features.floatBlending,
-            "does not blend 32-bit floats, each of several images in its own way", "moment", "linked-list");
+  requireDevice(host.gpu, "moment");
   const SurfaceProgram program{.constantBytes = sizeof(Depths), .name = "moment absorbance"};
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     info.fragmentShader = shaders::moment_absorbance_frag;

@@ -32,7 +32,7 @@ constexpr std::uint64_t kLayerWords = 5; // of multi_layer.glsl
 constexpr VkShaderStageFlags kMultiLayerStages = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
 
 SurfacePipelines makeSurfaces(const MethodHost& host, VkDescriptorSetLayout set, std::uint32_t layers) {
-  requireInterlock(host.gpu, "multi-layer");
+  requireDevice(host.gpu, "multi-layer");
   const SurfaceProgram program{.set = set, .constantBytes = sizeof(VkExtent2D), .name = "multi-layer"};
   return makeStoringSurfaces(host, program, shaders::multi_layer_frag, {{1, layers}});
 }

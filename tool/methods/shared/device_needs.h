@@ -1,17 +1,18 @@
-// What devices may lack that methods cannot do without.
+// What devices may lack that methods cannot do without, of all methods in one table.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "../../gpu/device.h"
 
 namespace vitrail::tool {
 
-// Throws GpuError unless the device `has` it: "Abacus has no fragment shader interlock, which the method interlock
-// needs: use loop".
-void requireOf(const Gpu& gpu, bool has, std::string_view lack, std::string_view method, std::string_view instead);
+// Why a device does not run a method, in a line: "Abacus has no fragment shader interlock, which the method interlock
+// needs: use loop". Empty: it does, but for what depends on the scene and on the memory.
+std::string lackFor(const Gpu& gpu, std::string_view method);
 
-// The same of fragment shader interlock (VK_EXT_fragment_shader_interlock).
-void requireInterlock(const Gpu& gpu, std::string_view method);
+// Throws GpuError with that line.
+void requireDevice(const Gpu& gpu, std::string_view method);
 
 } // namespace vitrail::tool

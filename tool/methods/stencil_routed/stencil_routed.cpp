@@ -31,6 +31,7 @@
 #include "../method.h"
 #include "../methods.h"
 #include "../shared/depth_complexity.h"
+#include "../shared/device_needs.h"
 #include "shaders/stencil_routed.frag.h"
 #include "shaders/stencil_routed_begin.frag.h"
 #include "shaders/stencil_routed_blend.comp.h"
@@ -65,13 +66,8 @@ std::uint32_t mostSamples(VkSampleCountFlags offered) {
 
 std::uint32_t samplesOf(const Gpu& gpu, bool inMiddle) {
   const std::uint32_t samples = mostSamples(inMiddle ? gpu.features().middleSamples : gpu.features().sampleCounts);
-  if (inMiddle) return samples;
-  const bool places = gpu.features().sampleRateShading && gpu.properties().limits.standardSampleLocations == VK_TRUE;
-  if (samples > 1 && places) return samples;
-  throw GpuError(
-      fmt::format("{} has no several samples a pixel whose places are known and that are shaded each, which "
-                  "the method stencil-routed stores fragments in: use depth-peeling",
-                  gpu.properties().deviceName));
+  if (!inMiddle) requireDevice(gpu, "stencil-routed");
+  return samples;
 }
 
 // The standard places of samples in a pixel, in 1/16 from its corner (Vulkan specification, "Multisampling").

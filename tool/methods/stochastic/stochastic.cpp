@@ -62,7 +62,7 @@ struct Draws {
 };
 
 SurfacePipelines makeSurfaces(const MethodHost& host, std::uint32_t samples, const Draws& draws) {
-  requireOf(host.gpu, host.gpu.features().floatBlending, "does not blend 32-bit floats", "stochastic", "linked-list");
+  requireDevice(host.gpu, "stochastic");
   const SurfaceProgram program{.constantBytes = sizeof(shaders::StochasticPass), .name = draws.name};
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     info.fragmentShader = draws.shader;

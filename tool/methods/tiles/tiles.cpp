@@ -33,6 +33,7 @@
 #include "../../gpu/pipeline.h"
 #include "../method.h"
 #include "../methods.h"
+#include "../shared/device_needs.h"
 #include "most_light.h"
 #include "shaders/tiles_blend.comp.h"
 #include "shaders/tiles_blend_32.comp.h"
@@ -77,21 +78,8 @@ constexpr std::uint32_t kMostVisitsOnCpu = 1024;
 
 std::uint32_t tilesOf(std::uint32_t pixels) { return (pixels + kSide - 1) / kSide; }
 
-void checkDevice(const Gpu& gpu) {
-  constexpr std::uint32_t kBuffers = 32; // that one shader reaches
-  constexpr std::uint32_t kSharedBytes = 28 << 10;
-  const VkPhysicalDeviceLimits& limits = gpu.properties().limits;
-  const char* lacks = nullptr;
-  if (!gpu.features().subgroupShuffles) lacks = "subgroup shuffles";
-  if (limits.maxPerStageDescriptorStorageBuffers < kBuffers) lacks = "so many buffers of a shader";
-  if (limits.maxComputeSharedMemorySize < kSharedBytes) lacks = "so much shared memory";
-  if (lacks == nullptr) return;
-  throw GpuError(fmt::format("the method tiles is not for {}, which lacks {}: use linked-list",
-                             gpu.properties().deviceName, lacks));
-}
-
 SingleSet makeSet(Gpu& gpu) {
-  checkDevice(gpu);
+  requireDevice(gpu, "tiles");
   std::vector<std::pair<VkDescriptorType, VkShaderStageFlags>> bindings(
       20, {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_SHADER_STAGE_COMPUTE_BIT});
   bindings[0].first = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;

@@ -41,8 +41,7 @@ std::vector<PlaneInfo> weightedPlanes(bool filters) {
 }
 
 SurfacePipelines makeSurfaces(const MethodHost& host, std::uint32_t samples, bool filters, const Planes& planes) {
-  requireOf(host.gpu, host.gpu.features().independentBlending, "does not blend in each of several images its own way",
-            "weighted", "linked-list");
+  requireDevice(host.gpu, "weighted");
   const SurfaceProgram program{.constantBytes = sizeof(DepthRange), .name = "weighted"};
   const auto describe = [&](std::uint32_t /*features*/, GraphicsPipelineInfo& info) {
     info.fragmentShader = shaders::weighted_frag;
