@@ -304,6 +304,33 @@ TEST_P(ViewTest, ShowsAPartOfTheModel) {
   view.expectClosesWell();
 }
 
+// The plane that cuts is dragged in the picture, by a handle.
+TEST_P(ViewTest, TheCutIsDragged) {
+  View view(folder_, with({"--scene", "interlocked", "--clip-plane=0,-1,0,0", "--orbit", "20,10"}));
+  view.settled();
+  view.desk.resize(1100, 700); // the handle is beside the panel
+  const std::string first = view.settled()["command"];
+  EXPECT_NE(first.find("--clip-plane 0,-1,0,0"), std::string::npos) << first;
+  int x = 0;
+  int y = 0;
+  ASSERT_EQ(std::sscanf(view.happened("handle")["text"].get<std::string>().c_str(), "%d,%d", &x, &y), 2);
+  view.desk.drag(1, x, y, x, y - 60); // up: less is cut away
+  const Json up = view.settled();
+  const std::string command = up["command"];
+  double offset = 0.0;
+  const std::size_t at = command.find("--clip-plane 0,-1,0,");
+  ASSERT_NE(at, std::string::npos) << command;
+  ASSERT_EQ(std::sscanf(command.c_str() + at, "--clip-plane 0,-1,0,%lf", &offset), 1);
+  EXPECT_GT(offset, 0.1);
+  // The handle is where it was dragged to, and the picture is the command's.
+  int upX = 0;
+  int upY = 0;
+  ASSERT_EQ(std::sscanf(view.happened("handle")["text"].get<std::string>().c_str(), "%d,%d", &upX, &upY), 2);
+  EXPECT_NEAR(upY, y - 60, 12);
+  expectSameAsRendered(view, command);
+  view.expectClosesWell();
+}
+
 TEST_P(ViewTest, OpensWhatIsDropped) {
   View view(folder_, with({"--scene", "interlocked"}));
   const Json first = view.settled();

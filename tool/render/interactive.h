@@ -47,6 +47,9 @@ class InteractiveRenderer final : public Renderer {
   // Waits for the oldest of them.
   InteractivePicture finish();
 
+  // Other planes cut the scene from now on, which some cut already: nothing is made anew.
+  void setClipPlanes(const Scene& scene) { still_.stage().setClipPlanes(scene); }
+
   // What is under a pixel of such a picture, from its lists (gpu_pick.h). None is pending. Throws GpuError.
   std::vector<PickedLayer> pick(const RenderOptions& options, std::uint32_t x, std::uint32_t y);
   // The GPU's time for that.

@@ -46,6 +46,9 @@ class Stage {
   // The same, of a picture of that size on no images.
   void setView(const View& view, VkExtent2D extent);
 
+  // As SurfaceList.
+  void setClipPlanes(const Scene& scene) { surfaces_.setClipPlanes(scene); }
+
   // Draws the background, opaque and alpha-masked surfaces, as the pass "opaque".
   void drawOpaque(Frame& frame, const Background& background);
   // Draws the background alone and finishes the picture.

@@ -9,7 +9,7 @@ namespace vitrail::tool {
 namespace {
 
 // The scene's clip planes in the GPU's space, filled up with planes that keep everything.
-void setClipPlanes(const Scene& scene, const glm::dvec3& origin, shaders::FrameData& view) {
+void putClipPlanes(const Scene& scene, const glm::dvec3& origin, shaders::FrameData& view) {
   static_assert(kMostClipPlanes == shaders::CLIP_PLANE_COUNT);
   for (std::size_t i = 0; i < shaders::CLIP_PLANE_COUNT; ++i) {
     view.clipPlanes[i] = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
@@ -33,8 +33,10 @@ std::vector<SurfaceRun> runsOf(std::span<const GpuDraw> draws) {
 SurfaceList::SurfaceList(const SceneDraws& draws, const Scene& scene, std::size_t lights)
     : draws_(draws), transparentRuns_(runsOf(draws.transparentDraws())), isClipped_(!scene.clipPlanes.empty()) {
   view_.toLight.w = static_cast<float>(lights);
-  setClipPlanes(scene, draws.origin(), view_);
+  putClipPlanes(scene, draws.origin(), view_);
 }
+
+void SurfaceList::setClipPlanes(const Scene& scene) { putClipPlanes(scene, draws_.origin(), view_); }
 
 void SurfaceList::setView(const shaders::FrameData& view) {
   const shaders::FrameData last = view_;

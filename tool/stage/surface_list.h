@@ -33,6 +33,9 @@ class SurfaceList {
   // Whether planes cut some of the scene away.
   bool isClipped() const { return isClipped_; }
 
+  // Other planes for the views to come, of the same scene, where some cut it already.
+  void setClipPlanes(const Scene& scene);
+
   // Its clip planes and lights are the scene's, whatever `view` says.
   void setView(const shaders::FrameData& view);
   const shaders::FrameData& view() const { return view_; }

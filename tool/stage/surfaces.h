@@ -67,6 +67,8 @@ class Surfaces {
   void setView(const shaders::FrameData& view);
   const shaders::FrameData& view() const { return list_.view(); }
 
+  void setClipPlanes(const Scene& scene) { list_.setClipPlanes(scene); } // as SurfaceList
+
   VkDescriptorSetLayout frameLayout() const { return views_[0].set.layout(); } // set 0
   // Binds set 0 for shaders that read the view and the lights alone.
   void cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout,

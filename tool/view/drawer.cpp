@@ -173,9 +173,16 @@ void Drawer::load(const RenderArguments& arguments) {
 // Draws these objects of the scene, cut so, from now on.
 void Drawer::choose(const RenderArguments& arguments) {
   if (arguments.clipPlanes != sceneArguments_.clipPlanes) {
+    const bool wasCut = !scene_->clipPlanes.empty();
     setClipPlanes(arguments, *scene_);
     sceneArguments_.clipPlanes = arguments.clipPlanes;
-    letGo();
+    if (interactive_ != nullptr && wasCut && !scene_->clipPlanes.empty()) {
+      interactive_->setClipPlanes(*scene_);
+      beside_.reset();
+      picker_.reset();
+    } else {
+      letGo();
+    }
   }
   const ObjectChoice& choice = arguments.objects;
   if (choice == sceneArguments_.objects) return;

@@ -327,7 +327,9 @@ bool Presenter::show(ImDrawData& data, bool vsync) {
   if (!swapchain_->fit(window_, vsync)) return false;
   Slot& slot = slots_[next_];
   const VkFence done = slot.done.get();
-  check(vkWaitForFences(gpu_->device(), 1, &done, VK_TRUE, UINT64_MAX), "vkWaitForFences (window)");
+  const VkResult free = vkWaitForFences(gpu_->device(), 1, &done, VK_TRUE, Swapchain::kPatience);
+  check(free, "vkWaitForFences (window)");
+  if (free == VK_TIMEOUT) return false;
   const std::optional<Swapchain::Image> image = swapchain_->acquire(slot.acquired.get());
   if (!image) return false;
   check(vkResetFences(gpu_->device(), 1, &done), "vkResetFences");

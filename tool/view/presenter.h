@@ -39,7 +39,8 @@ class Presenter {
   // VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL. It is held until nobody samples it.
   void setPicture(Side side, std::shared_ptr<const GpuImage> image);
 
-  // Shows what ImGui has drawn. False: the window has no size, and nothing was shown. Throws GpuError.
+  // Shows what ImGui has drawn. False: nothing was shown, as the window has no size, or the device is not ready for the
+  // next frame within Swapchain::kPatience: who uses the window is heard meanwhile. Throws GpuError.
   bool show(ImDrawData& data, bool vsync);
 
   // The validation layer's errors of a device of its own; waits for the device, and shows nothing any more.

@@ -135,13 +135,13 @@ void Swapchain::make(const VkSurfaceCapabilitiesKHR& capabilities, VkExtent2D ex
 
 std::optional<Swapchain::Image> Swapchain::acquire(VkSemaphore acquired) {
   std::uint32_t index = 0;
-  const VkResult result =
-      vkAcquireNextImageKHR(gpu_.device(), swapchain_, UINT64_MAX, acquired, VK_NULL_HANDLE, &index);
+  const VkResult result = vkAcquireNextImageKHR(gpu_.device(), swapchain_, kPatience, acquired, VK_NULL_HANDLE, &index);
   if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_ERROR_SURFACE_LOST_KHR) {
     stale_ = true;
     lost_ = result == VK_ERROR_SURFACE_LOST_KHR;
     return std::nullopt;
   }
+  if (result == VK_TIMEOUT || result == VK_NOT_READY) return std::nullopt;
   if (result != VK_SUBOPTIMAL_KHR) check(result, "vkAcquireNextImageKHR");
   const Slot& slot = slots_[index];
   return Image{index, slot.image, slot.view.get(), extent_, slot.rendered.get()};

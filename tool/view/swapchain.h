@@ -34,7 +34,10 @@ class Swapchain {
     VkExtent2D extent{};
     VkSemaphore rendered = VK_NULL_HANDLE; // the drawing signals it
   };
-  // The next image to draw on, once `acquired` is signalled. Nothing: the images fit no more: fit() again.
+  static constexpr std::uint64_t kPatience = 4'000'000; // nanoseconds, of whoever waits for the device
+
+  // The next image to draw on, once `acquired` is signalled. Nothing: the images fit no more: fit() again; or there is
+  // none within kPatience.
   std::optional<Image> acquire(VkSemaphore acquired);
   // Shows it.
   void present(const Image& image);

@@ -26,6 +26,7 @@
 #include "../methods/methods.h"
 #include "../scene/message.h"
 #include "command_line.h"
+#include "cut_handle.h"
 #include "drawer.h"
 #include "event_log.h"
 #include "navigation.h"
@@ -168,7 +169,7 @@ class Viewer {
   }
   static double since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
   static bool isMinimised(PixelSize size) { return size.width == 0 || size.height == 0; }
-  bool isMoving() const { return rotates_ || drags_; }
+  bool isMoving() const { return rotates_ || drags_ || cutHandle_.isDragged(); }
   bool isSettling() const { return since(lastMove_) < kSettle; }
   // Whether the picture that was asked for last is not the one for rest.
   bool wantsFull() const { return asked_ && !asked_->rests; }
@@ -324,7 +325,7 @@ class Viewer {
     constexpr double kDegreesOfAHeight = 180.0;
     const double right = io.MouseDelta.x / static_cast<double>(size.height);
     const double up = -io.MouseDelta.y / static_cast<double>(size.height);
-    if (!io.WantCaptureMouse && !dragsDivider_) {
+    if (!io.WantCaptureMouse && !dragsDivider_ && !cutHandle_.isDragged()) {
       pickWhereClicked(size);
       const bool pans = ImGui::IsMouseDown(1) || ImGui::IsMouseDown(2) || (ImGui::IsMouseDown(0) && io.KeyShift);
       const bool isDown = pans || ImGui::IsMouseDown(0);
@@ -518,6 +519,8 @@ class Viewer {
     if (isResting_ || isAsked_ || !isWhole() || isMoving() || isSettling()) return;
     isResting_ = true;
     log_.happened("rest", renderCommand(showing_, "picture.png"));
+    if (const auto& place = cutHandle_.place())
+      log_.happened("handle", fmt::format("{:.0f},{:.0f}", place->x, place->y));
   }
 
   std::uint32_t coarseness() const {
@@ -537,6 +540,22 @@ class Viewer {
     list.AddImage(Presenter::texture(Presenter::Side::Picture, !fits), ImVec2(0.0F, 0.0F), corner, ImVec2(0.0F, 0.0F),
                   partOfTexture());
     if (!drawn_->beside.rgba.empty()) drawBeside(list, corner, fits);
+    if (hasPanel_ && scene_) {
+      drawCut(list, corner);
+    } else {
+      cutHandle_.letGo();
+    }
+  }
+
+  // The plane that cuts, which the mouse moves. The camera stays, which would frame what is left.
+  void drawCut(ImDrawList& list, const ImVec2& corner) {
+    const std::vector<glm::dvec4> before = now_.clipPlanes;
+    if (!cutHandle_.draw(list, now_, *scene_, drawn_->view, {corner.x, corner.y},
+                         {window_.pressed()[0], window_.pressed()[1]}))
+      return;
+    const std::vector<glm::dvec4> moved = std::exchange(now_.clipPlanes, before);
+    move([](Navigation&) {});
+    now_.clipPlanes = moved;
   }
 
   // Where the picture ends in its texture. What is beyond a part is not blended in at its edge.
@@ -701,6 +720,7 @@ class Viewer {
   Beside beside_;
   float divider_ = 0.5F; // part of the width
   bool dragsDivider_ = false;
+  CutHandle cutHandle_;
   std::optional<Drawn> drawn_;
   std::optional<Wanted> asked_;
   bool isAsked_ = false; // and not drawn yet

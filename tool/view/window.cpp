@@ -65,6 +65,13 @@ Window::Window(const std::string& title, PixelSize size) {
     auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
     self.keys_.push_back({key, (mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_CONTROL) != 0, action == GLFW_REPEAT});
   });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int /*mods*/) {
+    if (button != GLFW_MOUSE_BUTTON_LEFT || action != GLFW_PRESS) return;
+    double x = 0.0;
+    double y = 0.0;
+    glfwGetCursorPos(window, &x, &y);
+    static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_ = {static_cast<float>(x), static_cast<float>(y)};
+  });
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
     auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
     for (int i = 0; i < count; ++i) self.dropped_.emplace_back(paths[i]);

@@ -1,6 +1,7 @@
 // The window: GLFW, and what the user does in it.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -58,6 +59,8 @@ class Window {
 
   // The keys since the last call: none is missed, however short it was down.
   std::vector<KeyPress> takeKeys();
+  // Where the left button went down last, as ImGui counts: a frame that comes late finds the mouse elsewhere.
+  [[nodiscard]] std::array<float, 2> pressed() const { return pressed_; }
   // The files that were dropped since the last call.
   std::vector<std::string> takeDropped();
 
@@ -71,6 +74,7 @@ class Window {
   GLFWwindow* window_ = nullptr;
   std::vector<std::string> dropped_;
   std::vector<KeyPress> keys_;
+  std::array<float, 2> pressed_{};
 };
 
 } // namespace vitrail::tool
