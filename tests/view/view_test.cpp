@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <fstream>
 #include <functional>
@@ -452,6 +453,10 @@ TEST(ViewMethodsTest, ShowsAnotherPictureBesideIt) {
   view.desk.key("b");
   const Json method = view.settled();
   EXPECT_EQ(method["beside"], "linked-list");
+  for (const char* kind : {"overflow", "tiles"}) {
+    view.desk.key("b");
+    EXPECT_EQ(view.settled()["beside"], kind);
+  }
   view.desk.key("b");
   EXPECT_EQ(view.settled()["beside"], "");
   std::this_thread::sleep_for(200ms);
@@ -496,6 +501,32 @@ TEST(ViewMethodsTest, WhatTheBudgetDoesNotHoldIsDrawnInTilesAtRest) {
   EXPECT_FALSE(view.shown()["complete"]); // while it moves
   shown = view.settled();
   EXPECT_GT(shown["tiles"], 1);
+  // Which pixels lack room is to be seen while it moves, and which parts it is drawn in at rest.
+  const auto besides = [&](const char* kind) {
+    for (int i = 0; i < 6; ++i) {
+      view.desk.key("b");
+      if (view.settled()["beside"] == kind) return;
+    }
+    ADD_FAILURE() << "there is no " << kind;
+  };
+  besides("overflow");
+  view.desk.key("Left");
+  EXPECT_GT(view.shown()["largest"], 3);
+  EXPECT_EQ(view.settled()["largest"], 1); // none
+  besides("tiles");
+  view.desk.key("Tab");
+  std::this_thread::sleep_for(300ms);
+  const Pixels screen = view.desk.look();
+  std::set<std::array<std::uint8_t, 3>> colors;
+  for (std::uint32_t y = 80; y < 470; ++y) {
+    const std::size_t at = 3 * (std::size_t{y} * 640 + 500);
+    colors.insert({screen.rgb[at], screen.rgb[at + 1], screen.rgb[at + 2]});
+  }
+  EXPECT_GE(colors.size(), 2U);
+  view.desk.key("Tab");
+  besides("");
+  view.desk.key("Left");
+  shown = view.settled();
   view.desk.key("Tab");
   std::this_thread::sleep_for(300ms);
   EXPECT_EQ(differing(view.desk.look(), drawn(folder, shown["command"])), 0U) << shown["command"];

@@ -7,6 +7,15 @@
 
 namespace vitrail::tool {
 
+// A part of a picture that was drawn by itself.
+struct DrawnTile {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint64_t fragments = 0;
+};
+
 struct FrameStats {
   // What was taken of the choices that the method has; empty where it has none.
   std::string nodes{};       // "compact", "standard", "hdr"
@@ -24,9 +33,10 @@ struct FrameStats {
   std::uint32_t approximatePixels = 0;
   std::uint32_t cutPixels = 0; // pixels that the driver did not let the method finish
   std::uint32_t layersMax = 0;
-  double layersMean = 0.0;        // over pixels that hold at least one fragment; 0 where there are none
-  std::uint32_t tiles = 1;        // areas that were collected and resolved one after the other
-  std::uint32_t nodeCapacity = 0; // of pictures that were drawn in flight: nodes that there was room for
+  double layersMean = 0.0;             // over pixels that hold at least one fragment; 0 where there are none
+  std::uint32_t tiles = 1;             // areas that were collected and resolved one after the other
+  std::vector<DrawnTile> drawnTiles{}; // these areas, of fragment lists where there are several; else empty
+  std::uint32_t nodeCapacity = 0;      // of pictures that were drawn in flight: nodes that there was room for
   std::uint64_t nodesBytes = 0;
   std::uint64_t headsBytes = 0;
   std::uint64_t totalBytes = 0;             // all that the method keeps on the device for its target

@@ -22,6 +22,27 @@ bool sameScene(const RenderArguments& a, const RenderArguments& b) {
          a.load.variant == b.load.variant;
 }
 
+// The mean of the surfaces of a pixel, of each part that a picture was drawn in; the first row and column of each are 0,
+// to be told apart. The largest mean.
+double fillTiles(const FrameReport& report, Plane& plane) {
+  std::vector<DrawnTile> tiles = report.drawnTiles;
+  if (tiles.empty()) tiles.push_back({0, 0, report.width, report.height, report.fragmentsRequested});
+  const auto meanOf = [](const DrawnTile& tile) {
+    return static_cast<double>(tile.fragments) / (static_cast<double>(tile.width) * tile.height);
+  };
+  double largest = 1.0;
+  for (const DrawnTile& tile : tiles) largest = std::max(largest, meanOf(tile));
+  for (const DrawnTile& tile : tiles) {
+    for (std::uint32_t y = tile.y; y < tile.y + tile.height; ++y) {
+      for (std::uint32_t x = tile.x; x < tile.x + tile.width; ++x) {
+        const bool isEdge = x == tile.x || y == tile.y;
+        plane.values[std::size_t{y} * report.width + x] = isEdge ? 0.0 : meanOf(tile);
+      }
+    }
+  }
+  return largest;
+}
+
 // Whether a picture at rest is left to drawExactly(): one that does not fit the memory whole, that the driver cut
 // short, or that may show nothing, which is then said.
 bool needsExact(const FrameReport& report) {
@@ -270,14 +291,22 @@ void Drawer::drawBeside(const Wanted& wanted, const RenderOptions& options, Draw
       chooseMethod(arguments, wanted.beside.method);
       drawn.beside = besideRenderer(arguments, arguments.method).render(picture).picture;
       return;
+    case Beside::Kind::Overflow:
+      if (drawn.report.fragmentsMissing == 0) break;
+      [[fallthrough]];
     case Beside::Kind::Complexity: {
       MethodOptions counting;
       counting.name = kLayerCount;
       const FrameReport report = besideRenderer(arguments, counting).measure(picture);
       std::ranges::copy(report.pixelLayers, plane.values.begin());
-      drawn.largest = std::max<double>(report.layersMax, 1.0);
+      // A pixel of one surface is exact all the same.
+      if (wanted.beside.kind == Beside::Kind::Overflow) std::ranges::replace(plane.values, 1.0, 0.0);
+      drawn.largest = report.layersMax;
       break;
     }
+    case Beside::Kind::Tiles:
+      drawn.largest = fillTiles(drawn.report, plane);
+      break;
     default: {
       MethodOptions exact = device_.exactMethod();
       exact.samples = arguments.method.samples;
@@ -288,9 +317,10 @@ void Drawer::drawBeside(const Wanted& wanted, const RenderOptions& options, Draw
           plane.values[i] = std::max(plane.values[i], static_cast<double>(off));
         }
       }
-      drawn.largest = std::max(*std::ranges::max_element(plane.values), 1.0);
+      drawn.largest = *std::ranges::max_element(plane.values);
     }
   }
+  drawn.largest = std::max(drawn.largest, 1.0);
   drawn.beside = heatmap(plane, drawn.largest, colorsOf(wanted.beside));
 }
 

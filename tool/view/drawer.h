@@ -29,7 +29,9 @@ struct Beside {
     Nothing,
     Method,     // the same by another method
     Complexity, // how many transparent surfaces each pixel has
-    Error       // how far each pixel is from the exact picture
+    Error,      // how far each pixel is from the exact picture
+    Overflow,   // surfaces of pixels that are blended approximately, because some of the picture had no room
+    Tiles       // surfaces of a pixel in the mean, of each part that the picture was drawn in
   };
   Kind kind = Kind::Nothing;
   std::string method; // of Kind::Method

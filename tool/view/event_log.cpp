@@ -20,6 +20,10 @@ std::string nameOf(const Drawn& drawn) {
       return "complexity";
     case Beside::Kind::Error:
       return "error";
+    case Beside::Kind::Overflow:
+      return "overflow";
+    case Beside::Kind::Tiles:
+      return "tiles";
     default:
       return "";
   }

@@ -164,10 +164,14 @@ void showBeside(const PanelState& state) {
   if (beside.kind == Kind::Method) now = beside.method;
   if (beside.kind == Kind::Complexity) now = "depth complexity";
   if (beside.kind == Kind::Error) now = "error";
+  if (beside.kind == Kind::Overflow) now = "overflow";
+  if (beside.kind == Kind::Tiles) now = "tiles";
   if (!ImGui::BeginCombo("beside it", now.c_str(), ImGuiComboFlags_HeightLarge)) return;
   if (ImGui::Selectable("nothing")) beside = {};
   if (ImGui::Selectable("depth complexity")) beside = {Kind::Complexity, {}};
   if (ImGui::Selectable("error")) beside = {Kind::Error, {}};
+  if (ImGui::Selectable("overflow")) beside = {Kind::Overflow, {}};
+  if (ImGui::Selectable("tiles")) beside = {Kind::Tiles, {}};
   for (const std::string& name : methodsOf(state.device)) {
     if (ImGui::Selectable(name.c_str())) beside = {Kind::Method, name};
   }

@@ -470,6 +470,12 @@ class Viewer {
         beside_ = {Kind::Method, methodBeside()};
         break;
       case Kind::Method:
+        beside_ = {Kind::Overflow, {}};
+        break;
+      case Kind::Overflow:
+        beside_ = {Kind::Tiles, {}};
+        break;
+      case Kind::Tiles:
         beside_ = {};
     }
   }
@@ -587,6 +593,15 @@ class Viewer {
     std::string text = beside.method;
     if (beside.kind == Beside::Kind::Complexity) text = fmt::format("surfaces of a pixel: 0 to {}", drawn_->largest);
     if (beside.kind == Beside::Kind::Error) text = fmt::format("off the exact picture: 0 to {}/255", drawn_->largest);
+    if (beside.kind == Beside::Kind::Overflow) {
+      text = drawn_->report.fragmentsMissing > 0
+                 ? fmt::format("surfaces of pixels without room for all: 0 to {}", drawn_->largest)
+                 : std::string("there was room for all surfaces");
+    }
+    if (beside.kind == Beside::Kind::Tiles) {
+      text =
+          fmt::format("{} parts, surfaces of a pixel in the mean: 0 to {:.1f}", drawn_->report.tiles, drawn_->largest);
+    }
     const float height = ImGui::GetFontSize();
     const ImVec2 at(corner.x - ImGui::CalcTextSize(text.c_str()).x - 20.0F, 14.0F);
     const bool hasColors = beside.kind != Beside::Kind::Method;

@@ -125,7 +125,10 @@ void ListPicture::drawTiles() {
     wait();
     const VitrailStats stats = readStats();
     check(plan_.finish(stats), "vitrailFinishTile");
-    if (stats.fragmentsMissing == 0) add(stats); // else its parts come next
+    if (stats.fragmentsMissing == 0) { // else its parts come next
+      add(stats);
+      stats_.drawnTiles.push_back({tile.x, tile.y, tile.width, tile.height, stats.fragmentsRequested});
+    }
     expected_ = stats_.fragmentsRequested;
     if (info_.onTile) info_.onTile(stats_.tiles);
   }
