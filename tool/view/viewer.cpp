@@ -600,7 +600,7 @@ class Viewer {
     }
     if (beside.kind == Beside::Kind::Tiles) {
       text =
-          fmt::format("{} parts, surfaces of a pixel in the mean: 0 to {:.1f}", drawn_->report.tiles, drawn_->largest);
+          fmt::format("parts: {}; surfaces of a pixel in the mean: 0 to {:.1f}", drawn_->report.tiles, drawn_->largest);
     }
     const float height = ImGui::GetFontSize();
     const ImVec2 at(corner.x - ImGui::CalcTextSize(text.c_str()).x - 20.0F, 14.0F);
