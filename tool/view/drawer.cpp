@@ -22,8 +22,8 @@ bool sameScene(const RenderArguments& a, const RenderArguments& b) {
          a.load.variant == b.load.variant;
 }
 
-// The mean of the surfaces of a pixel, of each part that a picture was drawn in; the first row and column of each are 0,
-// to be told apart. The largest mean.
+// The mean of the surfaces of a pixel, of each part that a picture was drawn in; the first row and column of each are
+// 0, to be told apart. The largest mean.
 double fillTiles(const FrameReport& report, Plane& plane) {
   std::vector<DrawnTile> tiles = report.drawnTiles;
   if (tiles.empty()) tiles.push_back({0, 0, report.width, report.height, report.fragmentsRequested});
