@@ -1,12 +1,13 @@
 # Compiles GLSL with glslc and makes each shader a header with one array of SPIR-V words, so that programs need no files
 # beside them.
-find_program(VITRAIL_GLSLC glslc REQUIRED)
+find_program(VITRAIL_GLSLC glslc HINTS $ENV{VULKAN_SDK}/Bin REQUIRED)
 
 # embed_shader(TARGETS target... NAME name SOURCE file NAMESPACE ns [INCLUDES dir...] [DEFINES def...] [OPTIMIZE flag]
-#              [ENVIRONMENT env])
+#              [ENVIRONMENT env] [HLSL_STAGE stage])
 # gives the targets, all of this folder, `#include "shaders/<name>.h"`, which declares `ns::shaders::<name with . as _>`.
+# HLSL_STAGE: the source is HLSL, for that stage; its entry point is main().
 function(embed_shader)
-  cmake_parse_arguments(arg "" "NAME;SOURCE;NAMESPACE;OPTIMIZE;ENVIRONMENT" "TARGETS;INCLUDES;DEFINES" ${ARGN})
+  cmake_parse_arguments(arg "" "NAME;SOURCE;NAMESPACE;OPTIMIZE;ENVIRONMENT;HLSL_STAGE" "TARGETS;INCLUDES;DEFINES" ${ARGN})
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/generated)
   set(words ${folder}/shaders/${arg_NAME}.inc)
   set(header ${folder}/shaders/${arg_NAME}.h)
@@ -18,13 +19,18 @@ function(embed_shader)
   if(NOT arg_ENVIRONMENT)
     set(arg_ENVIRONMENT vulkan1.2) # what every supported device takes
   endif()
+  set(language)
+  if(arg_HLSL_STAGE)
+    set(language -x hlsl -fshader-stage=${arg_HLSL_STAGE} -fentry-point=main)
+    set(arg_ENVIRONMENT vulkan1.1) # its buffers are what SPIR-V up to 1.3 has
+  endif()
   list(TRANSFORM arg_INCLUDES PREPEND -I)
   list(TRANSFORM arg_DEFINES PREPEND -D)
   # -mfmt=num: comma-separated words.
   add_custom_command(
     OUTPUT ${words}
     COMMAND ${VITRAIL_GLSLC} --target-env=${arg_ENVIRONMENT} ${arg_OPTIMIZE} -Werror -mfmt=num -MD -MF ${words}.d ${arg_INCLUDES} ${arg_DEFINES}
-            -o ${words} ${source}
+            ${language} -o ${words} ${source}
     DEPENDS ${source}
     DEPFILE ${words}.d
     COMMENT "Compiling ${arg_NAME}"

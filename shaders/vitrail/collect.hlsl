@@ -28,6 +28,9 @@
 //
 // SV_Coverage is taken as what the primitive covers: whether the depth test has been left out of it, no device says. So
 // a resolve of several samples tests them against the opaque depth.
+//
+// Vulkan hosts whose shaders are HLSL define VITRAIL_REGISTER_PARAMETERS=b0: then registers are the bindings of the
+// target's set (docs/direct3d.md).
 #ifndef VITRAIL_COLLECT_HLSL
 #define VITRAIL_COLLECT_HLSL
 

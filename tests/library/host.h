@@ -45,8 +45,8 @@ enum class ColorFormat { Float32, Float16 }; // of the picture; results of Float
 
 // How the collecting shader is compiled: as most hosts do; for CPU drivers (VITRAIL_CPU_DRIVER); or for one kind of
 // target and no other (VITRAIL_ONLY_*): `standard` nodes without words at 1 sample, lists built as collected, overflow
-// skipped.
-enum class ShaderKind { Usual, ForCpu, Narrow };
+// skipped; or, for Vulkan, from HLSL.
+enum class ShaderKind { Usual, ForCpu, Narrow, Hlsl };
 
 struct HostDesc {
   std::uint32_t width = 8;

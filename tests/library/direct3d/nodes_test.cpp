@@ -1,6 +1,7 @@
 // Nodes that HLSL makes (shaders/vitrail/node.hlsl and so on) equal those that GLSL makes of the same fragments, byte
-// for byte: both run on one device, by Direct3D and by Vulkan. And the sums of fragments without a node equal those of
-// the kernels for Direct3D, which are GLSL that SPIRV-Cross has translated.
+// for byte: both run on one device, by Direct3D and by Vulkan, HLSL (as glslang compiles it) by Vulkan, too. And the
+// sums of fragments without a node equal those of the kernels for Direct3D, which are GLSL that SPIRV-Cross has
+// translated.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,6 +20,7 @@
 #include "core/pool.h"
 #include "run.h"
 #include "shaders/pack.h"
+#include "shaders/pack_hlsl.h"
 #include "vulkan_compute.h"
 
 namespace vitrail::tests::direct3d {
@@ -152,6 +154,8 @@ TEST_P(NodesOfBothLanguages, AreTheSameBytes) {
       const std::vector<std::byte> glsl = runByVulkan(shaders::pack, input.words(), bytes, groups);
       const std::vector<std::byte> kernel = runByDirect3d(bytecode::pack_cross_compiled, input.words(), bytes, groups);
       EXPECT_EQ(countDiffering(input, hlsl, glsl, false), 0U) << "nodes";
+      const std::vector<std::byte> onVulkan = runByVulkan(shaders::pack_hlsl, input.words(), bytes, groups);
+      EXPECT_EQ(countDiffering(input, onVulkan, glsl, false), 0U) << "nodes of HLSL on Vulkan";
       EXPECT_EQ(countDiffering(input, hlsl, kernel, true), 0U) << "sums";
       std::set<std::uint32_t> nodes; // are not all one
       for (std::size_t i = 0; i < input.fragments.size(); ++i) nodes.insert(packedAt(hlsl, i)[0]);

@@ -9,6 +9,7 @@
 #include "shaders/points_address.frag.h"
 #include "shaders/points_cpu.frag.h"
 #include "shaders/points_cpu_address.frag.h"
+#include "shaders/points_hlsl.frag.h"
 #include "shaders/points_narrow.frag.h"
 #include "shaders/points_post_depth.frag.h"
 #include "shaders/points_post_depth_address.frag.h"
@@ -119,6 +120,7 @@ VkPipeline PointPipelines::opaque(std::uint32_t mask) {
 
 std::span<const std::uint32_t> PointPipelines::pointsShader() const {
   const bool cpu = info_.shader == ShaderKind::ForCpu;
+  if (info_.shader == ShaderKind::Hlsl) return shaders::points_hlsl_frag;
   if (info_.shader == ShaderKind::Narrow) return shaders::points_narrow_frag;
   if (info_.postDepthCoverage && info_.addresses) return shaders::points_post_depth_address_frag;
   if (info_.postDepthCoverage && cpu) return shaders::points_post_depth_cpu_frag;
