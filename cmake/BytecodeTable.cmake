@@ -3,8 +3,8 @@
 # that reach the pool by a binding and sort by insertion, or ask for neither; resolve_group needs what shader model 5.0
 # has not. One colour serves all: HLSL does not say which format is written.
 if(NOT VITRAIL_BYTECODE_FROM)
-  find_program(VITRAIL_GLSLC glslc REQUIRED)
-  find_program(VITRAIL_SPIRV_CROSS spirv-cross REQUIRED)
+  find_program(VITRAIL_GLSLC glslc HINTS $ENV{VULKAN_SDK}/Bin REQUIRED)
+  find_program(VITRAIL_SPIRV_CROSS spirv-cross HINTS $ENV{VULKAN_SDK}/Bin REQUIRED)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
 endif()
 set(VITRAIL_KERNEL_TO_HLSL ${CMAKE_CURRENT_LIST_DIR}/direct3d/kernel_to_hlsl.py)

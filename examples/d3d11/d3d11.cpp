@@ -178,7 +178,7 @@ void draw(const char* path) {
   save(host, path);
   VitrailStats stats{};
   while (vitrailD3d11ReadStats(target, 0, &stats) == VITRAIL_INCOMPLETE) Sleep(1); // others read it frames later
-  check(stats.complete != 0, "the node pool is too small");
+  check(stats.complete != 0, std::string("the node pool is too small"));
   vitrailD3d11DestroyTarget(target);
   vitrailD3d11DestroyContext(context);
 }
@@ -186,7 +186,7 @@ void draw(const char* path) {
 
 int main(int argc, char** argv) {
   try {
-    check(argc == 2, "usage: d3d11 PICTURE.ppm");
+    check(argc == 2, std::string("usage: d3d11 PICTURE.ppm"));
     draw(argv[1]);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "d3d11: error: %s\n", error.what());

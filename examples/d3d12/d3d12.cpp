@@ -253,7 +253,7 @@ void draw(const char* path) {
 
 int main(int argc, char** argv) {
   try {
-    check(argc == 2, "usage: d3d12 PICTURE.ppm");
+    check(argc == 2, std::string("usage: d3d12 PICTURE.ppm"));
     draw(argv[1]);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "d3d12: error: %s\n", error.what());

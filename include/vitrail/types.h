@@ -11,7 +11,9 @@
 #include <stdint.h>
 
 /* Marks the functions of a shared library (VITRAIL_SHARED). A static one needs nothing. */
-#if defined(VITRAIL_SHARED) && defined(__GNUC__)
+#if defined(VITRAIL_SHARED) && defined(_WIN32)
+#define VITRAIL_API __declspec(dllexport)
+#elif defined(VITRAIL_SHARED) && defined(__GNUC__)
 #define VITRAIL_API __attribute__((visibility("default")))
 #else
 #define VITRAIL_API
