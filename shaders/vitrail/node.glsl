@@ -41,9 +41,13 @@ vec3 vitrailLinearToSrgb(vec3 linear) {
   return mix(curve, 12.92 * linear, lessThanEqual(linear, vec3(0.0031308)));
 }
 
+// Products, not quotients: of these compilers make products or not, and the picture shall not hang on that. 1 stays 1.
+const float VITRAIL_BY_1_055 = 0.947867334;
+const float VITRAIL_BY_12_92 = 0.0773993805;
+
 vec3 vitrailSrgbToLinear(vec3 srgb) {
-  vec3 curve = pow((max(srgb, vec3(0.04045)) + 0.055) / 1.055, vec3(2.4));
-  return mix(curve, srgb / 12.92, lessThanEqual(srgb, vec3(0.04045)));
+  vec3 curve = pow((max(srgb, vec3(0.04045)) + 0.055) * VITRAIL_BY_1_055, vec3(2.4));
+  return mix(curve, srgb * VITRAIL_BY_12_92, lessThanEqual(srgb, vec3(0.04045)));
 }
 
 // Here and below min() and max() are given what may be a NaN. Which operand they return then GLSL leaves open; GPUs and
@@ -211,20 +215,25 @@ uint vitrailDepthOrder(float depth, VitrailLayout nodes) {
 // Colour and alpha, the colour as it is stored: linear in the hdr format, else on the sRGB curve.
 // Alpha is kept as its root: faint surfaces have fine steps.
 vec4 vitrailHdrColor(uvec4 key) {
-  float root = float(key.z >> 16) / 65535.0;
+  float root = float(key.z >> 16) * (1.0 / 65535.0);
   return vec4(unpackHalf2x16(key.y), unpackHalf2x16(key.z & 0xffffu).x, root * root);
 }
 
 vec4 vitrailCompactCurve(uvec4 key, VitrailLayout nodes) {
   if (nodes.samples == 1u) {
     const uvec4 steps = uvec4(31u, 63u, 31u, 63u);
-    return vec4(uvec4(key.y, key.y >> 5, key.y >> 11, key.y >> 16) & steps) / vec4(steps);
+    const vec4 step = vec4(1.0 / 31.0, 1.0 / 63.0, 1.0 / 31.0, 1.0 / 63.0);
+    return vec4(uvec4(key.y, key.y >> 5, key.y >> 11, key.y >> 16) & steps) * step;
   }
-  return vec4(uvec4(key.y, key.y >> 5, key.y >> 10, key.y >> 19) & 31u) / 31.0;
+  return vec4(uvec4(key.y, key.y >> 5, key.y >> 10, key.y >> 19) & 31u) * (1.0 / 31.0);
+}
+
+vec4 vitrailStandardCurve(uvec4 key) {
+  return vec4(uvec4(key.y, key.y >> 8, key.y >> 16, key.y >> 24) & 255u) * (1.0 / 255.0);
 }
 
 vec4 vitrailKeyCurve(uvec4 key, VitrailLayout nodes) {
-  return VITRAIL_CHOOSE(nodes, unpackUnorm4x8(key.y), vitrailCompactCurve(key, nodes), vitrailHdrColor(key));
+  return VITRAIL_CHOOSE(nodes, vitrailStandardCurve(key), vitrailCompactCurve(key, nodes), vitrailHdrColor(key));
 }
 
 // The depth of a fragment, from its key.

@@ -48,9 +48,12 @@ float3 vitrailLinearToSrgb(float3 color) {
   return vitrailMixBelow(curve, low, color, 0.0031308);
 }
 
+static const float VITRAIL_BY_1_055 = 0.947867334;
+static const float VITRAIL_BY_12_92 = 0.0773993805;
+
 float3 vitrailSrgbToLinear(float3 srgb) {
-  precise float3 curve = pow((max(srgb, 0.04045) + 0.055) / 1.055, 2.4);
-  precise float3 low = srgb / 12.92;
+  precise float3 curve = pow((max(srgb, 0.04045) + 0.055) * VITRAIL_BY_1_055, 2.4);
+  precise float3 low = srgb * VITRAIL_BY_12_92;
   return vitrailMixBelow(curve, low, srgb, 0.04045);
 }
 
@@ -235,20 +238,20 @@ uint vitrailKeyDepth(uint4 key, VitrailLayout nodes) {
 // Colour and alpha, the colour as it is stored: linear in the hdr format, else on the sRGB curve.
 // Alpha is kept as its root: faint surfaces have fine steps.
 float4 vitrailHdrColor(uint4 key) {
-  float root = float(key.z >> 16) / 65535.0;
+  float root = float(key.z >> 16) * (1.0 / 65535.0);
   return float4(f16tof32(key.y & 0xffffu), f16tof32(key.y >> 16), f16tof32(key.z & 0xffffu), root * root);
 }
 
 float4 vitrailCompactCurve(uint4 key, VitrailLayout nodes) {
   uint4 one = uint4(key.y, key.y >> 5, key.y >> 11, key.y >> 16) & uint4(31u, 63u, 31u, 63u);
   uint4 several = uint4(key.y, key.y >> 5, key.y >> 10, key.y >> 19) & 31u;
-  float4 color = float4(several) / 31.0;
-  if (nodes.samples == 1u) color = float4(one) / float4(31.0, 63.0, 31.0, 63.0);
+  float4 color = float4(several) * (1.0 / 31.0);
+  if (nodes.samples == 1u) color = float4(one) * float4(1.0 / 31.0, 1.0 / 63.0, 1.0 / 31.0, 1.0 / 63.0);
   return color;
 }
 
 float4 vitrailStandardCurve(uint4 key) {
-  return float4(uint4(key.y, key.y >> 8, key.y >> 16, key.y >> 24) & 255u) / 255.0;
+  return float4(uint4(key.y, key.y >> 8, key.y >> 16, key.y >> 24) & 255u) * (1.0 / 255.0);
 }
 
 float4 vitrailKeyCurve(uint4 key, VitrailLayout nodes) {
