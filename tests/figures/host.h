@@ -51,6 +51,7 @@ struct Images {
   Com<ID3D11ShaderResourceView> depthRead;
 };
 
+// One way to draw one scene, and what it takes.
 class Host {
  public:
   explicit Host(const Settings& settings);
