@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::uint32_t kGeometryBindings = 15;
 constexpr std::uint64_t kMostCornerBytes = 1U << 30U; // of each of two buffers
+constexpr std::uint64_t kCornerShare = 16;            // and at most this part of the device's memory
 constexpr std::uint32_t kCornerBytes = 16;
 constexpr VkBufferUsageFlags kTableUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr Access kTableRead{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT};
@@ -115,7 +116,8 @@ void TilesGeometry::planCorners() {
     groups += (corners + shaders::TILES_GROUP - 1) / shaders::TILES_GROUP;
   }
   const std::uint64_t most =
-      std::min<std::uint64_t>({kMostCornerBytes, gpu_.properties().limits.maxStorageBufferRange, gpu_.maxAllocation()});
+      std::min<std::uint64_t>({kMostCornerBytes, gpu_.localMemory() / kCornerShare,
+                               gpu_.properties().limits.maxStorageBufferRange, gpu_.maxAllocation()});
   if (corners_ * kCornerBytes > most) corners_ = groups = 0;
   cornerGroups_ = static_cast<std::uint32_t>(groups);
 }
