@@ -31,7 +31,7 @@ class PickTest : public GpuTest {
       const std::uint32_t x = static_cast<std::uint32_t>(random()) % 160;
       const std::uint32_t y = static_cast<std::uint32_t>(random()) % 120;
       SCOPED_TRACE(std::to_string(x) + ", " + std::to_string(y));
-      const std::vector<PickedLayer> found = renderer.pick(options, x, y);
+      const std::vector<PickedLayer> found = renderer.pick(options, x, y).value();
       const std::vector<PickedLayer> right = picker.at(options.view, 160, 120, x, y);
       bool same = found.size() == right.size();
       for (std::size_t k = 0; same && k < right.size(); ++k) same = found[k].draw == right[k].draw;
@@ -65,6 +65,15 @@ TEST_F(PickTest, FindsWhatTheProcessorFinds) {
 
 TEST_F(PickTest, ListsOfAnyLength) { expectSame(makeBuiltinScene("planes", {1500, 1}), {}, 2); }
 
+// Then it is the processor that lists them.
+TEST_F(PickTest, SaysWhereThereAreMoreThanItLists) {
+  Scene scene = makeBuiltinScene("planes", {5000, 1});
+  const std::vector<Draw> once = scene.draws;
+  for (int i = 0; i < 3; ++i) scene.draws.insert(scene.draws.end(), once.begin(), once.end());
+  const RenderOptions options = usualOptions(scene, 8, 8);
+  EXPECT_FALSE(InteractiveRenderer(gpu(), scene, {}, {}).pick(options, 4, 4).has_value());
+}
+
 TEST_F(PickTest, AGlassIsOneSurface) {
   Scene scene;
   Material glass = reference::unlitMaterial({0.3F, 0.6F, 0.9F, 1.0F}, AlphaMode::Opaque);
@@ -77,7 +86,7 @@ TEST_F(PickTest, AGlassIsOneSurface) {
   RenderOptions options;
   options.width = options.height = 8;
   options.view = reference::straightView();
-  const std::vector<PickedLayer> found = InteractiveRenderer(gpu(), scene, {}, {}).pick(options, 4, 4);
+  const std::vector<PickedLayer> found = InteractiveRenderer(gpu(), scene, {}, {}).pick(options, 4, 4).value();
   const std::vector<PickedLayer> right = Picker(scene, {}).at(options.view, 8, 8, 4, 4);
   ASSERT_EQ(found.size(), 2U);
   ASSERT_EQ(right.size(), 2U);
@@ -99,7 +108,7 @@ TEST_F(PickTest, PicturesGoOnAsBefore) {
     return renderer.finish().pixels;
   };
   const std::vector<std::uint8_t> before = pixels();
-  EXPECT_FALSE(renderer.pick(other, 40, 20).empty());
+  EXPECT_FALSE(renderer.pick(other, 40, 20).value().empty());
   EXPECT_TRUE(pixels() == before);
 }
 
@@ -114,7 +123,7 @@ TEST_F(PickTest, TakesAboutAMillisecondOnAGpu) {
     std::vector<double> times;
     std::size_t layers = 0;
     for (std::uint32_t i = 0; i < 101; ++i) {
-      layers = std::max(layers, renderer.pick(options, 340 + 6 * i, 60 + 6 * i).size());
+      layers = std::max(layers, renderer.pick(options, 340 + 6 * i, 60 + 6 * i).value().size());
       times.push_back(renderer.pickMilliseconds());
     }
     std::ranges::nth_element(times, times.begin() + 50);
@@ -131,8 +140,8 @@ TEST_F(PickTest, AnEmptyPixelHasNothing) {
   RenderOptions options;
   options.width = options.height = 64;
   options.view = reference::straightView();
-  EXPECT_TRUE(renderer.pick(options, 0, 0).empty());
-  EXPECT_EQ(renderer.pick(options, 32, 32).size(), 1U);
+  EXPECT_TRUE(renderer.pick(options, 0, 0).value().empty());
+  EXPECT_EQ(renderer.pick(options, 32, 32).value().size(), 1U);
 }
 
 } // namespace

@@ -191,6 +191,23 @@ TEST(SameBitsOfFramesTest, WhateverWasDrawnBefore) {
   }
 }
 
+// Frames alike but for how many draws they have share it most of all.
+TEST(SameBitsOfFramesTest, HoweverManyDrawsThereWere) {
+  Random random(26);
+  for (const bool isFlat : {true, false}) {
+    Raster kept(VITRAIL_CPU_BEST, 2);
+    for (const std::uint32_t draws : {2U, 9U, 1U, 30U, 5U}) {
+      SceneOptions options;
+      options.isFlat = isFlat;
+      options.isShaded = !isFlat;
+      options.draws = draws;
+      const Scene made = randomScene(random, options);
+      Raster fresh(VITRAIL_CPU_BEST, 1);
+      EXPECT_TRUE(draw(kept, made) == draw(fresh, made)) << draws << " draws, " << (isFlat ? "flat" : "shaded");
+    }
+  }
+}
+
 double srgbOf(double v) {
   const double clamped = std::clamp(v, 0.0, 1.0);
   return clamped <= 0.0031308 ? 12.92 * clamped : 1.055 * std::pow(clamped, 1.0 / 2.4) - 0.055;

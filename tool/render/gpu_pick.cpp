@@ -158,8 +158,8 @@ GpuPicker::GpuPicker(const Surfaces& surfaces, std::vector<DrawFacts> facts)
     : impl_(std::make_unique<Impl>(surfaces, std::move(facts))) {}
 GpuPicker::~GpuPicker() = default;
 
-std::vector<PickedLayer> GpuPicker::at(const View& view, std::uint32_t width, std::uint32_t height, std::uint32_t x,
-                                       std::uint32_t y) {
+std::optional<std::vector<PickedLayer>> GpuPicker::at(const View& view, std::uint32_t width, std::uint32_t height,
+                                                      std::uint32_t x, std::uint32_t y) {
   Impl& impl = *impl_;
   if (!impl.target || impl.extent.width != width || impl.extent.height != height) impl.makeTarget({width, height});
   const std::vector<SurfaceRun> runs = TileRuns(impl.surfaces.list(), width, height).touching({x, y, 1, 1});
@@ -181,7 +181,7 @@ std::vector<PickedLayer> GpuPicker::at(const View& view, std::uint32_t width, st
     impl.makeTarget(impl.extent);
   }
   const Found& found = *static_cast<const Found*>(impl.found.mapped());
-  if (found.cut != 0) throw GpuError("the pixel has more surfaces than the driver lets a shader list");
+  if (found.cut != 0 || stats.cutPixels != 0) return std::nullopt; // by the walk, or before it by the sort
   std::vector<VitrailLayer> layers(found.count);
   std::memcpy(layers.data(), found.layers, layers.size() * sizeof(VitrailLayer));
   std::vector<bool> isOpaque(layers.size());

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "../stage/surfaces.h"
@@ -20,9 +21,9 @@ class GpuPicker {
   GpuPicker& operator=(const GpuPicker&) = delete;
 
   // As Picker::at(), of surfaces that are seen with that view; waits for it. What is stored rounds colours and alphas
-  // (VITRAIL_NODE_HDR). Throws GpuError.
-  std::vector<PickedLayer> at(const View& view, std::uint32_t width, std::uint32_t height, std::uint32_t x,
-                              std::uint32_t y);
+  // (VITRAIL_NODE_HDR). None: the pixel has more surfaces than one shader lists here, and Picker does. Throws GpuError.
+  std::optional<std::vector<PickedLayer>> at(const View& view, std::uint32_t width, std::uint32_t height,
+                                             std::uint32_t x, std::uint32_t y);
   // The GPU's time for the last one; 0 on devices without timestamps.
   [[nodiscard]] double milliseconds() const;
 

@@ -116,7 +116,8 @@ InteractivePicture InteractiveRenderer::finish() {
   return picture;
 }
 
-std::vector<PickedLayer> InteractiveRenderer::pick(const RenderOptions& options, std::uint32_t x, std::uint32_t y) {
+std::optional<std::vector<PickedLayer>> InteractiveRenderer::pick(const RenderOptions& options, std::uint32_t x,
+                                                                  std::uint32_t y) {
   still_.stage().setView(options.view, {options.width, options.height});
   if (!picker_) picker_.emplace(still_.stage().surfaces(), facts_);
   return picker_->at(options.view, options.width, options.height, x, y);

@@ -51,7 +51,7 @@ class InteractiveRenderer final : public Renderer {
   void setClipPlanes(const Scene& scene) { still_.stage().setClipPlanes(scene); }
 
   // What is under a pixel of such a picture, from its lists (gpu_pick.h). None is pending. Throws GpuError.
-  std::vector<PickedLayer> pick(const RenderOptions& options, std::uint32_t x, std::uint32_t y);
+  std::optional<std::vector<PickedLayer>> pick(const RenderOptions& options, std::uint32_t x, std::uint32_t y);
   // The GPU's time for that.
   [[nodiscard]] double pickMilliseconds() const { return picker_ ? picker_->milliseconds() : 0.0; }
 

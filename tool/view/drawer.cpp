@@ -225,12 +225,14 @@ void Drawer::pick(Picked& picked) {
   const auto start = std::chrono::steady_clock::now();
   picked.scene = facts_;
   if (interactive_ != nullptr && rendererArguments_.opacity == picked.arguments.opacity) {
-    picked.layers = interactive_->pick(options, picked.x, picked.y);
-    picked.byDevice = true;
-    picked.milliseconds = interactive_->pickMilliseconds();
-    const std::lock_guard lock(mutex_);
-    picked_ = std::move(picked);
-    return;
+    if (auto layers = interactive_->pick(options, picked.x, picked.y)) {
+      picked.layers = std::move(*layers);
+      picked.byDevice = true;
+      picked.milliseconds = interactive_->pickMilliseconds();
+      const std::lock_guard lock(mutex_);
+      picked_ = std::move(picked);
+      return;
+    }
   }
   if (!picker_ || pickerOpacity_ != picked.arguments.opacity) {
     picker_.reset();

@@ -83,13 +83,14 @@ class Store {
     chunks_ = chunksWithin(budget);
     arena_.reset(allocate(chunks_));
     previous_.resize(chunks_);
-    std::fill_n(blank_, kLanes, kFarKey);
-    if (shape.isFlat) std::fill_n(blank_ + kLanes * RowShape::kNumber, kLanes, shape.nothing);
+    makeBlank();
   }
 
-  // Forgets how much was used. False: the store is not as large as that budget makes one.
-  bool begin(std::uint64_t budget) {
+  // Gets ready for another frame, whose rows are as large. False: the store is not as large as that budget makes one.
+  bool begin(const RowShape& shape, std::uint64_t budget) {
+    shape_ = shape;
     peak_ = 0;
+    makeBlank();
     return chunks_ == chunksWithin(budget);
   }
 
@@ -209,6 +210,11 @@ class Store {
     std::uint32_t limit = kFirstLimit;
     Row row = nullptr; // the last one
   };
+
+  void makeBlank() {
+    std::fill_n(blank_, kLanes, kFarKey);
+    if (shape_.isFlat) std::fill_n(blank_ + kLanes * RowShape::kNumber, kLanes, shape_.nothing);
+  }
 
   std::uint32_t chunksWithin(std::uint64_t budget) const {
     const std::uint64_t chunks = std::min(budget, kMostBytes) / chunkBytes_;

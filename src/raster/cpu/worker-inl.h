@@ -91,18 +91,15 @@ struct OpaqueTile {
 class TileWorker final : public TileWorkspace {
  public:
   explicit TileWorker(const Frame& frame)
-      : needs_(frame.needs),
-        samples_(frame.info.samples),
-        draws_(frame.draws.size()),
-        shape_(frame.needs, frame.info.samples > 1, frame.draws.size()),
-        store_(shape_, frame.budget) {
+      : needs_(frame.needs), samples_(frame.info.samples), shape_(shapeOf(frame)), store_(shape_, frame.budget) {
     if (frame.needs.opaque) opaque_ = std::make_unique<OpaqueTile>(frame.info.samples);
   }
 
   void draw(const Frame& frame, std::uint32_t tile, TileCounts& counts);
   bool begin(const Frame& frame) override {
-    return needs_ == frame.needs && samples_ == frame.info.samples && draws_ == frame.draws.size() &&
-           store_.begin(frame.budget);
+    if (needs_ != frame.needs || samples_ != frame.info.samples) return false;
+    shape_ = shapeOf(frame);
+    return store_.begin(shape_, frame.budget);
   }
   std::uint64_t fragmentBytes() const override { return store_.peakBytes(); }
 
@@ -144,6 +141,7 @@ class TileWorker final : public TileWorkspace {
     return static_cast<std::uint32_t>(tile_.y) + block / kBlocksAcross * kBlockSide;
   }
 
+  static RowShape shapeOf(const Frame& frame) { return {frame.needs, frame.info.samples > 1, frame.draws.size()}; }
   void merge(const Frame& frame, std::uint32_t tile, bool opaque);
   template <class Emit>
   bool rasterise(const Frame& frame, std::uint64_t blocks, Emit emit);
@@ -203,9 +201,8 @@ class TileWorker final : public TileWorkspace {
   void listBlock(const Frame& frame, std::uint32_t block, const SortedRows& sorted);
   void layersOf(const Frame& frame, const SortedRows& sorted, std::uint32_t lane);
 
-  FrameNeeds needs_; // and what else the memory below is for
+  FrameNeeds needs_; // and for how many samples the memory below is
   std::uint32_t samples_;
-  std::size_t draws_;
   RowShape shape_;
   Store store_;
   Batch batch_{};
@@ -228,7 +225,7 @@ class TileWorker final : public TileWorkspace {
   std::uint64_t edges_ = 0; // blocks in which a fragment does not cover all samples of its pixel
   alignas(64) std::int32_t until_[kBlocks][kLanes];
   alignas(64) std::int32_t hidden_[kBlocks][kLanes];
-  alignas(64) std::int32_t layers_[kLanes]; // fragments of each pixel of the block that was sorted last
+  alignas(64) std::int32_t layers_[kLanes] = {}; // fragments of each pixel of the block that was sorted last
   std::vector<Row> rows_;
   std::vector<double> keyMemory_;
   std::vector<std::uint32_t> coverageMemory_;
