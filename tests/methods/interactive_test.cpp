@@ -216,13 +216,18 @@ TEST_F(InteractiveTest, FramesInFlightTakeLessTimeOnAGpu) {
 TEST_F(InteractiveTest, SizesChangeWhileFramesArePending) {
   const Scene scene = makeBuiltinScene("interlocked", {});
   InteractiveRenderer renderer(gpu(), scene, {}, {});
+  StillRenderer still(gpu(), scene);
+  const auto expectNext = [&] {
+    const InteractivePicture picture = renderer.finish();
+    EXPECT_TRUE(picture.report.complete);
+    const RenderOptions options = usualOptions(scene, picture.part.width, picture.part.height);
+    EXPECT_TRUE(picture.pixels == still.render(options).picture.rgba) << picture.part.width;
+  };
   for (const std::uint32_t side : {64U, 40U, 100U, 3U}) {
-    if (renderer.pending() == InteractiveRenderer::kFramesInFlight) {
-      EXPECT_TRUE(renderer.finish().report.complete);
-    }
+    if (renderer.pending() == InteractiveRenderer::kFramesInFlight) expectNext();
     ASSERT_TRUE(renderer.draw(usualOptions(scene, side, side), {side, side}, true));
   }
-  while (renderer.pending() > 0) EXPECT_TRUE(renderer.finish().report.complete);
+  while (renderer.pending() > 0) expectNext();
 }
 
 TEST_F(InteractiveTest, OpaqueScenesHaveNothingToCollect) {

@@ -135,6 +135,15 @@ class View {
   int ended_ = 0;
 };
 
+// How many pixels show anything but the white background.
+std::size_t shownPixels(const Pixels& pixels) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pixels.rgb.size(); i += 3) {
+    count += std::all_of(&pixels.rgb[i], &pixels.rgb[i] + 3, [](auto c) { return c == 255; }) ? 0 : 1;
+  }
+  return count;
+}
+
 // The words of a command for a shell, run in the folder. The picture that it draws.
 Pixels drawn(const TemporaryFolder& folder, const std::string& command) {
   const std::size_t program = command.find(' ');
@@ -307,14 +316,16 @@ TEST_P(ViewTest, ShowsAPartOfTheModel) {
 
 // The plane that cuts is dragged in the picture, by a handle.
 TEST_P(ViewTest, TheCutIsDragged) {
-  View view(folder_, with({"--scene", "interlocked", "--clip-plane=0,-1,0,0", "--orbit", "20,10"}));
+  View view(folder_, with({"--scene", "interlocked", "--clip-plane=0,-1,0,-0.3", "--orbit", "20,10"}));
   view.settled();
   view.desk.resize(1100, 700); // the handle is beside the panel
   const std::string first = view.settled()["command"];
-  EXPECT_NE(first.find("--clip-plane 0,-1,0,0"), std::string::npos) << first;
+  EXPECT_NE(first.find("--clip-plane 0,-1,0,-0.3"), std::string::npos) << first;
+  const std::size_t before = shownPixels(drawn(folder_, first));
   int x = 0;
   int y = 0;
   ASSERT_EQ(std::sscanf(view.happened("handle")["text"].get<std::string>().c_str(), "%d,%d", &x, &y), 2);
+  EXPECT_LT(y, 350) << "the plane is above the middle";
   view.desk.drag(1, x, y, x, y - 60); // up: less is cut away
   const Json up = view.settled();
   const std::string command = up["command"];
@@ -322,7 +333,8 @@ TEST_P(ViewTest, TheCutIsDragged) {
   const std::size_t at = command.find("--clip-plane 0,-1,0,");
   ASSERT_NE(at, std::string::npos) << command;
   ASSERT_EQ(std::sscanf(command.c_str() + at, "--clip-plane 0,-1,0,%lf", &offset), 1);
-  EXPECT_GT(offset, 0.1);
+  EXPECT_LT(offset, -0.4);
+  EXPECT_GT(shownPixels(drawn(folder_, command)), before + 500);
   // The handle is where it was dragged to, and the picture is the command's.
   int upX = 0;
   int upY = 0;

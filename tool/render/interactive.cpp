@@ -60,6 +60,9 @@ std::shared_ptr<EncodeImagePass::Output> InteractiveRenderer::freeOutput() {
 
 bool InteractiveRenderer::draw(const RenderOptions& options, VkExtent2D size, bool readsBack) {
   checkPictureOptions(method_, options.memoryBudget.has_value(), options.peel > 0);
+  // To find out again would make its pipelines anew, and render() those of its own, for each picture.
+  const auto asked = std::tuple(size.width, size.height, options.memoryBudget);
+  if (noRoom_ == asked) return false;
   setSize(size);
   Stage& stage = still_.stage();
   Method& method = still_.method();
@@ -71,7 +74,10 @@ bool InteractiveRenderer::draw(const RenderOptions& options, VkExtent2D size, bo
   target.framesInFlight = kFramesInFlight;
   target.waitForFrames = [this] { settleAll(); };
   method.setTarget(target);
-  if (!method.drawsInFlight()) return false;
+  if (!method.drawsInFlight()) {
+    noRoom_ = asked;
+    return false;
+  }
 
   Slot& slot = *slots_[next_];
   next_ = (next_ + 1) % slots_.size();

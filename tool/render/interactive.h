@@ -7,6 +7,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "../gpu/device.h"
@@ -92,6 +93,8 @@ class InteractiveRenderer final : public Renderer {
   std::vector<std::unique_ptr<Slot>> slots_;
   std::size_t next_ = 0;
   std::deque<Pending> pending_;
+  // The size and the budget of a picture for which there was no room in flight.
+  std::optional<std::tuple<std::uint32_t, std::uint32_t, std::optional<std::uint64_t>>> noRoom_;
 };
 
 } // namespace vitrail::tool

@@ -78,7 +78,8 @@ bool CutHandle::draw(ImDrawList& list, RenderArguments& arguments, const SceneFa
   }
   glm::dvec4& cut = arguments.clipPlanes[0]; // in the file's coordinates
   const double length = glm::length(glm::dvec3(cut));
-  CutPlane plane{turnOf(arguments.up) * glm::dvec3(cut) / length, cut.w / length};
+  CutPlane plane{turnOf(arguments.up) * glm::dvec3(cut) / length,
+                 -cut.w / length}; // kept: dot(cut.xyz, point) >= cut.w
   plane.offset += glm::dot(plane.normal, scene.origin);
   const Projector projector(view, display);
   const std::vector<glm::dvec3> outline = outlineOf(plane, scene.bounds);
@@ -124,7 +125,7 @@ bool CutHandle::draw(ImDrawList& list, RenderArguments& arguments, const SceneFa
   const double way = glm::length(step) > least ? glm::dot(moved, step) / glm::dot(step, step)
                                                : moved.y * size / static_cast<double>(display.y);
   if (std::abs(way) * std::max(glm::length(step), least) < 0.5) return false; // less than a pixel
-  cut.w -= way * length;
+  cut.w += way * length;
   return true;
 }
 

@@ -119,11 +119,14 @@ void Drawer::run() {
     const bool goesOn = !begun_.empty() || again_;
     if (!goesOn) changed_.wait(lock, [this] { return ends_ || wanted_ || wantedPick_; });
     if (ends_) break;
-    std::optional<Wanted> wanted = std::exchange(wanted_, std::nullopt);
+    // Pictures first where they load what is picked in. Else they wait: while something moves there is always another.
     std::optional<Picked> picking;
-    // Pictures first: they load what is picked in.
-    if (!wanted && !goesOn) picking = std::exchange(wantedPick_, std::nullopt);
+    if (wantedPick_ && ((!wanted_ && !goesOn) || (scene_ && sameScene(wantedPick_->arguments, sceneArguments_)))) {
+      picking = std::exchange(wantedPick_, std::nullopt);
+    }
     const bool isPicture = !picking;
+    std::optional<Wanted> wanted;
+    if (isPicture) wanted = std::exchange(wanted_, std::nullopt);
     doing_ = isPicture ? "drawing" : "picking";
     lock.unlock();
     std::exception_ptr error;
@@ -155,7 +158,7 @@ void Drawer::work(std::optional<Wanted> wanted, std::optional<Picked> picking) {
     wanted = std::exchange(again_, std::nullopt);
   }
   if (wanted) draw(*wanted);
-  if (begun_.size() == InteractiveRenderer::kFramesInFlight || (!wanted && !begun_.empty())) finish();
+  if (begun_.size() == InteractiveRenderer::kFramesInFlight || (!wanted && !begun_.empty())) finish(false);
 }
 
 // What was made of the scene.
@@ -219,6 +222,7 @@ void Drawer::choose(const RenderArguments& arguments) {
 
 void Drawer::pick(Picked& picked) {
   if (!scene_) return;
+  finishAll(false); // none is pending while it picks
   load(picked.arguments);
   choose(picked.arguments);
   const RenderOptions options = pictureOf(picked.arguments, *scene_);
@@ -250,7 +254,7 @@ void Drawer::prepare(const RenderArguments& arguments) {
     return;
   say("preparing " + arguments.method.name);
   onNews_();
-  finishAll();
+  finishAll(true);
   interactive_ = nullptr;
   renderer_.reset(); // what it holds on the device first
   if (device_.gpu() != nullptr && InteractiveRenderer::draws(arguments.method)) {
@@ -350,16 +354,17 @@ bool Drawer::begin(const Wanted& wanted) {
   const bool readsBack = !sharesImages_ || wanted.rests || wanted.beside.kind == Beside::Kind::Error;
   const auto start = std::chrono::steady_clock::now();
   if (!interactive_->draw(options, {wanted.arguments.width, wanted.arguments.height}, readsBack)) {
-    finishAll();
+    finishAll(true);
     return false;
   }
   begun_.push_back({wanted, options.view, start});
-  if (wanted.beside.kind != Beside::Kind::Nothing) finishAll(); // the other picture is drawn behind it
+  if (wanted.beside.kind != Beside::Kind::Nothing) finishAll(false); // the other picture is drawn behind it
   return true;
 }
 
-// Waits for the oldest picture that was begun.
-void Drawer::finish() {
+// Waits for the oldest picture that was begun. A superseded one, behind which another is about to be begun, is shown as
+// it is.
+void Drawer::finish(bool isSuperseded) {
   const Begun begun = std::move(begun_.front());
   begun_.pop_front();
   InteractivePicture picture = interactive_->finish();
@@ -376,20 +381,19 @@ void Drawer::finish() {
   drawn.report = std::move(picture.report);
   drawn.milliseconds = drawn.report.frameMs > 0.0 ? drawn.report.frameMs : took.count();
   drawn.warnings = scene_->warnings;
-  const bool isNewest = begun_.empty();
+  const bool isNewest = begun_.empty() && !isSuperseded;
   const bool again = isNewest && isAgain(begun.wanted, drawn.report);
+  if (isNewest && begun.wanted.rests && !again && needsExact(drawn.report)) return drawExactly(begun.wanted);
   drawBeside(begun.wanted, options, drawn);
   drawn.warnings.insert(drawn.warnings.end(), drawn.report.warnings.begin(), drawn.report.warnings.end());
-  if (isNewest && begun.wanted.rests && !again && needsExact(drawn.report)) return drawExactly(begun.wanted);
-  if (again) {
-    again_ = begun.wanted;
-    drawn.wanted.rests = false; // not yet
-  }
+  if (again) again_ = begun.wanted;
+  drawn.wanted.rests = begun.wanted.rests && isNewest && !again;
+  drawn.isFinal = drawn.wanted.rests;
   give(std::move(drawn));
 }
 
-void Drawer::finishAll() {
-  while (!begun_.empty()) finish();
+void Drawer::finishAll(bool isSuperseded) {
+  while (!begun_.empty()) finish(isSuperseded);
 }
 
 // Whether a picture lacks surfaces for which there will be room when it is drawn again.

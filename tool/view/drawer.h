@@ -80,6 +80,7 @@ struct Drawn {
   Picture beside;                        // empty: nothing
   double largest = 0.0;                  // number that `beside` shows: surfaces, or 1/255
   FrameReport report;
+  bool isFinal = true;       // it is what `render` draws; else it may lack surfaces for which there was no room
   double milliseconds = 0.0; // for the picture, without what had to be made once
   std::vector<std::string> warnings;
 };
@@ -123,8 +124,8 @@ class Drawer {
   void draw(const Wanted& wanted);
   RenderOptions optionsOf(const Wanted& wanted) const;
   bool begin(const Wanted& wanted);
-  void finish();
-  void finishAll();
+  void finish(bool isSuperseded);
+  void finishAll(bool isSuperseded);
   bool isAgain(const Wanted& wanted, const FrameReport& report);
   void drawExactly(const Wanted& wanted);
   void give(Drawn drawn);

@@ -152,11 +152,16 @@ class Viewer {
       now_.wish = Wish::Processor;
       chooseMethod(now_, std::string(kCpuMethod));
       now_.method.api = Api::Vulkan; // of no consequence there
+      initial_.device = now_.device;
+      initial_.wish = now_.wish;
+      initial_.method = now_.method;
       open(now_);
       now = "the device was lost: the processor draws now";
     }
     asked_.reset();
     isAsked_ = false;
+    isReopened_ = drawn_.has_value();
+    drawn_.reset(); // nothing to go back to: the window's texture is gone with the device
     say(now, true);
   }
 
@@ -225,7 +230,9 @@ class Viewer {
     say({}, false);
   }
 
+  // A picture before an error: that is of what was asked for later.
   void takeNews() {
+    takePicture();
     if (const std::exception_ptr caught = drawer_->takeError()) {
       isAsked_ = false;
       rethrowIfLost(caught);
@@ -234,6 +241,8 @@ class Viewer {
       now_ = showing_;
       beside_ = drawn_->wanted.beside;
       asked_ = drawn_->wanted;
+      asked_->coarse = 1;
+      asked_->rests = true; // what did not work is not asked for again
       isNavigating_ = false;
       rotates_ = false;
       log_.happened("error", error);
@@ -244,9 +253,14 @@ class Viewer {
       log_.picked(*picked_);
       changed_ = true;
     }
+  }
+
+  void takePicture() {
     std::optional<Drawn> drawn = drawer_->take();
     if (!drawn) return;
-    isAsked_ = asked_ && drawn->wanted.number != asked_->number;
+    // A later one than asked_: it was asked for before an error of an earlier one was known.
+    if (asked_ && drawn->wanted.number > asked_->number) asked_ = drawn->wanted;
+    isAsked_ = asked_ && drawn->wanted.number < asked_->number;
     changed_ = true;
     if (drawn->image) {
       presenter_->setPicture(Presenter::Side::Picture, drawn->image);
@@ -254,7 +268,7 @@ class Viewer {
       presenter_->setPicture(Presenter::Side::Picture, drawn->picture);
     }
     if (!drawn->beside.rgba.empty()) presenter_->setPicture(Presenter::Side::Beside, drawn->beside);
-    const bool isOther = !drawn_ || drawer_->scene() != scene_;
+    const bool isOther = (!drawn_ || drawer_->scene() != scene_) && !std::exchange(isReopened_, false);
     scene_ = drawer_->scene();
     showing_ = drawn->wanted.arguments;
     if (isOther) {
@@ -493,7 +507,7 @@ class Viewer {
   void askFor(PixelSize size) {
     now_.width = size.width;
     now_.height = size.height;
-    Wanted wanted{now_, 1, beside_, !isMoving() && !isSettling(), (asked_ ? asked_->number : 0) + 1};
+    Wanted wanted{now_, 1, beside_, !isMoving() && !isSettling(), asks_ + 1};
     if (!wanted.rests) wanted.coarse = coarseness();
     const bool isSame = asked_ && asked_->coarse == wanted.coarse && asked_->beside == beside_ &&
                         renderCommand(asked_->arguments, "-") == renderCommand(now_, "-");
@@ -502,6 +516,7 @@ class Viewer {
       asked_->rests = true;
       return;
     }
+    ++asks_;
     asked_ = wanted;
     isAsked_ = true;
     isResting_ = false;
@@ -510,8 +525,7 @@ class Viewer {
 
   // Whether the picture on the screen is what was asked for, in full, and the host has its pixels.
   bool isWhole() const {
-    return drawn_ && !isAsked_ && drawn_->wanted.coarse == 1 && !drawn_->picture.rgba.empty() &&
-           (drawn_->wanted.rests || !drawn_->image);
+    return drawn_ && !isAsked_ && drawn_->wanted.coarse == 1 && !drawn_->picture.rgba.empty() && drawn_->isFinal;
   }
 
   // Whether the camera may go on by itself: as many pictures are on their way as can be.
@@ -593,12 +607,14 @@ class Viewer {
     std::string text = beside.method;
     if (beside.kind == Beside::Kind::Complexity) text = fmt::format("surfaces of a pixel: 0 to {}", drawn_->largest);
     if (beside.kind == Beside::Kind::Error) text = fmt::format("off the exact picture: 0 to {}/255", drawn_->largest);
-    if (beside.kind == Beside::Kind::Overflow) {
+    const bool isOfCounts = beside.kind == Beside::Kind::Overflow || beside.kind == Beside::Kind::Tiles;
+    if (isOfCounts && !drawn_->report.counted) {
+      text = fmt::format("{} does not count surfaces", drawn_->report.method);
+    } else if (beside.kind == Beside::Kind::Overflow) {
       text = drawn_->report.fragmentsMissing > 0
                  ? fmt::format("surfaces of pixels without room for all: 0 to {}", drawn_->largest)
                  : std::string("there was room for all surfaces");
-    }
-    if (beside.kind == Beside::Kind::Tiles) {
+    } else if (beside.kind == Beside::Kind::Tiles) {
       text =
           fmt::format("parts: {}; surfaces of a pixel in the mean: 0 to {:.1f}", drawn_->report.tiles, drawn_->largest);
     }
@@ -738,7 +754,9 @@ class Viewer {
   CutHandle cutHandle_;
   std::optional<Drawn> drawn_;
   std::optional<Wanted> asked_;
-  bool isAsked_ = false; // and not drawn yet
+  bool isAsked_ = false;    // and not drawn yet
+  bool isReopened_ = false; // the next picture is of what was shown before the device was lost
+  std::uint64_t asks_ = 0;
   bool isResting_ = false;
   std::deque<PassTimes> times_;
   double fullMilliseconds_ = 0.0;
