@@ -27,7 +27,7 @@ std::vector<std::uint8_t> drawn(const Settings& settings) {
   return host.picture();
 }
 
-// The share of the values that are further apart than `near`, of 255.
+// The share of the values that are further apart than `most`, of 255.
 double shareApart(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b, int most) {
   EXPECT_EQ(a.size(), b.size());
   std::size_t apart = 0;
@@ -35,7 +35,7 @@ double shareApart(const std::vector<std::uint8_t>& a, const std::vector<std::uin
   return static_cast<double>(apart) / static_cast<double>(a.size());
 }
 
-// Nodes round to 8 bits: a step or two are let pass.
+// Nodes round, to halves: a step or two are let pass.
 TEST(Figures, AreTheSameBySortingAsByTheLibrary) {
   for (const std::uint32_t samples : sampleCounts()) {
     const auto insertion = drawn(small(Method::Insertion, samples));

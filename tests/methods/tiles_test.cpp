@@ -165,7 +165,7 @@ TEST_F(TilesTest, TiesAreTheDevices) {
 
 TEST_F(TilesTest, SliversCoverWhatTheDeviceCovers) {
   AddedTriangles triangles(5);
-  for (int i = 0; i < 3000; ++i) { // two corners hardly apart
+  for (int i = 0; i < 1500; ++i) { // two corners hardly apart
     Numbers& numbers = triangles.numbers;
     const glm::vec2 at(numbers.between(1.0F, 127.0F), numbers.between(1.0F, 127.0F));
     const glm::vec2 near = at + glm::vec2(numbers.whole(-3, 3), numbers.whole(-3, 3)) / 256.0F;
@@ -377,6 +377,39 @@ TEST_F(TilesTest, SurfacesInOnePlaneHaveAnOrderOfTheirOwn) {
   }
 }
 
+// So many in one plane as only the largest kernel keeps, in the tiles of which there are many other triangles.
+TEST_F(TilesTest, SurfacesInOnePlaneAmongManyTriangles) {
+  Scene scene = onePlane(20);
+  const std::uint32_t dust = static_cast<std::uint32_t>(scene.materials.size());
+  addRectangle(scene, {{-0.1F, -0.1F}, {0.1F, 0.1F}, 0.5F}, unlitMaterial({0.2F, 0.9F, 0.4F, 0.05F}));
+  ASSERT_EQ(scene.materials.size(), dust + 1);
+  const Draw first = scene.draws.back();
+  Numbers numbers(7);
+  for (int i = 0; i < 1500; ++i) {
+    scene.draws.push_back(first);
+    scene.draws.back().transform = glm::translate(
+        glm::mat4(1.0F), {numbers.between(-1.0F, 1.0F), numbers.between(-1.0F, 1.0F), numbers.between(-0.9F, 0.4F)});
+  }
+  RenderOptions picture;
+  picture.width = picture.height = 16;
+  picture.view = straightView();
+  const RenderResult forward = draw("tiles", scene, picture);
+  for (const DrawOrder order : {DrawOrder::Reversed, DrawOrder::Shuffled}) {
+    EXPECT_TRUE(draw("tiles", scene, picture, order).picture.rgba == forward.picture.rgba);
+  }
+  // Registers held them.
+  EXPECT_TRUE(std::ranges::none_of(forward.report.passesMs, [](const auto& pass) { return pass.first == "sort"; }));
+  // None is missing: what only adds light has no order.
+  for (Material& material : scene.materials) {
+    material.blend = BlendMode::Additive;
+    material.transmission = 0.0F;
+    for (int c = 0; c < 3; ++c) material.baseColor[c] *= 0.2F;
+  }
+  picture.background.srgb = glm::vec3(0.0F);
+  const Picture added = draw("tiles", scene, picture).picture;
+  EXPECT_LE(largestDifference(added, draw("linked-list", scene, picture).picture), 1);
+}
+
 TEST_F(TilesTest, EverySceneIsTheSameInEveryOrder) {
   for (const std::string name : {"spheres", "mannequins", "hairball", "smoke", "flames"}) {
     SCOPED_TRACE(name);
@@ -418,7 +451,7 @@ TEST_F(TilesTest, BudgetsDoNotChangeABit) {
   BuiltinOptions options;
   options.count = 32;
   const Scene spheres = makeBuiltinScene("spheres", options);
-  const Scene deep = sheets(1100, 0.001953125F);
+  const Scene deep = sheets(5000, 0.001953125F); // more turns than any device gives blending
   RenderOptions deepPicture;
   deepPicture.width = 8;
   deepPicture.height = 24;
@@ -456,6 +489,9 @@ TEST_F(TilesTest, VerticesThatHaveNoRoomInClipSpaceAreRight) {
   BuiltinOptions options;
   options.count = 8;
   Scene scene = makeBuiltinScene("spheres", options);
+  constexpr std::uint64_t kBytes = 8 * kVertices * 16;
+  const VkDeviceSize range = gpu().properties().limits.maxStorageBufferRange;
+  if (range >= kBytes && gpu().localMemory() / 16 >= kBytes) GTEST_SKIP() << "there is room for so many";
   const RenderOptions picture = usualOptions(scene, 96, 54);
   const Picture expected = draw("tiles", scene, picture).picture;
   for (Mesh& mesh : scene.meshes) {
@@ -468,7 +504,9 @@ TEST_F(TilesTest, VerticesThatHaveNoRoomInClipSpaceAreRight) {
     mesh.texCoords0.clear();
     mesh.texCoords1.clear();
   }
-  EXPECT_LE(largestDifference(draw("tiles", scene, picture).picture, expected), 1);
+  const RenderResult drawn = draw("tiles", scene, picture);
+  EXPECT_LE(largestDifference(drawn.picture, expected), 1);
+  EXPECT_LT(drawn.report.totalBytes - drawn.report.nodesBytes, kBytes); // they were not put there
 }
 
 // ---- Several samples

@@ -40,8 +40,6 @@ constexpr Need kNeeds[] = {
      "linked-list"},
     {"tiles", [](const Gpu& gpu) { return gpu.properties().limits.maxPerStageDescriptorStorageBuffers >= 32; },
      "lets a shader reach fewer than 32 buffers", "linked-list"},
-    {"tiles", [](const Gpu& gpu) { return gpu.properties().limits.maxComputeSharedMemorySize >= 28U << 10U; },
-     "has less than 28 KiB of shared memory", "linked-list"},
     {"depth-peeling", [](const Gpu& gpu) { return gpu.features().primitiveNumbers; },
      "does not number triangles for fragment shaders", "reverse-depth-peeling"},
     {"dual-depth-peeling",

@@ -9,6 +9,7 @@ embed_tool_shader(tiles_deep_blend_constant.comp tiles_deep_blend.comp SURFACE_C
 # That keep fewer fragments in registers, or more.
 foreach(keep 8 32)
   embed_tool_shader(tiles_blend_${keep}.comp tiles_blend.comp TILES_KEEP=${keep})
+  embed_tool_shader(tiles_blend_${keep}_constant.comp tiles_blend.comp TILES_KEEP=${keep} SURFACE_CONSTANT_TEXTURES=32)
 endforeach()
 foreach(name tiles_blend tiles_deep_blend)
   embed_tool_shader(${name}_msaa.comp ${name}.comp TILES_MSAA)

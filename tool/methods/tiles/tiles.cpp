@@ -37,7 +37,9 @@
 #include "most_light.h"
 #include "shaders/tiles_blend.comp.h"
 #include "shaders/tiles_blend_32.comp.h"
+#include "shaders/tiles_blend_32_constant.comp.h"
 #include "shaders/tiles_blend_8.comp.h"
+#include "shaders/tiles_blend_8_constant.comp.h"
 #include "shaders/tiles_blend_constant.comp.h"
 #include "shaders/tiles_blend_msaa.comp.h"
 #include "shaders/tiles_blend_msaa_constant.comp.h"
@@ -211,6 +213,8 @@ PipelineConstants Tiles::shadingConstants() const {
 std::span<const std::uint32_t> Tiles::blendCode(std::uint32_t tileClass) const {
   if (geometry_.constantTextures()) {
     if (samples_ > 1) return shaders::tiles_blend_msaa_constant_comp;
+    if (tileClass == 0) return shaders::tiles_blend_8_constant_comp;
+    if (tileClass == 3) return shaders::tiles_blend_32_constant_comp;
     return shaders::tiles_blend_constant_comp;
   }
   if (samples_ > 1) return shaders::tiles_blend_msaa_comp;

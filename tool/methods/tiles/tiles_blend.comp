@@ -2,7 +2,8 @@
 // records that cover its pixel and keeps the nearest TILES_KEEP fragments in registers, as keys of depth and the
 // record's number in the tile; then it shades these from the front. Pixels that have more, and have not ended, take
 // the next in another turn. Nothing is stored but the order of what a turn has kept. A tile that takes too many turns,
-// or in which more than TILES_KEEP fragments of a pixel have one depth, is left to tiles_deep_*.comp.
+// or in which more than TILES_KEEP fragments of a pixel have one depth, as far as keys hold it, is left to
+// tiles_deep_*.comp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_nonuniform_qualifier : require

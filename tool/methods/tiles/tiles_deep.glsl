@@ -1,5 +1,5 @@
-// Tiles whose fragments are collected, sorted and blended by passes of their own: those with more records than one work
-// group sorts, and those in which a list of tiles_blend.comp is too short.
+// Tiles whose fragments are collected, sorted and blended by passes of their own: those with more than mostWalked
+// records, and those that tiles_blend.comp leaves to them.
 #ifndef VITRAIL_TOOL_TILES_DEEP_GLSL
 #define VITRAIL_TOOL_TILES_DEEP_GLSL
 

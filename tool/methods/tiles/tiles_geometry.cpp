@@ -145,7 +145,7 @@ void TilesGeometry::listTextures(const Surfaces& surfaces) {
       constantTextures_
           ? (limits.maxPerStageDescriptorSamplers < shaders::TILES_CONSTANT_TEXTURES ? 0
                                                                                      : shaders::TILES_CONSTANT_TEXTURES)
-          : std::min({limits.maxPerStageDescriptorSampledImages - 1, limits.maxPerStageDescriptorSamplers,
+          : std::min({limits.maxPerStageDescriptorSampledImages - 2, limits.maxPerStageDescriptorSamplers,
                       limits.maxDescriptorSetSampledImages});
   if (textureCount_ > most) {
     throw GpuError(

@@ -9,14 +9,13 @@ layout(set = 3, binding = 17, std430) buffer ClassBlock { TilesClasses classes; 
 
 shared uint groupPairs;
 shared uint groupFirst;
-shared uint groupMost;
 shared uint groupCount[TILES_CLASSES];
 shared uint groupList[TILES_CLASSES];
 
 void main() {
   uint thread = gl_LocalInvocationIndex;
   if (thread < TILES_CLASSES) groupCount[thread] = 0u;
-  if (thread == TILES_CLASSES) groupPairs = groupMost = 0u;
+  if (thread == TILES_CLASSES) groupPairs = 0u;
   barrier();
   uint tile = flatGroup() * 256u + thread;
   bool isRead = tile < tiles.tilesX * tiles.tilesY && hasRecords();
@@ -26,14 +25,10 @@ void main() {
   uint kind = count <= TILES_FEW ? 0u : count <= TILES_PIXELS ? 1u : count <= TILES_SHALLOW ? 2u : 3u;
   if (count > 0u) {
     place = atomicAdd(groupPairs, count);
-    atomicMax(groupMost, count);
     if (count <= tiles.mostWalked) number = atomicAdd(groupCount[kind], 1u);
   }
   barrier();
-  if (thread == 0u && groupPairs > 0u) {
-    groupFirst = atomicAdd(control.pairs, groupPairs);
-    atomicMax(control.mostRecords, groupMost);
-  }
+  if (thread == 0u && groupPairs > 0u) groupFirst = atomicAdd(control.pairs, groupPairs);
   if (thread < TILES_CLASSES && groupCount[thread] > 0u) {
     RESERVE(classes.of[thread], groupCount[thread], groupList[thread])
   }

@@ -28,8 +28,8 @@ shared ivec4 sharedCorners[TILES_GROUP];  // the first two
 shared ivec4 sharedTile[TILES_GROUP];     // the third; the first tile
 shared vec4 sharedPlane[TILES_GROUP];     // its depths at the first corner; the nearest depth
 shared uvec4 sharedSource[TILES_GROUP];   // primitive, instance; tiles in a row; draw
-shared uint sharedEnds[TILES_GROUP];      // of each triangle's candidates: tiles that it may touch
-shared uint sharedFirst;                  // place of the first candidate
+shared uint sharedEnds[TILES_GROUP];      // sums: candidates (tiles that it may touch) << 16 | records of small ones
+shared uint sharedFirst;                  // place of the first record of a small triangle
 #ifdef TILES_OF_LARGE
 shared uint sharedPieces;
 #endif

@@ -97,12 +97,11 @@ struct TilesControl {
   uint large;           // triangles
   uint pairs;           // records of tiles
   uint fragments;       // of deep tiles
-  uint mostRecords;     // of a tile
   uint mostFragments;   // of a pixel of a deep tile
   uint cutPixels;       // that the driver did not let a pass finish
   uint recordsHigh;     // how often `records` has come round
   uint fragmentsHigh;   // the same of `fragments`
-  uint controlPadding[7];
+  uint controlPadding[8];
 };
 
 #ifdef __cplusplus
