@@ -1,12 +1,13 @@
 // Move-only C++ wrappers of Vitrail's C headers: they own the handles and change nothing else. Every function is
-// documented in vulkan.h, gl.h and tiles.h. C++17 or later. VITRAIL_NO_VULKAN leaves out what needs Vulkan's headers;
-// what is of OpenGL needs no header of OpenGL's, and is there where the package has gl.h.
+// documented in vulkan.h, vulkan_raster.h, gl.h and tiles.h. C++17 or later. VITRAIL_NO_VULKAN leaves out what needs
+// Vulkan's headers; what is of OpenGL needs no header of OpenGL's, and is there where the package has gl.h.
 #pragma once
 
 #include <vitrail/tiles.h>
 #include <vitrail/types.h>
 #ifndef VITRAIL_NO_VULKAN
 #include <vitrail/vulkan.h>
+#include <vitrail/vulkan_raster.h>
 #endif
 #if __has_include(<vitrail/gl.h>)
 #include <vitrail/gl.h>
@@ -159,6 +160,45 @@ class Target {
 
  private:
   VitrailVkTarget handle_ = nullptr;
+};
+
+// Owns a VitrailVkRaster. Its context outlives it.
+class Raster {
+ public:
+  Raster() = default;
+  ~Raster() { vitrailVkDestroyRaster(handle_); }
+  Raster(Raster&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+  Raster& operator=(Raster&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+
+  // Replaces what `raster` owns. On error it owns nothing.
+  static VkResult create(const Context& context, const VitrailVkRasterDesc& desc, Raster& raster) {
+    raster = Raster();
+    return vitrailVkCreateRaster(context.handle(), &desc, &raster.handle_);
+  }
+
+  explicit operator bool() const { return handle_ != nullptr; }
+  VitrailVkRaster handle() const { return handle_; }
+  std::uint32_t bands() const { return vitrailVkRasterBands(handle_); }
+  VitrailVkRasterMemory memory() const {
+    VitrailVkRasterMemory memory{};
+    vitrailVkRasterMemory(handle_, &memory);
+    return memory;
+  }
+
+  VkResult update(std::uint64_t frame = 0) { return vitrailVkUpdateRaster(handle_, frame); }
+  VkResult resize(const VkExtent2D& extent) { return vitrailVkResizeRaster(handle_, extent); }
+  void draw(VkCommandBuffer commandBuffer, const VitrailVkRasterInfo& info) const {
+    vitrailVkCmdRaster(commandBuffer, handle_, &info);
+  }
+  VkResult readStats(std::uint64_t frame, VitrailVkRasterStats& stats) const {
+    return vitrailVkReadRasterStats(handle_, frame, &stats);
+  }
+
+ private:
+  VitrailVkRaster handle_ = nullptr;
 };
 
 } // namespace vulkan

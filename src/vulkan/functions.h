@@ -25,6 +25,7 @@ namespace vitrail {
   X(CmdDrawIndirect)                \
   X(CmdFillBuffer)                  \
   X(CmdPipelineBarrier)             \
+  X(CmdPushConstants)               \
   X(CmdSetScissor)                  \
   X(CmdSetViewport)                 \
   X(CmdUpdateBuffer)                \

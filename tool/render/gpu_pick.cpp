@@ -11,7 +11,7 @@
 #include "../gpu/submit.h"
 #include "../gpu/timers.h"
 #include "../gpu/vk.h"
-#include "../methods/linked_list/library_context.h"
+#include "../methods/shared/library_context.h"
 #include "../stage/tile_runs.h"
 #include "pick_shared.h"
 #include "shaders/collect_instance.frag.h"

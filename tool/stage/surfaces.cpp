@@ -92,7 +92,7 @@ void Surfaces::setView(const shaders::FrameData& view) {
 }
 
 void Surfaces::cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout, VkPipelineBindPoint point) const {
-  const VkDescriptorSet set = views_[view_].set.set();
+  const VkDescriptorSet set = viewSet();
   const std::uint32_t offset = 0; // of no draw
   vkCmdBindDescriptorSets(commands, point, layout, 0, 1, &set, 1, &offset);
 }

@@ -70,6 +70,7 @@ class Surfaces {
   void setClipPlanes(const Scene& scene) { list_.setClipPlanes(scene); } // as SurfaceList
 
   VkDescriptorSetLayout frameLayout() const { return views_[0].set.layout(); } // set 0
+  VkDescriptorSet viewSet() const { return views_[view_].set.set(); } // with one dynamic offset: 0 is of no draw
   // Binds set 0 for shaders that read the view and the lights alone.
   void cmdBindView(VkCommandBuffer commands, VkPipelineLayout layout,
                    VkPipelineBindPoint point = VK_PIPELINE_BIND_POINT_GRAPHICS) const;

@@ -11,6 +11,7 @@
 #include "../../opengl/bindings.h"
 #include "../gl_method.h"
 #include "../methods.h"
+#include "../shared/library_log.h"
 #include "files/gl_collect.frag.h"
 #include "files/gl_collect_media.frag.h"
 #include "gl_media.h"

@@ -12,7 +12,7 @@
 #include "../../stage/picture_images.h"
 #include "../method.h"
 #include "../methods.h"
-#include "library_context.h"
+#include "../shared/library_context.h"
 #include "list_picture.h"
 #include "media.h"
 #include "plain_resolve.h"

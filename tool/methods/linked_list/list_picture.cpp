@@ -8,6 +8,7 @@
 
 #include "../../gpu/gpu_error.h"
 #include "../../stage/tile_runs.h"
+#include "../shared/library_log.h"
 
 namespace vitrail::tool {
 
@@ -19,10 +20,6 @@ constexpr std::uint64_t kNodesPerPixel = 4;
 constexpr std::uint64_t kLargestGuess = std::uint64_t{1} << 24U;
 
 } // namespace
-
-void rememberError(VitrailLogSeverity severity, const char* message, void* reason) {
-  if (severity == VITRAIL_LOG_ERROR) *static_cast<std::string*>(reason) = message;
-}
 
 void requireWalk(const MethodOptions& options) {
   if (options.nodeCapacity == 0 && options.stencilMark == StencilMark::On) return;

@@ -109,7 +109,4 @@ class ListPicture {
 void requireWalk(const MethodOptions& options);
 void requireMark(const MethodOptions& options, bool drawn);
 
-// For VitrailLog: keeps the last error in `reason`, a std::string.
-void rememberError(VitrailLogSeverity severity, const char* message, void* reason);
-
 } // namespace vitrail::tool

@@ -1,4 +1,4 @@
-// The scene's draws for compute shaders: indices, vertices, instances. Set 2 of the method tiles.
+// The scene's draws for compute shaders: vertices, instances, materials. Set 2 of the method tiles.
 #ifndef VITRAIL_TOOL_TILES_GEOMETRY_GLSL
 #define VITRAIL_TOOL_TILES_GEOMETRY_GLSL
 
@@ -12,26 +12,16 @@ layout(set = 2, binding = 2, std430) readonly buffer TangentBlock { uint tangent
 layout(set = 2, binding = 3, std430) readonly buffer TexCoord0Block { float texCoords0[]; };
 layout(set = 2, binding = 4, std430) readonly buffer TexCoord1Block { float texCoords1[]; };
 layout(set = 2, binding = 5, std430) readonly buffer ColorBlock { uint colors[]; };
-layout(set = 2, binding = 6, std430) readonly buffer IndexBlock { uint indices[]; };
-layout(set = 2, binding = 7, std430) readonly buffer InstanceBlock { vec4 instanceRows[]; };
-layout(set = 2, binding = 8, std430) readonly buffer MaterialsBlock { TilesMaterial materials[]; };
-layout(set = 2, binding = 9, std430) readonly buffer DrawBlock { TilesDraw draws[]; };
-layout(set = 2, binding = 10, std430) readonly buffer InstanceDrawBlock { uint drawOfInstance[]; }; // and its source
+layout(set = 2, binding = 6, std430) readonly buffer InstanceBlock { vec4 instanceRows[]; };
+layout(set = 2, binding = 7, std430) readonly buffer MaterialsBlock { TilesMaterial materials[]; };
+layout(set = 2, binding = 8, std430) readonly buffer DrawBlock { TilesDraw draws[]; };
 
-layout(set = 2, binding = 11, std430) readonly buffer GroupDrawBlock { uint drawOfGroup[]; }; // that sets up triangles
-
-// Of each vertex of each instance: its place in clip space, and its normal in the world.
-#ifdef TILES_MAKES_CORNERS
-#define TILES_CORNERS writeonly
+// Of each vertex of each instance its normal in the world, where positions are kept: by the same places.
+#if VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_POSITIONS
+layout(set = 2, binding = 9, std430) writeonly buffer NormalInWorldBlock { vec4 normalsInWorld[]; };
 #else
-#define TILES_CORNERS readonly
+layout(set = 2, binding = 9, std430) readonly buffer NormalInWorldBlock { vec4 normalsInWorld[]; };
 #endif
-layout(set = 2, binding = 12, std430) TILES_CORNERS buffer CornerBlock { vec4 cornerPlaces[]; };
-layout(set = 2, binding = 13, std430) TILES_CORNERS buffer CornerNormalBlock { vec4 cornerNormals[]; };
-layout(set = 2, binding = 14, std430) readonly buffer CornerGroupBlock { uint drawOfCornerGroup[]; }; // that makes them
-
-// Whether there was room for these. Else shaders that need them compute them from the vertices.
-layout(constant_id = 8) const bool kCorners = false;
 
 struct InstancePlace {
   vec4 row0;
@@ -59,10 +49,6 @@ vec4 clipOf(vec4 world) {
   return clip;
 }
 
-uint cornerOf(uint draw, uint instance, uint vertex) {
-  return draws[draw].firstCorner + (instance - draws[draw].firstInstance) * draws[draw].vertices + vertex;
-}
-
 vec3 fromOctahedral(vec2 p) {
   vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));
   float fold = max(-v.z, 0.0);
@@ -79,7 +65,7 @@ vec3 normalOf(uint draw, uint vertex) { return fromOctahedral(unpackSnorm2x16(no
 
 // How directions turn with an instance. As surface.vert: normals by the cofactors.
 struct InstanceTurn {
-  mat3 rows; // of the transform over its largest number
+  mat3 rows;  // of the transform over its largest number
   float size; // that number
   mat3 cofactors;
   float volume;
@@ -91,23 +77,13 @@ InstanceTurn turnOf(InstancePlace place) {
   vec3 largest = max(max(abs(place.row0.xyz), abs(place.row1.xyz)), abs(place.row2.xyz));
   turn.size = max(max(largest.x, largest.y), largest.z);
   turn.rows = mat3(place.row0.xyz, place.row1.xyz, place.row2.xyz) * (turn.size > 0.0 ? 1.0 / turn.size : 0.0);
-  turn.cofactors = mat3(cross(turn.rows[1], turn.rows[2]), cross(turn.rows[2], turn.rows[0]),
-                        cross(turn.rows[0], turn.rows[1]));
+  turn.cofactors =
+      mat3(cross(turn.rows[1], turn.rows[2]), cross(turn.rows[2], turn.rows[0]), cross(turn.rows[0], turn.rows[1]));
   turn.volume = dot(turn.rows[0], turn.cofactors[0]);
   turn.mirrored = turn.volume < 0.0 ? -1.0 : 1.0;
   return turn;
 }
 
 vec3 turnedNormal(InstanceTurn turn, vec3 normal) { return turn.mirrored * (normal * turn.cofactors); }
-
-// What a draw consists of: 3 corners a triangle, 2 a line, 1 a point. Lines and points are drawn as two triangles each.
-uint cornersOf(uint features) {
-  uint kind = features & FEATURE_SOLID;
-  return kind == FEATURE_LINES ? 2u : kind == FEATURE_POINTS ? 1u : 3u;
-}
-// Where the indices of one of its triangles begin.
-uint firstIndexOf(uint draw, uint corners, uint primitive) {
-  return draws[draw].firstIndex + (corners == 3u ? 3u * primitive : corners * (primitive / 2u));
-}
 
 #endif

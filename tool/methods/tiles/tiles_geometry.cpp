@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
 #include <span>
 
@@ -10,28 +9,20 @@
 
 #include "../../gpu/upload.h"
 #include "../../gpu/vk.h"
+#include "../shared/device_needs.h"
 
 namespace vitrail::tool {
 
 namespace {
 
-constexpr std::uint32_t kGeometryBindings = 15;
-constexpr std::uint64_t kMostCornerBytes = 1U << 30U; // of each of two buffers
-constexpr std::uint64_t kCornerShare = 16;            // and at most this part of the device's memory
-constexpr std::uint32_t kCornerBytes = 16;
+constexpr std::uint32_t kGeometryBindings = 10;
+// The lights are one more.
+static_assert(kGeometryBindings + 1 + VITRAIL_VK_RASTER_STORAGE_BUFFERS <= kTilesBuffers);
+constexpr std::uint64_t kMostPositionBytes = 1U << 30U; // of normals, too
+constexpr std::uint64_t kPositionShare = 16;            // and at most this part of the device's memory
+constexpr std::uint32_t kPositionBytes = 16;
 constexpr VkBufferUsageFlags kTableUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr Access kTableRead{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT};
-
-// Of the work groups of all draws, of which each has its first, that of each.
-std::vector<std::uint32_t> drawsOfGroups(std::span<const shaders::TilesDraw> draws,
-                                         std::uint32_t shaders::TilesDraw::*first, std::uint32_t groups) {
-  std::vector<std::uint32_t> ofGroups(std::max(groups, 1U));
-  for (std::uint32_t i = 0; i < draws.size() && groups > 0; ++i) {
-    const std::uint32_t end = i + 1 < draws.size() ? draws[i + 1].*first : groups;
-    std::fill(ofGroups.begin() + draws[i].*first, ofGroups.begin() + end, i);
-  }
-  return ofGroups;
-}
 
 template <typename Value>
 GpuBuffer uploadTable(Gpu& gpu, const std::vector<Value>& values, const char* name) {
@@ -56,7 +47,7 @@ TilesGeometry::TilesGeometry(const MethodHost& host)
                        std::pair(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VkShaderStageFlags{VK_SHADER_STAGE_COMPUTE_BIT})),
            "tiles geometry") {
   listDraws(host.surfaces);
-  planCorners();
+  planPositions();
   listTextures(host.surfaces);
   makeTextureLayout();
   makeTextureSet();
@@ -65,61 +56,61 @@ TilesGeometry::TilesGeometry(const MethodHost& host)
 
 void TilesGeometry::listDraws(const Surfaces& surfaces) {
   const GpuScene& scene = surfaces.scene();
-  std::uint64_t groups = 0;
   for (const GpuDraw& draw : scene.transparentDraws()) {
-    shaders::TilesDraw item{};
     const std::uint32_t kind = draw.features & shaders::FEATURE_SOLID;
-    item.triangles = kind == shaders::FEATURE_LINES    ? draw.indexCount / 2 * 2
-                     : kind == shaders::FEATURE_POINTS ? draw.indexCount * 2
-                                                       : draw.indexCount / 3;
-    if (item.triangles == 0) continue;
-    item.firstGroup = static_cast<std::uint32_t>(groups);
+    const std::uint32_t triangles = kind == shaders::FEATURE_LINES    ? draw.indexCount / 2 * 2
+                                    : kind == shaders::FEATURE_POINTS ? draw.indexCount * 2
+                                                                      : draw.indexCount / 3;
+    if (triangles == 0) continue;
+    const VertexPlace& place = scene.streams().place(draw.mesh);
+    VitrailVkRasterDraw item{};
+    item.count = draw.indexCount;
+    item.instanceCount = draw.instanceCount;
     item.firstIndex = draw.firstIndex;
     item.firstInstance = draw.firstInstance;
-    item.instances = draw.instanceCount;
-    item.materialNumber = draw.material;
-    item.features = draw.features;
-    item.mirrored = draw.mirrored ? 1 : 0;
-    const VertexPlace& place = scene.streams().place(draw.mesh);
+    item.vertexCount = place.vertices;
+    if (kind == shaders::FEATURE_LINES) item.flags |= VITRAIL_VK_RASTER_LINES;
+    if (kind == shaders::FEATURE_POINTS) item.flags |= VITRAIL_VK_RASTER_POINTS;
+    if (draw.mirrored) item.flags |= VITRAIL_VK_RASTER_FRONT_CLOCKWISE;
+    rasterList_.push_back(item);
+    shaders::TilesDraw looked{};
+    looked.materialNumber = draw.material;
+    looked.features = draw.features;
     for (std::uint32_t i = 0; i < shaders::TILES_STREAMS; ++i) {
-      item.firstWords[i] = static_cast<std::uint32_t>(place.offsets.at(i) / sizeof(std::uint32_t));
-      item.vertexWords[i] = static_cast<std::uint32_t>(place.strides.at(i) / sizeof(std::uint32_t));
+      looked.firstWords[i] = static_cast<std::uint32_t>(place.offsets.at(i) / sizeof(std::uint32_t));
+      looked.vertexWords[i] = static_cast<std::uint32_t>(place.strides.at(i) / sizeof(std::uint32_t));
     }
-    item.vertices = place.vertices;
-    const std::uint64_t triangles = std::uint64_t{item.triangles} * item.instances;
-    triangles_ += triangles;
-    groups += (triangles + shaders::TILES_GROUP - 1) / shaders::TILES_GROUP;
+    list_.push_back(looked);
+    triangles_ += std::uint64_t{triangles} * draw.instanceCount;
+    vertices_ += std::uint64_t{place.vertices} * draw.instanceCount;
+    instances_ += draw.instanceCount;
     anyFeatures_ |= draw.features;
     allFeatures_ &= draw.features;
-    list_.push_back(item);
   }
-  // The primitive has 31 bits, and the number of a thread 32.
-  if (triangles_ > std::numeric_limits<std::uint32_t>::max() / 2) {
+  constexpr std::uint64_t kMost = 1U << 30U; // what the library draws at once, and what it sees of a draw
+  if (triangles_ > kMost) {
     throw GpuError(
         fmt::format("the method tiles draws at most {} transparent triangles, and the model has {}: use "
                     "--method linked-list",
-                    std::numeric_limits<std::uint32_t>::max() / 2, triangles_));
+                    kMost, triangles_));
   }
-  groups_ = static_cast<std::uint32_t>(groups);
-  draws_ = static_cast<std::uint32_t>(list_.size());
-  if (list_.empty()) list_.emplace_back(); // something to bind
+  drawCount_ = static_cast<std::uint32_t>(list_.size());
+  if (list_.empty()) { // something to bind
+    list_.emplace_back();
+    rasterList_.emplace_back();
+  }
 }
 
-// Each vertex of each instance has a place among all, unless these take too much.
-void TilesGeometry::planCorners() {
-  std::uint64_t groups = 0;
-  for (std::uint32_t i = 0; i < draws_; ++i) {
-    const std::uint64_t corners = std::uint64_t{list_[i].vertices} * list_[i].instances;
-    list_[i].firstCorner = static_cast<std::uint32_t>(corners_);
-    list_[i].firstCornerGroup = static_cast<std::uint32_t>(groups);
-    corners_ += corners;
-    groups += (corners + shaders::TILES_GROUP - 1) / shaders::TILES_GROUP;
-  }
+// Each vertex of each instance has a position that is kept, unless these take too much.
+void TilesGeometry::planPositions() {
   const std::uint64_t most =
-      std::min<std::uint64_t>({kMostCornerBytes, gpu_.localMemory() / kCornerShare,
+      std::min<std::uint64_t>({kMostPositionBytes, gpu_.localMemory() / kPositionShare,
                                gpu_.properties().limits.maxStorageBufferRange, gpu_.maxAllocation()});
-  if (corners_ * kCornerBytes > most) corners_ = groups = 0;
-  cornerGroups_ = static_cast<std::uint32_t>(groups);
+  keepsPositions_ = vertices_ * kPositionBytes <= most;
+}
+
+VitrailVkRasterHints TilesGeometry::hints() const {
+  return {.draws = drawCount_, .instances = instances_, .triangles = triangles_, .vertices = vertices_};
 }
 
 // Textures of all draws in one table, each once.
@@ -130,14 +121,14 @@ void TilesGeometry::listTextures(const Surfaces& surfaces) {
     if (isNew) table_.push_back(texture);
     return found->second;
   };
-  for (std::uint32_t i = 0; i < draws_; ++i) {
+  for (std::uint32_t i = 0; i < drawCount_; ++i) {
     shaders::TilesDraw& draw = list_[i];
     const TextureSet& sampled = surfaces.scene().sampled(draw.materialNumber);
     for (std::uint32_t slot = 0; slot < shaders::SLOT_COUNT; ++slot) {
       if ((draw.features & 1U << slot) != 0) draw.textures[slot] = numberOf(sampled.at(slot));
     }
   }
-  if (table_.empty() && draws_ > 0) table_.push_back(surfaces.scene().sampled(list_[0].materialNumber)[0]);
+  if (table_.empty() && drawCount_ > 0) table_.push_back(surfaces.scene().sampled(list_[0].materialNumber)[0]);
   textureCount_ = std::max<std::uint32_t>(static_cast<std::uint32_t>(table_.size()), 1);
   constantTextures_ = !gpu_.features().nonUniformTextures;
   const VkPhysicalDeviceLimits& limits = gpu_.properties().limits;
@@ -201,42 +192,29 @@ void TilesGeometry::makeTextureSet() {
 
 void TilesGeometry::writeSet(const Surfaces& surfaces) {
   const GpuScene& scene = surfaces.scene();
-  std::vector<std::array<std::uint32_t, 2>> ofInstances(std::max<std::size_t>(scene.instanceCount(), 1));
-  for (std::uint32_t i = 0; i < draws_; ++i) {
-    const std::uint32_t first = list_[i].firstInstance;
-    for (std::uint32_t k = first; k < first + list_[i].instances; ++k) ofInstances[k] = {i, scene.sourceOf(k)};
-  }
-  const auto ofGroups = drawsOfGroups(list_, &shaders::TilesDraw::firstGroup, groups_);
-  const auto ofCornerGroups = drawsOfGroups(list_, &shaders::TilesDraw::firstCornerGroup, cornerGroups_);
+  std::vector<std::uint32_t> orders(std::max<std::size_t>(scene.instanceCount(), 1));
+  for (std::uint32_t i = 0; i < scene.instanceCount(); ++i) orders[i] = scene.sourceOf(i);
   drawBuffer_ = uploadTable(gpu_, list_, "tiles draws");
-  groupDraws_ = uploadTable(gpu_, ofGroups, "tiles draws of groups");
-  cornerGroupDraws_ = uploadTable(gpu_, ofCornerGroups, "tiles draws of corner groups");
-  const std::uint64_t corners = std::max<std::uint64_t>(corners_, 1);
+  rasterDraws_ = uploadTable(gpu_, rasterList_, "tiles raster draws");
+  orders_ = uploadTable(gpu_, orders, "tiles orders");
   const bool areLit = (allFeatures_ & shaders::FEATURE_UNLIT) == 0;
-  cornerPlaces_ = GpuBuffer(gpu_, corners * kCornerBytes, kTableUsage, MemoryKind::Device, "tiles corners");
-  cornerNormals_ =
-      GpuBuffer(gpu_, (areLit ? corners : 1) * kCornerBytes, kTableUsage, MemoryKind::Device, "tiles corner normals");
-  instanceDraws_ = uploadTable(gpu_, ofInstances, "tiles draws of instances");
+  const std::uint64_t normals = keepsPositions_ && areLit ? std::max<std::uint64_t>(vertices_, 1) : 1;
+  normals_ = GpuBuffer(gpu_, normals * kPositionBytes, kTableUsage, MemoryKind::Device, "tiles normals");
   std::array<const GpuBuffer*, kGeometryBindings> buffers{};
   for (std::size_t i = 0; i < kStreamCount; ++i) buffers.at(i) = &scene.streams().buffer(i);
-  buffers[6] = &scene.indices();
-  buffers[7] = &scene.instances();
-  buffers[8] = &scene.materials();
-  buffers[9] = &drawBuffer_;
-  buffers[10] = &instanceDraws_;
-  buffers[11] = &groupDraws_;
-  buffers[12] = &cornerPlaces_;
-  buffers[13] = &cornerNormals_;
-  buffers[14] = &cornerGroupDraws_;
+  buffers[6] = &scene.instances();
+  buffers[7] = &scene.materials();
+  buffers[8] = &drawBuffer_;
+  buffers[9] = &normals_;
+  checkReach(gpu_, scene.indices(), "indices");
   for (std::uint32_t i = 0; i < kGeometryBindings; ++i) {
-    checkReach(gpu_, *buffers.at(i), i < kStreamCount ? "vertices" : i == 6 ? "indices" : "objects");
+    checkReach(gpu_, *buffers.at(i), i < kStreamCount ? "vertices" : "objects");
     set_.writeBuffer(i, buffers.at(i)->get(), buffers.at(i)->size());
   }
 }
 
 std::uint64_t TilesGeometry::bytes() const {
-  return drawBuffer_.size() + instanceDraws_.size() + groupDraws_.size() + cornerGroupDraws_.size() +
-         cornerPlaces_.size() + cornerNormals_.size();
+  return drawBuffer_.size() + rasterDraws_.size() + orders_.size() + normals_.size();
 }
 
 } // namespace vitrail::tool

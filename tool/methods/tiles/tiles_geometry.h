@@ -9,6 +9,8 @@
 #include "../method.h"
 #include "tiles_shared.h"
 
+#include <vitrail/vulkan_raster.h>
+
 namespace vitrail::tool {
 
 class TilesGeometry {
@@ -21,11 +23,14 @@ class TilesGeometry {
   VkDescriptorSetLayout layout() const { return set_.layout(); }
   VkDescriptorSet set() const { return set_.set(); }
 
-  std::uint32_t groups() const { return groups_; } // work groups that set up all triangles
-  std::uint64_t triangles() const { return triangles_; }
-  // Work groups that bring the vertices into clip space. 0: there is no room for that, and shaders do without.
-  std::uint32_t cornerGroups() const { return cornerGroups_; }
-  // Of the buffers that the scene does not have without this method, the corners' above all.
+  // The draws for the raster, the order of each instance at one depth, and how much there is of all.
+  std::uint32_t drawCount() const { return drawCount_; }
+  const GpuBuffer& draws() const { return rasterDraws_; }
+  const GpuBuffer& orders() const { return orders_; }
+  VitrailVkRasterHints hints() const;
+  // Whether there is room for the positions of all vertices of all instances; else shaders do without.
+  bool keepsPositions() const { return keepsPositions_; }
+  // Of the buffers that the scene does not have without this method.
   std::uint64_t bytes() const;
   std::uint32_t anyFeatures() const { return anyFeatures_; }
   std::uint32_t allFeatures() const { return allFeatures_; }
@@ -36,7 +41,7 @@ class TilesGeometry {
  private:
   void listDraws(const Surfaces& surfaces);
   void listTextures(const Surfaces& surfaces);
-  void planCorners();
+  void planPositions();
   void makeTextureLayout();
   void makeTextureSet();
   std::uint32_t texturePlaces() const { return constantTextures_ ? shaders::TILES_CONSTANT_TEXTURES : textureCount_; }
@@ -44,23 +49,22 @@ class TilesGeometry {
 
   Gpu& gpu_;
   std::vector<shaders::TilesDraw> list_;
+  std::vector<VitrailVkRasterDraw> rasterList_; // the same draws
   std::vector<std::pair<VkImageView, VkSampler>> table_;
   SingleSet set_;
   GpuBuffer drawBuffer_;
-  GpuBuffer instanceDraws_;
-  GpuBuffer groupDraws_;
-  GpuBuffer cornerPlaces_;
-  GpuBuffer cornerNormals_;
-  GpuBuffer cornerGroupDraws_;
+  GpuBuffer rasterDraws_;
+  GpuBuffer orders_;
+  GpuBuffer normals_; // in the world, where positions are kept
   Unique<VkDescriptorSetLayout> textureLayout_;
   Unique<VkDescriptorPool> texturePool_;
   VkDescriptorSet textureSet_ = VK_NULL_HANDLE;
   bool constantTextures_ = false;
-  std::uint32_t draws_ = 0;
-  std::uint32_t groups_ = 0;
-  std::uint32_t cornerGroups_ = 0;
-  std::uint64_t corners_ = 0;
+  std::uint32_t drawCount_ = 0;
+  std::uint64_t vertices_ = 0; // of all instances, and so on
   std::uint64_t triangles_ = 0;
+  std::uint32_t instances_ = 0;
+  bool keepsPositions_ = false;
   std::uint32_t anyFeatures_ = 0;
   std::uint32_t allFeatures_ = 0xffffffffU;
   std::uint32_t textureCount_ = 0;

@@ -1,6 +1,6 @@
 #include "library_context.h"
 
-#include "list_picture.h"
+#include "library_log.h"
 
 namespace vitrail::tool {
 

@@ -3,33 +3,34 @@
 // Birk, "Merge path", 2012).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "source_order.glsl"
-#include "tiles_deep.glsl"
+#define VITRAIL_SET 0
+#include "vitrail/raster/order.glsl"
+#include "vitrail/raster/deep.glsl"
 
-layout(local_size_x = TILES_GROUP) in;
+layout(local_size_x = VITRAIL_RASTER_GROUP) in;
 
 layout(push_constant) uniform PassBlock { uint pass; };
 
-const uint PART = TILES_CHUNK / TILES_GROUP;
+const uint PART = VITRAIL_RASTER_CHUNK / VITRAIL_RASTER_GROUP;
 
-uvec2 load(uint i) { return (pass & 1u) == 0u ? fragments[i] : sortedFragments[i]; }
+uvec2 load(uint i) { return (pass & 1u) == 0u ? vitrailDeepFragments[i] : vitrailSortedFragments[i]; }
 
 void store(uint i, uvec2 fragment) {
   if ((pass & 1u) == 0u) {
-    sortedFragments[i] = fragment;
+    vitrailSortedFragments[i] = fragment;
   } else {
-    fragments[i] = fragment;
+    vitrailDeepFragments[i] = fragment;
   }
 }
 
 void main() {
-  uint number = flatGroup();
-  if (number >= min(control.chunks.count, tiles.chunkCapacity)) return;
-  uvec2 chunk = chunks[number];
-  uvec4 pixel = deepPixels[chunk.x];
-  if (pixel.y == NO_PLACE) return;
-  uint run = TILES_CHUNK << pass;
-  uint at = chunk.y * TILES_CHUNK + gl_LocalInvocationIndex * PART;
+  uint number = vitrailFlatGroup();
+  if (number >= min(vitrailRasterControl.chunks.count, vitrailRaster.chunkCapacity)) return;
+  uvec2 chunk = vitrailChunks[number];
+  uvec4 pixel = vitrailDeepPixels[chunk.x];
+  if (pixel.y == VITRAIL_NO_PLACE) return;
+  uint run = VITRAIL_RASTER_CHUNK << pass;
+  uint at = chunk.y * VITRAIL_RASTER_CHUNK + gl_LocalInvocationIndex * PART;
   if (at >= pixel.x) return;
   uint firstA = at / (2u * run) * (2u * run);
   uint firstB = min(firstA + run, pixel.x);
@@ -39,7 +40,8 @@ void main() {
   uint high = min(before, firstB - firstA);
   while (low < high) { // how many of run A come before
     uint middle = (low + high) / 2u;
-    bool aIsFirst = !fragmentBefore(load(pixel.y + firstB + before - 1u - middle), load(pixel.y + firstA + middle));
+    bool aIsFirst =
+        !vitrailFragmentBefore(load(pixel.y + firstB + before - 1u - middle), load(pixel.y + firstA + middle));
     if (aIsFirst) {
       low = middle + 1u;
     } else {
@@ -49,7 +51,7 @@ void main() {
   uint a = firstA + low;
   uint b = firstB + before - low;
   for (uint i = at; i < min(at + PART, end); ++i) {
-    bool fromA = a < firstB && (b >= end || !fragmentBefore(load(pixel.y + b), load(pixel.y + a)));
+    bool fromA = a < firstB && (b >= end || !vitrailFragmentBefore(load(pixel.y + b), load(pixel.y + a)));
     store(pixel.y + i, load(pixel.y + (fromA ? a : b)));
     if (fromA) {
       ++a;

@@ -1,0 +1,82 @@
+// Records of a tile, VITRAIL_RASTER_PIXELS at a time, by a work group with a thread for each pixel: a thread finds out
+// which of them cover its pixel.
+#extension GL_KHR_shader_subgroup_shuffle : require
+#ifndef VITRAIL_RASTER_BATCH_GLSL
+#define VITRAIL_RASTER_BATCH_GLSL
+
+#include "samples.glsl"
+
+shared uint vitrailBatchMasks[2][VITRAIL_RASTER_PIXELS]; // the pixels that each covers
+shared vec4 vitrailBatchPlanes[VITRAIL_RASTER_PIXELS];
+// How much nearer than on its plane each may be, anywhere in the tile.
+shared float vitrailBatchSlacks[VITRAIL_RASTER_PIXELS];
+
+uint vitrailThread; // set by main()
+
+ivec2 vitrailFirstPixel(uint tile) {
+  return ivec2(tile % vitrailRaster.tilesX, tile / vitrailRaster.tilesX) * 8 + ivec2(0, vitrailRaster.top);
+}
+bool vitrailIsInside(ivec2 pixel) { return pixel.x < int(vitrailRaster.width) && pixel.y < int(vitrailRaster.bottom); }
+
+// Each vitrailThread loads one, or none, of the tile with that first pixel. A barrier has to come before and after.
+void vitrailLoadBatch(bool any_, uint record, ivec2 corner) {
+  uvec2 mask = any_ ? vitrailRecords[2u * record].xy : uvec2(0u);
+  if (any_) {
+    vec4 plane = uintBitsToFloat(vitrailRecords[2u * record + 1u]);
+    float slack = vitrailDepthSlack(plane, corner + 7);
+    if (VITRAIL_RASTER_SAMPLES > 1u) slack += 0.5 * (abs(plane.y) + abs(plane.z));
+    vitrailBatchPlanes[vitrailThread] = plane;
+    vitrailBatchSlacks[vitrailThread] = slack;
+  }
+  vitrailBatchMasks[0][vitrailThread] = mask.x;
+  vitrailBatchMasks[1][vitrailThread] = mask.y;
+}
+
+// With VITRAIL_RASTER_SHUFFLES threads are side by side in subgroups of at least 32 that can hand each other words.
+// Turns 32 words of a subgroup by the diagonal: bit i of word k is bit k of word i (Warren, "Hacker's Delight", 7-3).
+uint vitrailTransposed(uint word) {
+  uint lane = vitrailThread & 31u;
+  uint low = 0xffffu;
+  for (uint step = 16u; step != 0u; step >>= 1) {
+    uint other = subgroupShuffleXor(word, step);
+    word = (lane & step) == 0u ? (word & low) | (other & low) << step : (other >> step & low) | (word & ~low);
+    low ^= low << (step >> 1);
+  }
+  return word;
+}
+
+// Whether a fragment of a batch is behind the opaque surfaces at all samples, of which the farthest is given.
+bool vitrailIsHidden(uint inBatch, float depth, float farthest) {
+  return depth + vitrailBatchSlacks[inBatch] < farthest;
+}
+
+// Those that cover the vitrailThread's pixel, a bit each. All threads together.
+uvec2 vitrailCovering() {
+  uint half_ = vitrailThread >> 5;
+  if (VITRAIL_RASTER_SHUFFLES) {
+    uint lane = vitrailThread & 31u;
+    return uvec2(vitrailTransposed(vitrailBatchMasks[half_][lane]),
+                 vitrailTransposed(vitrailBatchMasks[half_][32u + lane]));
+  }
+  uint bit = vitrailThread & 31u;
+  uvec2 bits = uvec2(0u);
+  for (uint i = 0u; i < 32u; ++i) {
+    bits.x |= (vitrailBatchMasks[half_][i] >> bit & 1u) << i;
+    bits.y |= (vitrailBatchMasks[half_][32u + i] >> bit & 1u) << i;
+  }
+  return bits;
+}
+
+uint vitrailFirstBit(uvec2 bits) { return bits.x != 0u ? uint(findLSB(bits.x)) : 32u + uint(findLSB(bits.y)); }
+
+uint vitrailTakeBit(inout uvec2 bits) {
+  uint first = vitrailFirstBit(bits);
+  if (bits.x != 0u) {
+    bits.x &= bits.x - 1u;
+  } else {
+    bits.y &= bits.y - 1u;
+  }
+  return first;
+}
+
+#endif

@@ -1,0 +1,233 @@
+// Sorts and blends the fragments of a tile, a work group a tile and a thread a pixel. A thread goes through the
+// records that cover its pixel and keeps the nearest VITRAIL_RASTER_KEEP fragments in registers, as keys of depth
+// and the record's number in the tile; then it shades these from the front. Pixels that have more, and have not ended,
+// take the next in another turn. Nothing is stored but the order of what a turn has kept. A tile that takes too many
+// turns, or in which more than VITRAIL_RASTER_KEEP fragments of a pixel have one depth, as far as keys hold it, is left
+// to the passes of deep tiles.
+#ifndef VITRAIL_RASTER_BLEND_GLSL
+#define VITRAIL_RASTER_BLEND_GLSL
+
+#include "batch.glsl"
+#include "nearest.glsl"
+#include "deep.glsl"
+#include "light.glsl"
+
+layout(local_size_x = VITRAIL_RASTER_PIXELS) in;
+
+
+layout(VITRAIL_RASTER_BOUND(17), std430) readonly buffer VitrailTileClassBlock {
+  VitrailRasterTileClasses vitrailTileClasses;
+};
+
+shared uint vitrailKeptOrder[VITRAIL_RASTER_KEEP / 2u * VITRAIL_RASTER_PIXELS]; // numbers of kept records, two a word
+shared uint vitrailGoesOn[2]; // in turns
+shared uint vitrailTooShort;
+
+uint vitrailFirstPair; // of the tile
+uint vitrailAlikeFirst; // of the fragments that are blended
+ivec2 vitrailInTile;
+
+// Of the i-th fragment that was kept: the number of its record in the tile.
+uint vitrailOrderAt(uint i) {
+  return vitrailKeptOrder[(i >> 1) * VITRAIL_RASTER_PIXELS + vitrailThread] >> (16u * (i & 1u)) & 0xffffu;
+}
+void vitrailSetOrder(uint i, uint number) {
+  uint shift = 16u * (i & 1u);
+  uint at = (i >> 1) * VITRAIL_RASTER_PIXELS + vitrailThread;
+  vitrailKeptOrder[at] = (vitrailKeptOrder[at] & ~(0xffffu << shift)) | number << shift;
+}
+
+uint vitrailRecordAt(uint number) { return vitrailPairs[vitrailFirstPair + number].y; }
+uint vitrailAlikeRecord(uint i) { return vitrailRecordAt(vitrailOrderAt(vitrailAlikeFirst + i)); }
+VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel) {
+  uint number = vitrailOrderAt(vitrailAlikeFirst + i);
+  uvec2 pair = vitrailPairs[vitrailFirstPair + number];
+  return vitrailSurfaceOf(vitrailRecords[2u * pair.y].zw, pair.x, pixel);
+}
+
+uint vitrailExactKey(uint number) {
+  vec4 plane = uintBitsToFloat(vitrailRecords[2u * vitrailRecordAt(number) + 1u]);
+  return vitrailDistance(vitrailDepthOn(plane, vitrailInTile));
+}
+bool vitrailIsBefore(uint a, uint b) {
+  uint keyA = vitrailExactKey(a);
+  uint keyB = vitrailExactKey(b);
+  return keyA < keyB || (keyA == keyB && vitrailSourceBefore(vitrailRecordAt(a), vitrailRecordAt(b)));
+}
+
+uint vitrailNumberBits; // of keys, which hold as much of the depth as there is room for above the record's number
+uint vitrailDepthPart(uint key) { return key >> vitrailNumberBits; }
+
+// Takes one of a batch's fragments that cover the pixel, or none where there is none any more.
+#define VITRAIL_TAKE_KEY(i) { \
+  bool isLow = bits.x != 0u; \
+  uint word = isLow ? bits.x : bits.y; \
+  uint number = uint(findLSB(word)) + (isLow ? 0u : 32u); \
+  bool isThere = word != 0u; \
+  word &= word - 1u; \
+  if (isLow) bits.x = word; else bits.y = word; \
+  uint inBatch = number & (VITRAIL_RASTER_PIXELS - 1u); \
+  float depth = vitrailDepthOn(vitrailBatchPlanes[inBatch], vitrailInTile); \
+  uint key = (vitrailDistance(depth) >> (vitrailNumberBits - 2u)) << vitrailNumberBits | (base + number); \
+  if (key < from || vitrailIsHidden(inBatch, depth, farthest)) isThere = false; \
+  vitrailNewKeys[i] = isThere ? key : VITRAIL_NO_FRAGMENT; \
+}
+
+// Finds the nearest fragments of a pixel whose keys are not below `from`: the nearest key of those that were left.
+uint vitrailFindNearest(uint count, uint from, ivec2 corner, float farthest, bool ended, bool isFirst) {
+  uint left = VITRAIL_NO_FRAGMENT;
+  bool isEmpty = true;
+#define VITRAIL_FORGET(i) vitrailNearestKeys[i] = VITRAIL_NO_FRAGMENT;
+  VITRAIL_EACH_KEPT(VITRAIL_FORGET)
+  uint base = 0u;
+  for (; base < count; base += VITRAIL_RASTER_PIXELS) {
+    if (isFirst || !VITRAIL_RASTER_ONE_BATCH) {
+      if (!isFirst || base > 0u) barrier(); // all have left the last batch
+      uint number = base + vitrailThread;
+      vitrailLoadBatch(number < count, number < count ? vitrailRecordAt(number) : 0u, corner);
+      barrier();
+    }
+    uvec2 bits = vitrailCovering();
+    if (ended) bits = uvec2(0u);
+    while ((bits.x | bits.y) != 0u) {
+      VITRAIL_TAKE_KEY(0) VITRAIL_TAKE_KEY(1) VITRAIL_TAKE_KEY(2) VITRAIL_TAKE_KEY(3)
+      vitrailNewKeys[4] = vitrailNewKeys[5] = vitrailNewKeys[6] = vitrailNewKeys[7] = VITRAIL_NO_FRAGMENT;
+      if ((bits.x | bits.y) != 0u) {
+        VITRAIL_TAKE_KEY(4) VITRAIL_TAKE_KEY(5) VITRAIL_TAKE_KEY(6) VITRAIL_TAKE_KEY(7)
+      }
+      vitrailSortNewKeys();
+      if (isEmpty) {
+#define VITRAIL_TAKE_NEW(i) vitrailNearestKeys[i] = vitrailNewKeys[i];
+        VITRAIL_EACH_OF_8(VITRAIL_TAKE_NEW, 0)
+        isEmpty = false;
+      } else {
+        left = min(left, vitrailMergeNewKeys());
+      }
+    }
+    if ((bits.x | bits.y) != 0u) vitrailTooShort = 1u; // the driver has ended the loop
+  }
+  if (base < count) vitrailTooShort = 1u; // as above
+  return left;
+}
+
+// Puts fragments whose keys hold the same depth in order.
+void vitrailSettle(uint ties, uint count) {
+  for (uint i = 1u; i < count; ++i) {
+    for (uint k = i; k > 0u && (ties >> (k - 1u) & 1u) != 0u; --k) {
+      uint a = vitrailOrderAt(k - 1u);
+      uint b = vitrailOrderAt(k);
+      if (vitrailIsBefore(a, b)) break;
+      vitrailSetOrder(k - 1u, b);
+      vitrailSetOrder(k, a);
+    }
+  }
+}
+
+// How many fragments from the i-th on have one depth.
+uint vitrailAlikeFrom(uint i, uint ties, uint count) {
+  uint alike = 1u;
+  if ((ties >> i & 1u) == 0u) return alike;
+  uint key = vitrailExactKey(vitrailOrderAt(i));
+  while (i + alike < count && (ties >> (i + alike - 1u) & 1u) != 0u &&
+         vitrailExactKey(vitrailOrderAt(i + alike)) == key) {
+    ++alike;
+  }
+  return alike;
+}
+
+void main() {
+  vitrailThread = gl_LocalInvocationIndex;
+  uint place = vitrailFlatGroup();
+  if (place >= vitrailTileClasses.of[VITRAIL_RASTER_CLASS].count) return;
+  uint tile = vitrailTileList[VITRAIL_RASTER_CLASS * vitrailRaster.tilesX * vitrailRaster.tilesY + place];
+  uint count = vitrailTileRecords[tile].x;
+  vitrailFirstPair = vitrailTileRecords[tile].y;
+  vitrailInTile = ivec2(vitrailThread & 7u, vitrailThread >> 3);
+  ivec2 corner = vitrailFirstPixel(tile);
+  ivec2 pixel = corner + vitrailInTile;
+  bool inside = vitrailIsInside(pixel);
+  if (!inside) pixel = ivec2(0);
+  VitrailPixelLight light = vitrailLightBehind(pixel);
+  float farthest = vitrailFarthestDepth(pixel);
+  vitrailNumberBits = max(uint(findMSB(max(count, 2u) * 2u - 1u)), 2u); // keys of depths have 30
+  bool isEmpty = true;
+  bool ended = !inside;
+  bool isFirst = true;
+  uint from = 0u;
+  if (vitrailThread == 0u) {
+    vitrailTooShort = 0u;
+    vitrailGoesOn[0] = 0u;
+  }
+  uint batches = (count + VITRAIL_RASTER_PIXELS - 1u) / VITRAIL_RASTER_PIXELS;
+  uint turns = max(vitrailRaster.mostVisits / batches, 1u);
+  for (uint i = 0u; i < turns; ++i) {
+    uint turn = i & 1u;
+    uint left = vitrailFindNearest(count, from, corner, farthest, ended, isFirst);
+    isFirst = false;
+    // All of a depth that some were left of come in the next turn.
+    uint end = left == VITRAIL_NO_FRAGMENT ? VITRAIL_NO_FRAGMENT : vitrailDepthPart(left) << vitrailNumberBits;
+    uint kept = 0u;
+    uint ties = 0u;
+    uint numbers = (1u << vitrailNumberBits) - 1u;
+#define VITRAIL_AFTER(i) (i + 1 < int(VITRAIL_RASTER_MOST_KEPT) ? i + 1 : i)
+#define VITRAIL_COUNT_KEPT(i) \
+    if (vitrailNearestKeys[i] < end) ++kept; \
+    if (i + 1 < VITRAIL_RASTER_KEEP && vitrailNearestKeys[VITRAIL_AFTER(i)] != VITRAIL_NO_FRAGMENT && \
+        vitrailDepthPart(vitrailNearestKeys[i]) == vitrailDepthPart(vitrailNearestKeys[VITRAIL_AFTER(i)])) { \
+      ties |= 1u << i; \
+    }
+    VITRAIL_EACH_KEPT(VITRAIL_COUNT_KEPT)
+#define VITRAIL_STORE_KEPT(i) \
+    if ((i & 1) == 0) \
+      vitrailKeptOrder[i / 2 * VITRAIL_RASTER_PIXELS + vitrailThread] = \
+          (vitrailNearestKeys[i] & numbers) | (vitrailNearestKeys[i | 1] & numbers) << 16;
+    VITRAIL_EACH_KEPT(VITRAIL_STORE_KEPT)
+    if (ties != 0u) vitrailSettle(ties, kept);
+    uint k = 0u;
+#ifndef VITRAIL_MULTISAMPLED // of several samples it came out slower
+    // Up to the first that has the depth of another, which most pixels have not: nothing waits for what these take.
+    for (; k < kept && !ended; ++k) {
+      if ((ties >> k & 1u) != 0u && vitrailAlikeFrom(k, ties, kept) > 1u) break;
+      vitrailAlikeFirst = k;
+      vitrailBlendAlike(light, pixel, vitrailThread, 1u);
+      isEmpty = false;
+      if (vitrailHasEnough(light)) ended = true;
+    }
+#endif
+    uint singles = 0u; // at one depth, more than whose order their colours decide
+    while (k < kept && !ended) {
+      uint alike = singles > 0u ? 1u : vitrailAlikeFrom(k, ties, kept);
+      if (alike > VITRAIL_RASTER_TIES) singles = alike;
+      if (singles > 0u) {
+        --singles;
+        alike = 1u;
+      }
+      vitrailAlikeFirst = k;
+      vitrailBlendAlike(light, pixel, vitrailThread, alike);
+      isEmpty = false;
+      k += alike;
+      if (vitrailHasEnough(light)) ended = true;
+    }
+    if (k < kept && !ended) vitrailTooShort = 1u; // as above
+    if (left == VITRAIL_NO_FRAGMENT) ended = true;
+    if (!ended && kept == 0u) { // more than there is room for have one depth
+      vitrailTooShort = 1u;
+      ended = true;
+    }
+    from = end;
+    if (!ended) vitrailGoesOn[turn] = 1u;
+    barrier();
+    if (vitrailGoesOn[turn] == 0u) break;
+    if (vitrailThread == 0u) vitrailGoesOn[turn ^ 1u] = 0u;
+    barrier();
+  }
+  if (!ended) vitrailTooShort = 1u; // too many turns, or as above
+  barrier();
+  if (vitrailTooShort != 0u) {
+    if (vitrailThread == 0u) vitrailAddDeep(tile, count);
+    return;
+  }
+  if (inside && !isEmpty) vitrailBlendOver(pixel, light);
+}
+
+#endif

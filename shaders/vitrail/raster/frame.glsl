@@ -1,0 +1,124 @@
+// What the passes of the rasteriser for GPUs hand each other.
+#ifndef VITRAIL_RASTER_FRAME_GLSL
+#define VITRAIL_RASTER_FRAME_GLSL
+
+#include "layout.h"
+
+#ifndef VITRAIL_SET
+#error VITRAIL_SET is not defined: the number of the raster's descriptor set, behind those of VitrailVkRasterDesc
+#endif
+
+// Specialization constants that the library sets.
+layout(constant_id = 1710) const uint VITRAIL_RASTER_SAMPLES = 1u;
+layout(constant_id = 1711) const bool VITRAIL_RASTER_SHUFFLES = false; // batch.glsl
+layout(constant_id = 1712) const bool VITRAIL_RASTER_POSITIONS = false; // are kept
+layout(constant_id = 1713) const uint VITRAIL_RASTER_KEEP = 16u; // nearest.glsl: 8, 16, 32
+layout(constant_id = 1714) const bool VITRAIL_RASTER_ONE_BATCH = false; // blend.glsl
+layout(constant_id = 1715) const uint VITRAIL_RASTER_CLASS = 0u; // of tiles
+layout(constant_id = 1716) const uint VITRAIL_RASTER_BLENDS = 15u; // a bit for each that is drawn
+layout(constant_id = 1717) const bool VITRAIL_RASTER_ONLY_TRIANGLES = false;
+layout(constant_id = 1718) const bool VITRAIL_RASTER_NEAREST_IS_ZERO = false;
+layout(constant_id = 1719) const uint VITRAIL_RASTER_INDEX_BYTES = 4u; // 2, 4, or 0: there are none
+
+#define VITRAIL_RASTER_BOUND(number) set = VITRAIL_SET, binding = number
+
+layout(VITRAIL_RASTER_BOUND(0), std140) uniform VitrailRasterFrameBlock { VitrailRasterFrame vitrailRaster; };
+layout(VITRAIL_RASTER_BOUND(1), std430) buffer VitrailRasterControlBlock { VitrailRasterControl vitrailRasterControl; };
+// Of each tile: how many records it has, and where its pairs begin.
+layout(VITRAIL_RASTER_BOUND(2), std430) buffer VitrailTileRecordBlock { uvec2 vitrailTileRecords[]; };
+// Two for a record, which is a triangle in a tile: the pixels that it covers, the primitive (and in the highest bit
+// whether its front shows) and the item; the depth at the middle of the first pixel, what pixels to the right and down
+// add, and the nearest depth.
+layout(VITRAIL_RASTER_BOUND(3), std430) buffer VitrailRecordBlock { uvec4 vitrailRecords[]; };
+// Of each record the tile (or VITRAIL_NO_TILE), which one it is there, and its draw.
+layout(VITRAIL_RASTER_BOUND(4), std430) buffer VitrailRecordPlaceBlock { uint vitrailRecordPlaces[]; };
+// The records of each tile: the draw, and the record.
+layout(VITRAIL_RASTER_BOUND(5), std430) buffer VitrailPairBlock { uvec2 vitrailPairs[]; };
+layout(VITRAIL_RASTER_BOUND(6), std430) buffer VitrailLargeBlock { uvec2 vitrailLarge[]; }; // primitive and item
+// Tiles by class: each has room for all.
+layout(VITRAIL_RASTER_BOUND(7), std430) buffer VitrailTileListBlock { uint vitrailTileList[]; };
+// Of each record and sample the pixels whose sample the triangle covers, where there are several samples.
+layout(VITRAIL_RASTER_BOUND(19), std430) buffer VitrailSampleBlock { uvec2 vitrailSampleMasks[]; };
+
+// The draws: places, and of each work group and each item the draw.
+layout(VITRAIL_RASTER_BOUND(21), std430) buffer VitrailDrawPlaceBlock { VitrailRasterPlace vitrailDrawPlaces[]; };
+layout(VITRAIL_RASTER_BOUND(22), std430) buffer VitrailRasterStartBlock { VitrailRasterStart vitrailRasterStart; };
+layout(VITRAIL_RASTER_BOUND(23), std430) buffer VitrailGroupBlock { uint vitrailDrawOfGroup[]; };
+layout(VITRAIL_RASTER_BOUND(24), std430) buffer VitrailVertexGroupBlock { uint vitrailDrawOfVertexGroup[]; };
+layout(VITRAIL_RASTER_BOUND(25), std430) buffer VitrailItemBlock { uint vitrailDrawOfItem[]; };
+layout(VITRAIL_RASTER_BOUND(26), std430) readonly buffer VitrailIndexBlock { uint vitrailIndices[]; };
+layout(VITRAIL_RASTER_BOUND(28), std430) readonly buffer VitrailOrderBlock { uint vitrailOrders[]; }; // of instances
+
+const uint VITRAIL_NO_TILE = 0xffffffffu;
+const uint VITRAIL_NO_FRAGMENT = 0xffffffffu; // the key of one that is hidden
+
+// Depths to keys that grow away from the viewer. 1 is nearest.
+uint vitrailDistance(float depth) { return 0x3f800000u - floatBitsToUint(min(max(depth, 0.0), 1.0)); }
+
+// Takes `more` work groups of an indirect dispatch in rows of VITRAIL_RASTER_ROW: the number of the first.
+#define VITRAIL_RESERVE(groups, more, first) \
+  first = atomicAdd(groups.count, more); \
+  atomicMax(groups.x, min(first + (more), VITRAIL_RASTER_ROW)); \
+  atomicMax(groups.y, (first + (more) + VITRAIL_RASTER_ROW - 1u) / VITRAIL_RASTER_ROW); \
+  groups.z = 1u;
+
+// Takes `more` of something that is counted in two words: the number of the first. Where the lower one comes round,
+// there is more than any buffer holds, and the frame is drawn again.
+#define VITRAIL_TAKE_PLACES(low, high, more, first) \
+  first = atomicAdd(low, more); \
+  if (first + (more) < first) atomicAdd(high, 1u);
+
+// Whether the records can be read: no place of them was given out twice.
+bool vitrailHasRecords() { return vitrailRasterControl.recordsHigh == 0u; }
+
+// What fragments are sorted by: a depth on a record's plane in a pixel of its tile.
+float vitrailDepthOn(vec4 plane, ivec2 inTile) {
+  return max(min(fma(plane.y, float(inTile.x), fma(plane.z, float(inTile.y), plane.x)), plane.w), 0.0);
+}
+
+// How far apart the depths of two surfaces in one plane may be at a pixel: hardware may take corners as they are or
+// rounded to 1/256 pixel, and adds up what depths change by from pixel to pixel.
+float vitrailDepthSlack(vec4 plane, ivec2 pixel) {
+  const float place = 1.0 / 480.0;
+  const float rounding = 1.0 / 2097152.0;
+  return vitrailRaster.depthStep + rounding * abs(plane.x) + abs(plane.y) * fma(rounding, float(pixel.x), place) +
+         abs(plane.z) * fma(rounding, float(pixel.y), place);
+}
+
+uint vitrailFlatGroup() { return gl_WorkGroupID.y * VITRAIL_RASTER_ROW + gl_WorkGroupID.x; }
+
+uint vitrailFlagsOf(uint draw) { return vitrailDrawPlaces[draw].rest.y; }
+uint vitrailBlendOf(uint draw) { return vitrailDrawPlaces[draw].rest.z; }
+uint vitrailWordOf(uint draw) { return vitrailDrawPlaces[draw].rest.w; }
+uint vitrailVertexOf(uint draw, uint index) { return index + vitrailDrawPlaces[draw].rest.x; } // as the host counts
+
+// What a draw consists of: 3 corners a triangle, 2 a line, 1 a point. Lines and points are drawn as two triangles each.
+uint vitrailCornersOf(uint flags) {
+  if (VITRAIL_RASTER_ONLY_TRIANGLES) return 3u;
+  uint kind = flags & VITRAIL_RASTER_SOLID;
+  return kind == VITRAIL_RASTER_LINES ? 2u : kind == VITRAIL_RASTER_POINTS ? 1u : 3u;
+}
+
+// Where the indices of one of its triangles begin.
+uint vitrailFirstIndex(uint draw, uint corners, uint primitive) {
+  return vitrailDrawPlaces[draw].lookup.x + (corners == 3u ? 3u * primitive : corners * (primitive / 2u));
+}
+
+// An index of a draw, without its vertexOffset.
+uint vitrailIndex(uint draw, uint at) {
+  if (VITRAIL_RASTER_INDEX_BYTES == 0u) return at - vitrailDrawPlaces[draw].lookup.x;
+  if (VITRAIL_RASTER_INDEX_BYTES == 2u) return vitrailIndices[at >> 1] >> (16u * (at & 1u)) & 0xffffu;
+  return vitrailIndices[at];
+}
+
+// Of an item the number of its instance.
+uint vitrailInstance(uint draw, uint item) {
+  return vitrailDrawPlaces[draw].lookup.w + item;
+}
+
+// The place of a vertex among all vertices of all instances.
+uint vitrailVertexPlace(uint draw, uint item, uint index) {
+  return vitrailDrawPlaces[draw].lookup.z + item * vitrailDrawPlaces[draw].lookup.y + index;
+}
+
+#endif

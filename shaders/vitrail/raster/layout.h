@@ -1,0 +1,172 @@
+// What the shaders of the rasteriser for GPUs and C++ share (vitrail/raster.glsl, vulkan_raster.h). This file is both
+// GLSL and C++.
+#ifndef VITRAIL_RASTER_LAYOUT_H
+#define VITRAIL_RASTER_LAYOUT_H
+
+#ifdef __cplusplus
+#include <cstddef>
+#include <cstdint>
+namespace vitrail::raster {
+using uint = std::uint32_t;
+struct uvec4 {
+  uint x, y, z, w;
+};
+struct vec4 {
+  float x, y, z, w;
+};
+#endif
+
+const uint VITRAIL_RASTER_GROUP = 128u;      // threads of a work group that sets up triangles, one each
+const uint VITRAIL_RASTER_PIXELS = 64u;      // of a tile, a thread each
+const uint VITRAIL_RASTER_ROW = 32768u;      // work groups in a row of a dispatch
+const uint VITRAIL_RASTER_LARGE = 64u;       // a triangle that may touch more tiles is left to a pass of its own
+const uint VITRAIL_RASTER_LARGE_BLOCK = 64u; // tiles of a row that a work group of that pass looks after
+const uint VITRAIL_RASTER_CLASSES = 4u;      // of tiles, by how many records they have: up to
+const uint VITRAIL_RASTER_FEW = 16u;         // so many, VITRAIL_RASTER_PIXELS,
+const uint VITRAIL_RASTER_SHALLOW = 256u;    // so many, and more
+const uint VITRAIL_RASTER_SCATTER = 1024u;   // work groups of passes over all records
+const uint VITRAIL_RASTER_BLOCK = 4096u;     // records of a deep tile that a work group looks after
+const uint VITRAIL_RASTER_CHUNK = 1024u;     // fragments that a work group sorts at once
+const uint VITRAIL_RASTER_SLICE = 2048u;     // fragments of a pixel that a dispatch blends
+const uint VITRAIL_RASTER_TIES = 16u;        // surfaces at one depth whose order their colours decide
+const uint VITRAIL_RASTER_MOST_KEPT = 32u;   // fragments of a pixel in registers
+const uint VITRAIL_RASTER_TABLE = 256u;      // threads of the work groups that make the tables of a frame
+const float VITRAIL_RASTER_STOP = 0.35f;     // of 1/255: what may be left out of a pixel that hardly shows it
+
+// VitrailVkRasterDraw::flags (vulkan_raster.h).
+const uint VITRAIL_RASTER_LINES = 1u; // else triangles
+const uint VITRAIL_RASTER_POINTS = 2u;
+const uint VITRAIL_RASTER_SOLID = 3u; // both bits
+const uint VITRAIL_RASTER_FRONT_CLOCKWISE = 4u;
+const uint VITRAIL_RASTER_CULL_FRONT = 8u;
+const uint VITRAIL_RASTER_CULL_BACK = 16u;
+
+// VitrailVkRasterDraw (std430).
+struct VitrailRasterDraw {
+  uint count; // of indices
+  uint instances;
+  uint firstIndex;
+  int vertexOffset;
+  uint firstInstance;
+  uint vertices; // that the indices reach
+  uint flags;
+  uint blend;
+  uint word;
+  uint reserved0;
+  uint reserved1;
+  uint reserved2;
+};
+
+// What the other passes know of a draw (std430). The numbers of work groups, instances and vertices go on from draw to
+// draw; an instance has its number among all as an item. Vectors, because GPUs load one at once: every fragment looks
+// the first one up.
+struct VitrailRasterPlace {
+  uvec4 lookup; // firstIndex; vertices of an instance; their first place less those of the items before; firstInstance
+                // less the items before
+  uvec4 rest;   // vertexOffset, flags, blend, word
+  uvec4 size;   // triangles of an instance, two of each line and point; instances; the first work group that sets them
+                // up; the first item
+  uvec4 start;  // the first work group that asks for the positions of its vertices; the first of their places
+};
+
+// What the passes of a frame share (std140).
+struct VitrailRasterFrame {
+  uint width; // of the picture
+  uint height;
+  uint tilesX;
+  uint tilesY; // of the band
+  uint top;    // the band's first row of pixels, and the one behind its last
+  uint bottom;
+  uint largeBlocks; // VITRAIL_RASTER_LARGE_BLOCKs in a row
+  uint draws;
+  uint recordCapacity;
+  uint largeCapacity;
+  uint deepCapacity;  // deep tiles
+  uint blockCapacity; // VITRAIL_RASTER_BLOCKs of them
+  uint fragmentCapacity;
+  uint chunkCapacity; // VITRAIL_RASTER_CHUNKs of them
+  uint mostWalked;    // records of a tile that is not deep from the start
+  uint mostVisits;    // how often a tile may go through VITRAIL_RASTER_PIXELS records before it is left to others
+  float pointSize;
+  float lightMost; // that one surface sends to the eye; negative: nobody knows
+  uint groupCapacity;
+  uint vertexGroupCapacity;
+  uint itemCapacity;
+  uint vertexCapacity;
+  uint hasOrders;
+  uint framePadding0;
+  uint countsDraws;  // the GPU has
+  float depthStep;   // of the opaque depths
+  uint drawCapacity;
+  uint framePadding2;
+  vec4 clipPlanes[8]; // of clip space
+};
+
+// The work groups of an indirect dispatch.
+struct VitrailRasterDispatch {
+  uint x;
+  uint y;
+  uint z;
+  uint count; // that there are
+};
+
+// What the passes of all bands of a frame begin with: work groups, and what there is of that a frame has once.
+struct VitrailRasterStart {
+  VitrailRasterDispatch tables;   // that make the tables of groups and instances
+  VitrailRasterDispatch vertices; // that ask for positions
+  VitrailRasterDispatch groups;   // that set up triangles
+  uint items;                     // instances of all draws
+  uint vertexCount;
+  uint tooMany; // 1: more than numbers of 32 bits can count
+  uint fits;    // 1: there was room for all of it
+};
+
+// Tiles by how many records they have. All zero at first. Apart from what is counted while they are blended.
+struct VitrailRasterTileClasses {
+  VitrailRasterDispatch of[VITRAIL_RASTER_CLASSES];
+};
+
+// What a band counts. All zero at first.
+struct VitrailRasterControl {
+  VitrailRasterDispatch deep;   // tiles
+  VitrailRasterDispatch blocks; // of deep tiles
+  VitrailRasterDispatch chunks; // of their fragments
+  uint records;                 // that were wanted
+  uint large;                   // triangles
+  uint pairs;                   // records of tiles
+  uint fragments;               // of deep tiles
+  uint mostFragments;           // of a pixel of a deep tile
+  uint cutPixels;               // that the driver did not let a pass finish
+  uint recordsHigh;             // how often `records` has come round
+  uint fragmentsHigh;           // the same of `fragments`
+};
+
+// What a frame wanted: of its bands the most, but cut pixels together. All zero at first.
+struct VitrailRasterTotals {
+  uint records;
+  uint recordsHigh;
+  uint large;
+  uint deep;
+  uint blocks;
+  uint fragments;
+  uint fragmentsHigh;
+  uint chunks;
+  uint mostFragments;
+  uint cutPixels;
+  uint bands; // that were drawn
+  uint totalsPadding;
+  VitrailRasterStart start;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(VitrailRasterDraw) == 48);
+static_assert(sizeof(VitrailRasterPlace) == 64);
+static_assert(sizeof(VitrailRasterFrame) == 240);
+static_assert(sizeof(VitrailRasterStart) == 64);
+static_assert(sizeof(VitrailRasterTileClasses) == 64);
+static_assert(sizeof(VitrailRasterControl) == 80);
+static_assert(sizeof(VitrailRasterTotals) == 112);
+} // namespace vitrail::raster
+#endif
+
+#endif

@@ -1,0 +1,218 @@
+// Fragments of a pixel, nearest first, blended as they come: what of the light behind is left, and what has been added
+// to it.
+#ifndef VITRAIL_RASTER_LIGHT_GLSL
+#define VITRAIL_RASTER_LIGHT_GLSL
+
+// The nodes of linked-list that pictures are held to; of them the order at one depth.
+#define VITRAIL_ONLY_FORMAT 2
+#include "../node.glsl"
+
+#include "surface.glsl"
+#include "opaque.glsl"
+#include "order.glsl"
+
+#ifndef VITRAIL_COLOR_FORMAT
+#define VITRAIL_COLOR_FORMAT rgba16f
+#endif
+
+#ifdef VITRAIL_MULTISAMPLED
+layout(VITRAIL_RASTER_BOUND(9), VITRAIL_COLOR_FORMAT) uniform writeonly image2D vitrailColorImage;
+layout(VITRAIL_RASTER_BOUND(18)) uniform texture2DMS vitrailOpaqueImage;
+
+vec4 vitrailColorBehind(ivec2 pixel, uint sample_) { return texelFetch(vitrailOpaqueImage, pixel, int(sample_)); }
+#else
+layout(VITRAIL_RASTER_BOUND(9), VITRAIL_COLOR_FORMAT) uniform image2D vitrailColorImage;
+
+vec4 vitrailColorBehind(ivec2 pixel, uint sample_) { return imageLoad(vitrailColorImage, pixel); }
+#endif
+
+#ifdef VITRAIL_MULTISAMPLED
+#define VITRAIL_EACH_SAMPLE(what) what(0) what(1) what(2) what(3) what(4) what(5) what(6) what(7)
+#else
+#define VITRAIL_EACH_SAMPLE(what) what(0)
+#endif
+
+// What there is at each sample of a pixel: of fragments so far, and of the opaque surface.
+struct VitrailPixelLight {
+#ifdef VITRAIL_MULTISAMPLED
+  VitrailPair fronts[VITRAIL_RASTER_MOST_SAMPLES];
+  float depths[VITRAIL_RASTER_MOST_SAMPLES];
+#else
+  VitrailPair fronts[1];
+#endif
+  float most; // the most light that anything behind the fragments may send
+};
+
+const VitrailLayout VITRAIL_TIE_NODES = VitrailLayout(VITRAIL_FORMAT_HDR, 1u, true);
+
+// As nodes hold them: not negative, no infinite colours, NaN is 0.
+vec4 vitrailStoredColor(vec4 color) {
+  return vec4(min(max(color.rgb, 0.0), 65504.0), min(max(color.a, 0.0), 1.0));
+}
+
+const bool VITRAIL_ONE_BLEND = (VITRAIL_RASTER_BLENDS & (VITRAIL_RASTER_BLENDS - 1u)) == 0u; // mode for all
+
+// What the host's shading says, with the blend mode of the draw where it leaves that to it.
+VitrailFragments vitrailFragmentsOf(VitrailSurface surface) {
+#if VITRAIL_RASTER_FRAGMENTS == 1
+  VitrailFragments f;
+  f.colors[0] = vitrailStoredColor(vitrailShade(surface));
+  f.count = f.colors[0].a > 0.0 ? 1u : 0u;
+  f.blends[0] = VITRAIL_ONE_BLEND ? uint(findLSB(VITRAIL_RASTER_BLENDS)) : vitrailBlendOf(surface.draw);
+#else
+  VitrailFragments f = vitrailShadeTwice(surface);
+  f.colors[0] = vitrailStoredColor(f.colors[0]);
+  f.colors[1] = vitrailStoredColor(f.colors[1]);
+#endif
+  return f;
+}
+
+VitrailPixelLight vitrailLightBehind(ivec2 pixel) {
+  VitrailPixelLight light;
+  light.most = vitrailRaster.lightMost;
+#ifdef VITRAIL_MULTISAMPLED
+#define VITRAIL_SET_DEPTH(i) light.depths[i] = i < VITRAIL_RASTER_SAMPLES ? vitrailOpaqueDepth(pixel, i) : 0.0;
+  VITRAIL_EACH_SAMPLE(VITRAIL_SET_DEPTH)
+#endif
+#define VITRAIL_SET_SAMPLE(i) \
+  light.fronts[i] = VitrailPair(vec3(0.0), vec4(1.0)); \
+  if (i < VITRAIL_RASTER_SAMPLES) { \
+    vec4 behind = vitrailColorBehind(pixel, i); \
+    light.most = light.most < 0.0 ? light.most : max(light.most, max(behind.r, max(behind.g, behind.b))); \
+  }
+  VITRAIL_EACH_SAMPLE(VITRAIL_SET_SAMPLE)
+  return light;
+}
+
+// The samples at which a record's fragment shows, a bit each. `thread`: the pixel in its tile.
+uint vitrailVisibleSamples(VitrailPixelLight light, uint record, ivec2 pixel, uint thread) {
+#ifdef VITRAIL_MULTISAMPLED
+  vec4 plane = uintBitsToFloat(vitrailRecords[2u * record + 1u]);
+  float depth = fma(plane.y, float(thread & 7u), fma(plane.z, float(thread >> 3), plane.x));
+  depth += vitrailDepthSlack(plane, pixel);
+  uint visible = 0u;
+#define VITRAIL_SEE_SAMPLE(i) \
+  if (i < VITRAIL_RASTER_SAMPLES) { \
+    uvec2 mask = vitrailSampleMasks[record * VITRAIL_RASTER_SAMPLES + i]; \
+    bool covers = ((thread < 32u ? mask.x : mask.y) >> (thread & 31u) & 1u) != 0u; \
+    float there = depth + dot(plane.yz, vec2(vitrailSamplePlace(i) - 8)) / 16.0; \
+    if (covers && there >= light.depths[i]) visible |= 1u << i; \
+  }
+  VITRAIL_EACH_SAMPLE(VITRAIL_SEE_SAMPLE)
+  return visible;
+#else
+  return 1u;
+#endif
+}
+
+// What of the light behind comes through. Where all surfaces let the same of all colours through, one number is kept;
+// not of several samples, where that came out slower.
+#ifdef VITRAIL_MULTISAMPLED
+#define VITRAIL_THROUGH(front) (front).transmittance
+#else
+const bool VITRAIL_THROUGH_VARIES = (VITRAIL_RASTER_BLENDS & (1u << VITRAIL_ADDITIVE | 1u << VITRAIL_MULTIPLY)) != 0u;
+#define VITRAIL_THROUGH(front) (VITRAIL_THROUGH_VARIES ? (front).transmittance : (front).transmittance.aaaa)
+#endif
+
+void vitrailPutFragment(inout VitrailPixelLight light, vec4 color, uint blend, uint visible) {
+  VitrailPair pair = vitrailPairOf(color, blend);
+#define VITRAIL_PUT_SAMPLE(i) \
+  if ((visible & (1u << i)) != 0u) { \
+    light.fronts[i].color += VITRAIL_THROUGH(light.fronts[i]).rgb * pair.color; \
+    light.fronts[i].transmittance *= pair.transmittance; \
+  }
+  VITRAIL_EACH_SAMPLE(VITRAIL_PUT_SAMPLE)
+}
+
+// Whether what is farther away than some fragments may be left out: whether that changes the picture by less than
+// VITRAIL_RASTER_STOP of 1/255. What is left out is light of at most `most` together, or hides so much of what is
+// behind. On the sRGB curve it counts most in the dark. Surfaces that add light without hiding as much have no such
+// bound, nor has light that nobody knows (`most` is negative).
+bool vitrailHasEnoughAt(VitrailPair front, float most) {
+  vec4 all = VITRAIL_THROUGH(front);
+  float through = max(max(all.r, all.g), max(all.b, all.a));
+  if (VITRAIL_RASTER_BLENDS != 1u << VITRAIL_OVER || most < 0.0) return through <= 0.0;
+  float darkest = min(front.color.r, min(front.color.g, front.color.b));
+  float steepness = darkest > 0.0031308 ? 0.43958 * pow(darkest, -0.58333) : 12.92;
+  return through * most * steepness * 255.0 < VITRAIL_RASTER_STOP;
+}
+
+bool vitrailHasEnough(VitrailPixelLight light) {
+  bool enough = true;
+#define VITRAIL_ASK_SAMPLE(i) \
+  if (i < VITRAIL_RASTER_SAMPLES) enough = enough && vitrailHasEnoughAt(light.fronts[i], light.most);
+  VITRAIL_EACH_SAMPLE(VITRAIL_ASK_SAMPLE)
+  return enough;
+}
+
+// The order at one depth: by what fragments are, as in fragment lists.
+uvec4 vitrailTieKey(vec4 color, uint blend, uint number) {
+  uvec4 node;
+  vitrailPack(color, blend, 0.0, 1u, VITRAIL_TIE_NODES, node);
+  return uvec4(blend, node.xy, number);
+}
+
+bool vitrailLessKey(uvec4 a, uvec4 b) {
+  if (a.x != b.x) return a.x < b.x;
+  if (a.y != b.y) return a.y < b.y;
+  return a.z != b.z ? a.z < b.z : a.w < b.w;
+}
+
+// The i-th surface of those that have one depth, which the including shader has at hand: its record, and it, shaded.
+uint vitrailAlikeRecord(uint i);
+VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel);
+
+// Blends them: one, or up to VITRAIL_RASTER_TIES in the order of what they are. Then each turn through all finds the
+// next fragment, of which a surface has two at most. What shades them stands here once, as it is what takes long.
+void vitrailBlendAlike(inout VitrailPixelLight light, ivec2 pixel, uint thread, uint alike) {
+  uvec4 last = uvec4(0u);
+  uvec4 best = uvec4(0xffffffffu);
+  vec4 bestColor = vec4(0.0);
+  uint bestVisible = 0u;
+  uint i = 0u;
+  for (uint step = 0u; step < (2u * VITRAIL_RASTER_TIES + 1u) * VITRAIL_RASTER_TIES; ++step) {
+    uint visible = 1u;
+    if (VITRAIL_RASTER_SAMPLES > 1u) visible = vitrailVisibleSamples(light, vitrailAlikeRecord(i), pixel, thread);
+    if (visible != 0u) {
+      VitrailFragments f = vitrailFragmentsOf(vitrailAlikeSurface(i, pixel));
+      // No loop: arrays stay in registers where their indices are constants.
+#define VITRAIL_TAKE_FRAGMENT(k) \
+  if (f.count > k && alike == 1u) vitrailPutFragment(light, f.colors[k], f.blends[k], visible); \
+  if (f.count > k && alike > 1u) { \
+    uvec4 order = vitrailTieKey(f.colors[k], f.blends[k], 2u * i + k + 1u); \
+    if (vitrailLessKey(last, order) && vitrailLessKey(order, best)) { \
+      best = order; \
+      bestColor = f.colors[k]; \
+      bestVisible = visible; \
+    } \
+  }
+      VITRAIL_TAKE_FRAGMENT(0u)
+#if VITRAIL_RASTER_FRAGMENTS > 1
+      if (!VITRAIL_ONE_BLEND) {
+        VITRAIL_TAKE_FRAGMENT(1u)
+      }
+#endif
+    }
+    if (alike == 1u) return;
+    if (++i < alike) continue;
+    if (best.w == 0xffffffffu) return;
+    vitrailPutFragment(light, bestColor, best.x, bestVisible);
+    last = best;
+    best = uvec4(0xffffffffu);
+    i = 0u;
+  }
+}
+
+// Puts what there is over the opaque surface.
+void vitrailBlendOver(ivec2 pixel, VitrailPixelLight light) {
+  vec4 sum = vec4(0.0);
+#define VITRAIL_ADD_SAMPLE(i) \
+  if (i < VITRAIL_RASTER_SAMPLES) { \
+    VitrailPair front = light.fronts[i]; \
+    sum += vec4(front.color, 1.0 - front.transmittance.a) + VITRAIL_THROUGH(front) * vitrailColorBehind(pixel, i); \
+  }
+  VITRAIL_EACH_SAMPLE(VITRAIL_ADD_SAMPLE)
+  imageStore(vitrailColorImage, pixel, sum / float(VITRAIL_RASTER_SAMPLES));
+}
+
+#endif

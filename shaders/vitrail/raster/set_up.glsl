@@ -1,0 +1,429 @@
+// Sets up triangles and makes a record for each tile in which one covers a pixel. One thread takes a triangle; the
+// tiles that the triangles of a work group may touch are then shared by all its threads, so that a few larger ones
+// among many small ones keep nobody waiting.
+//
+// As it stands it takes all triangles, and puts aside those that may touch very many tiles and those that need
+// clipping. With VITRAIL_RASTER_OF_LARGE it takes those, for a part of a row of tiles.
+#ifndef VITRAIL_RASTER_SET_UP_GLSL
+#define VITRAIL_RASTER_SET_UP_GLSL
+
+#include "clip.glsl"
+#include "edges.glsl"
+#include "samples.glsl"
+#include "surface.glsl"
+
+layout(local_size_x = VITRAIL_RASTER_GROUP) in;
+
+// The triangles of the work group.
+shared ivec4 vitrailGroupCorners[VITRAIL_RASTER_GROUP]; // the first two
+shared ivec4 vitrailGroupTiles[VITRAIL_RASTER_GROUP];   // the third; the first tile
+shared vec4 vitrailGroupPlanes[VITRAIL_RASTER_GROUP];   // its depths at the first corner; the nearest depth
+shared uvec4 vitrailGroupSources[VITRAIL_RASTER_GROUP]; // primitive, item; tiles in a row; draw
+shared uint vitrailGroupEnds[VITRAIL_RASTER_GROUP];     // sums: candidates << 16 | records of small ones
+shared uint vitrailGroupFirst;                          // place of the first record of a small triangle
+#ifdef VITRAIL_RASTER_OF_LARGE
+shared uint vitrailGroupPieces;
+#endif
+
+struct VitrailTriangle {
+  ivec2 p0;
+  ivec2 p1;
+  ivec2 p2;
+  vec3 depths;
+  uint primitive;
+  uint item;
+};
+
+VitrailViewport vitrailViewportOf() {
+  VitrailViewport viewport = vitrailViewport(vec2(vitrailRaster.width, vitrailRaster.height));
+#if VITRAIL_CLIP_PLANES > 0
+  for (int i = 0; i < VITRAIL_CLIP_PLANES; ++i) viewport.planes[i] = vitrailRaster.clipPlanes[i];
+#endif
+  return viewport;
+}
+
+VitrailTriangle vitrailTriangleOf(VitrailViewport viewport, vec4 a, vec4 b, vec4 c, uvec2 source) {
+  VitrailTriangle t;
+  t.p0 = vitrailSnap(vitrailPixels(viewport, a, t.depths.x));
+  t.p1 = vitrailSnap(vitrailPixels(viewport, b, t.depths.y));
+  t.p2 = vitrailSnap(vitrailPixels(viewport, c, t.depths.z));
+  t.primitive = source.x;
+  t.item = source.y;
+  return t;
+}
+
+// One of the two triangles of a line, a pixel wide across the axis along which it is longer, or of a point, where both
+// ends are the same.
+VitrailTriangle vitrailHalfOf(VitrailViewport viewport, vec4 a, vec4 b, uint corners, uvec2 source) {
+  float depthA, depthB;
+  vec2 from = vitrailPixels(viewport, a, depthA);
+  vec2 to = vitrailPixels(viewport, b, depthB);
+  bool isSteep = abs(to.y - from.y) > abs(to.x - from.x);
+  vec2 across = isSteep ? vec2(0.5, 0.0) : vec2(0.0, 0.5);
+  vec2 along = vec2(0.0);
+  if (corners == 1u) {
+    across = vec2(0.0, 0.5 * vitrailRaster.pointSize);
+    along = vec2(0.5 * vitrailRaster.pointSize, 0.0);
+  }
+  bool second = (source.x & 1u) != 0u;
+  VitrailTriangle t;
+  t.p0 = vitrailSnap(from - along - across);
+  t.p1 = vitrailSnap(to + along + (second ? across : -across));
+  t.p2 = vitrailSnap((second ? from - along : to + along) + across);
+  t.depths = vec3(depthA, depthB, second ? depthA : depthB);
+  t.primitive = source.x;
+  t.item = source.y;
+  return t;
+}
+
+// The corners of a triangle, line or point in clip space.
+VitrailPolygon vitrailPolygonOf(uint draw, uint corners, uvec2 source) {
+  uint first = vitrailFirstIndex(draw, corners, source.x);
+  VitrailPolygon polygon;
+  for (uint i = 0u; i < corners; ++i) {
+    polygon.corners[i] = vitrailClipPosition(draw, source.y, vitrailIndex(draw, first + i));
+  }
+  polygon.count = int(corners);
+  return polygon;
+}
+
+bool vitrailPolygonNeedsClipping(VitrailViewport viewport, VitrailPolygon polygon) {
+  bool needs = false;
+  for (int i = 0; i < polygon.count; ++i) needs = needs || vitrailNeedsClipping(viewport, polygon.corners[i]);
+  return needs;
+}
+
+// The pixels from `first` to `last` of which a triangle may vitrailCoverTile something, within the band.
+void vitrailBoundsOf(VitrailTriangle t, out ivec2 first, out ivec2 last) {
+  const int middle = VITRAIL_RASTER_SAMPLES == 1u ? VITRAIL_SUBPIXELS / 2 : 0; // samples are anywhere
+  const int behind = VITRAIL_RASTER_SAMPLES == 1u ? VITRAIL_SUBPIXELS / 2 - 1 : 0;
+  first = (min(t.p0, min(t.p1, t.p2)) + behind) >> 8;
+  last = (max(t.p0, max(t.p1, t.p2)) - middle) >> 8;
+  first = max(first, ivec2(0, int(vitrailRaster.top)));
+  last = min(last, ivec2(vitrailRaster.width, vitrailRaster.bottom) - 1);
+}
+
+// How many tiles it may touch, from `low` up to and without `high`, within the given ones.
+uint vitrailCandidates(ivec2 first, ivec2 last, ivec2 least, ivec2 most, out ivec2 low, out ivec2 high) {
+  low = max(first >> 3, least);
+  high = min((last >> 3) + 1, most);
+  if (any(greaterThan(first, last)) || any(greaterThanEqual(low, high))) return 0u;
+  return uint(high.x - low.x) * uint(high.y - low.y);
+}
+
+// What a triangle's records have in common.
+struct VitrailSource {
+  uint primitive; // and in the highest bit whether its front shows
+  uint item;
+  uint draw;
+  VitrailPlane plane;
+  float nearest; // of its corners
+};
+
+// False: it covers nothing, or is culled. Otherwise its corners run clockwise in the picture.
+bool vitrailOrientTriangle(inout VitrailTriangle t, uint draw, out VitrailSource source) {
+  float area = vitrailArea(t.p0, t.p1, t.p2);
+  if (area == 0.0) return false;
+  uint flags = vitrailFlagsOf(draw);
+  bool front = (area < 0.0) != ((flags & VITRAIL_RASTER_FRONT_CLOCKWISE) != 0u);
+  if (vitrailCornersOf(flags) < 3u) {
+    front = true;
+  } else if ((flags & (front ? VITRAIL_RASTER_CULL_FRONT : VITRAIL_RASTER_CULL_BACK)) != 0u) {
+    return false;
+  }
+  source.primitive = t.primitive | (front ? 0x80000000u : 0u);
+  source.item = t.item;
+  source.draw = draw;
+  source.plane = vitrailPlane(t.p0, t.p1, t.p2, t.depths, area);
+  source.nearest = max(t.depths.x, max(t.depths.y, t.depths.z));
+  if (area < 0.0) {
+    ivec2 other = t.p1;
+    t.p1 = t.p2;
+    t.p2 = other;
+  }
+  return true;
+}
+
+// Puts a triangle where all threads find it.
+void vitrailShareTriangle(uint thread, VitrailTriangle t, VitrailSource source, ivec2 low, ivec2 high) {
+  vitrailGroupCorners[thread] = ivec4(t.p0, t.p1);
+  vitrailGroupTiles[thread] = ivec4(t.p2, low);
+  vitrailGroupPlanes[thread] = vec4(source.plane.depth, source.nearest);
+  vitrailGroupSources[thread] = uvec4(source.primitive, source.item, high.x - low.x, source.draw);
+}
+
+// Makes the record of a triangle in a tile: of the pixels that it covers there, or none.
+void vitrailMakeRecord(uint place, ivec2 tile, uvec2 covered, VitrailSource source) {
+  if (place >= vitrailRaster.recordCapacity) return;
+  uint at = VITRAIL_NO_TILE;
+  if ((covered.x | covered.y) != 0u) {
+    at = uint(tile.y - int(vitrailRaster.top) / VITRAIL_TILE_SIDE) * vitrailRaster.tilesX + uint(tile.x);
+    ivec2 middle = tile * (VITRAIL_TILE_SIDE * VITRAIL_SUBPIXELS) + VITRAIL_SUBPIXELS / 2;
+    vec3 depth = vitrailPlaneAt(source.plane, middle);
+    float steps = float(VITRAIL_TILE_SIDE - 1);
+    // At the middle of a pixel of which another part is covered a plane may be nearer than any corner.
+    float nearest = depth.x + (max(depth.y, 0.0) + max(depth.z, 0.0)) * steps;
+    if (VITRAIL_RASTER_SAMPLES == 1u) nearest = min(source.nearest, nearest);
+    vitrailRecords[2u * place] = uvec4(covered, source.primitive, source.item);
+    vitrailRecords[2u * place + 1u] = floatBitsToUint(vec4(depth, nearest));
+    vitrailRecordPlaces[3u * place + 1u] = atomicAdd(vitrailTileRecords[at].x, 1u);
+    vitrailRecordPlaces[3u * place + 2u] = source.draw;
+  }
+  vitrailRecordPlaces[3u * place] = at;
+}
+
+// The same of a candidate, in which triangle `thread` may touch the tile of that number.
+void vitrailCoverTile(uint thread, uint number, uint place) {
+  ivec4 corners = vitrailGroupCorners[thread];
+  ivec4 rest = vitrailGroupTiles[thread];
+  uvec4 source = vitrailGroupSources[thread];
+  vec4 plane = vitrailGroupPlanes[thread];
+  ivec2 tile = rest.zw + ivec2(number % source.z, number / source.z);
+  ivec2 pixel = tile * VITRAIL_TILE_SIDE;
+  if (place >= vitrailRaster.recordCapacity) return;
+  VitrailEdges edges = vitrailEdges(corners.xy, corners.zw, rest.xy);
+  ivec2 end = ivec2(vitrailRaster.width, vitrailRaster.bottom);
+  bool isCut = any(greaterThan(pixel + VITRAIL_TILE_SIDE, end));
+  uvec2 window = isCut ? vitrailTileWindow(ivec2(0), end - pixel) : uvec2(0xffffffffu);
+  uvec2 covered = uvec2(0u);
+  for (uint i = 0u; i < VITRAIL_RASTER_SAMPLES; ++i) {
+    ivec2 at = pixel * VITRAIL_SUBPIXELS + vitrailSamplePlace(i) * (VITRAIL_SUBPIXELS / 16);
+    uvec2 samples = window & vitrailTileCoverage(edges, vitrailEdgesAt(edges, corners.xy, corners.zw, rest.xy, at));
+    if (VITRAIL_RASTER_SAMPLES > 1u) vitrailSampleMasks[place * VITRAIL_RASTER_SAMPLES + i] = samples;
+    covered |= samples;
+  }
+  vitrailMakeRecord(place, tile, covered,
+             VitrailSource(source.x, source.y, source.w, VitrailPlane(vec2(corners.xy), plane.xyz), plane.w));
+}
+
+// A triangle that fits into 8 x 8 pixels, and so into four vitrailRaster.
+struct VitrailSmall {
+  uvec2 covered[4]; // of those: left and right, upper and lower
+  ivec2 tile;       // the first
+  VitrailSource source;
+  uint count;       // of tiles in which it covers something; 0: there is none
+};
+
+uvec2 vitrailShiftedUp(uvec2 mask, uint bits) { // to the left, by less than 64
+  if (bits == 0u) return mask;
+  if (bits >= 32u) return uvec2(0u, mask.x << (bits - 32u));
+  return uvec2(mask.x << bits, mask.y << bits | mask.x >> (32u - bits));
+}
+uvec2 vitrailShiftedDown(uvec2 mask, uint bits) {
+  if (bits == 0u) return mask;
+  if (bits >= 32u) return uvec2(mask.y >> (bits - 32u), 0u);
+  return uvec2(mask.x >> bits | mask.y << (32u - bits), mask.y >> bits);
+}
+
+// Cuts the pixels that are covered of 8 x 8, of which `first` is the first, at the borders of vitrailRaster.
+void vitrailCutSmall(inout VitrailSmall small, uvec2 mask, ivec2 first) {
+  uvec2 in_ = uvec2(first & (VITRAIL_TILE_SIDE - 1));
+  uint columns = (0xffu >> in_.x) * 0x01010101u; // that are in the left tile
+  uvec2 left = (mask & columns) << in_.x;
+  uvec2 right = in_.x > 0u ? (mask & ~columns) >> (8u - in_.x) : uvec2(0u);
+  small.tile = first >> 3;
+  small.covered[0] = vitrailShiftedUp(left, 8u * in_.y);
+  small.covered[1] = vitrailShiftedUp(right, 8u * in_.y);
+  small.covered[2] = in_.y > 0u ? vitrailShiftedDown(left, 64u - 8u * in_.y) : uvec2(0u);
+  small.covered[3] = in_.y > 0u ? vitrailShiftedDown(right, 64u - 8u * in_.y) : uvec2(0u);
+  for (int i = 0; i < 4; ++i) small.count += (small.covered[i].x | small.covered[i].y) != 0u ? 1u : 0u;
+}
+
+// All threads together: this thread's small triangle, and the candidates of the triangles that were shared, of which
+// this thread's has `mine`.
+void vitrailCoverAll(VitrailSmall small, uint mine) {
+  uint thread = gl_LocalInvocationIndex;
+  uint both = mine << 16 | small.count; // at most VITRAIL_RASTER_LARGE or VITRAIL_RASTER_LARGE_BLOCK of each thread
+  vitrailGroupEnds[thread] = both;
+  barrier();
+  for (uint step = 1u; step < VITRAIL_RASTER_GROUP; step *= 2u) { // sums of what is before (Hillis and Steele, 1986)
+    uint before = thread >= step ? vitrailGroupEnds[thread - step] : 0u;
+    barrier();
+    vitrailGroupEnds[thread] += before;
+    barrier();
+  }
+  uint all = vitrailGroupEnds[VITRAIL_RASTER_GROUP - 1u];
+  if (all == 0u) return;
+  uint smalls = all & 0xffffu;
+  uint candidates_ = all >> 16;
+  if (thread == 0u) {
+    VITRAIL_TAKE_PLACES(vitrailRasterControl.records, vitrailRasterControl.recordsHigh, smalls + candidates_,
+                        vitrailGroupFirst)
+  }
+  barrier();
+  if (small.count > 0u) {
+    uint place = vitrailGroupFirst + (vitrailGroupEnds[thread] & 0xffffu) - small.count;
+    for (int i = 0; i < 4; ++i) {
+      if ((small.covered[i].x | small.covered[i].y) == 0u) continue;
+      vitrailMakeRecord(place, small.tile + ivec2(i & 1, i >> 1), small.covered[i], small.source);
+      ++place;
+    }
+  }
+  for (uint i = thread; i < candidates_; i += VITRAIL_RASTER_GROUP) {
+    uint owner = 0u; // the first whose end is beyond i
+    for (uint step = VITRAIL_RASTER_GROUP / 2u; step > 0u; step /= 2u) {
+      if (vitrailGroupEnds[owner + step - 1u] >> 16 <= i) owner += step;
+    }
+    uint first = owner > 0u ? vitrailGroupEnds[owner - 1u] >> 16 : 0u;
+    vitrailCoverTile(owner, i - first, vitrailGroupFirst + smalls + i);
+  }
+}
+
+VitrailSmall vitrailNoSmall() {
+  VitrailSmall small;
+  small.count = 0u;
+  return small;
+}
+
+#ifndef VITRAIL_RASTER_OF_LARGE
+
+void vitrailPutAside(uvec2 source) {
+  uint place = atomicAdd(vitrailRasterControl.large, 1u);
+  if (place < vitrailRaster.largeCapacity) vitrailLarge[place] = source;
+}
+
+// How many tiles the thread's triangle may touch, which is shared then, unless it is small.
+uint vitrailSetUp(uint draw, uvec2 number, inout VitrailSmall small) {
+  uint corners = vitrailCornersOf(vitrailFlagsOf(draw));
+  VitrailViewport viewport = vitrailViewportOf();
+  bool isWhole;
+  VitrailTriangle t;
+  if (corners == 3u) { // without arrays, which are slow
+    uint first = vitrailFirstIndex(draw, corners, number.x);
+    vec4 a = vitrailClipPosition(draw, number.y, vitrailIndex(draw, first));
+    vec4 b = vitrailClipPosition(draw, number.y, vitrailIndex(draw, first + 1u));
+    vec4 c = vitrailClipPosition(draw, number.y, vitrailIndex(draw, first + 2u));
+    if (vitrailIsOutside(a, b, c)) return 0u;
+    isWhole = !vitrailNeedsClipping(viewport, a) && !vitrailNeedsClipping(viewport, b) &&
+              !vitrailNeedsClipping(viewport, c);
+    t = vitrailTriangleOf(viewport, a, b, c, number);
+  } else {
+    VitrailPolygon p = vitrailPolygonOf(draw, corners, number);
+    isWhole = !vitrailPolygonNeedsClipping(viewport, p);
+    t = vitrailHalfOf(viewport, p.corners[0], p.corners[corners - 1u], corners, number);
+  }
+  if (!isWhole) {
+    vitrailPutAside(number);
+    return 0u;
+  }
+  ivec2 first, last, low, high;
+  vitrailBoundsOf(t, first, last);
+  uint count = vitrailCandidates(first, last, ivec2(0), ivec2(0x7fffffff), low, high);
+  if (count > VITRAIL_RASTER_LARGE) {
+    vitrailPutAside(number);
+    return 0u;
+  }
+  VitrailSource source;
+  if (count == 0u || !vitrailOrientTriangle(t, draw, source)) return 0u;
+  if (VITRAIL_RASTER_SAMPLES == 1u && all(lessThan(last - first, ivec2(VITRAIL_TILE_SIDE)))) {
+    VitrailEdges edges = vitrailEdges(t.p0, t.p1, t.p2);
+    ivec2 middle = first * VITRAIL_SUBPIXELS + VITRAIL_SUBPIXELS / 2;
+    uvec2 mask = vitrailTileCoverage(edges, vitrailEdgesAt(edges, t.p0, t.p1, t.p2, middle));
+    small.source = source;
+    bool isCut = any(greaterThan(first + VITRAIL_TILE_SIDE, ivec2(vitrailRaster.width, vitrailRaster.bottom)));
+    if (isCut) mask &= vitrailTileWindow(ivec2(0), last - first + 1);
+    vitrailCutSmall(small, mask, first);
+    return 0u;
+  }
+  vitrailShareTriangle(gl_LocalInvocationIndex, t, source, low, high);
+  return count;
+}
+
+void main() {
+  uint group = vitrailFlatGroup();
+  if (group >= vitrailRasterStart.groups.count) return; // the last row is longer
+  uint draw = vitrailDrawOfGroup[group];
+  uvec4 size = vitrailDrawPlaces[draw].size;
+  uint number = (group - size.z) * VITRAIL_RASTER_GROUP + gl_LocalInvocationIndex;
+  uint triangles = size.x;
+  uint count = 0u;
+  VitrailSmall small = vitrailNoSmall();
+  if (number < triangles * size.y) {
+    uint instance = number < triangles ? 0u : number / triangles;
+    count = vitrailSetUp(draw, uvec2(number - instance * triangles, size.w + instance), small);
+  }
+  vitrailCoverAll(small, count);
+}
+
+#else
+
+// The tiles of this work group.
+void vitrailBlockOf(out ivec2 low, out ivec2 high) {
+  int first = int((gl_WorkGroupID.x % vitrailRaster.largeBlocks) * VITRAIL_RASTER_LARGE_BLOCK);
+  int row = int(gl_WorkGroupID.y) + int(vitrailRaster.top) / VITRAIL_TILE_SIDE;
+  low = ivec2(first, row);
+  high = ivec2(min(first + int(VITRAIL_RASTER_LARGE_BLOCK), int(vitrailRaster.tilesX)), row + 1);
+}
+
+// What is left of a triangle or line; of a point all or nothing.
+VitrailPolygon vitrailClippedOf(VitrailViewport viewport, uint draw, uint corners, uvec2 source) {
+  VitrailPolygon whole = vitrailPolygonOf(draw, corners, source);
+  if (!vitrailPolygonNeedsClipping(viewport, whole)) return whole;
+  if (corners == 1u) {
+    whole.count = 0;
+    return whole;
+  }
+  VitrailPolygon left = vitrailClip(viewport, whole);
+  if (corners == 3u || left.count < 2) return left;
+  // The ends of what is left of a line, which may have been added twice.
+  vec4 way = whole.corners[1] - whole.corners[0];
+  VitrailPolygon ends = left;
+  for (int i = 0; i < left.count; ++i) {
+    vec4 p = left.corners[i];
+    if (dot(p - ends.corners[0], way) < 0.0) ends.corners[0] = p;
+    if (dot(p - ends.corners[1], way) > 0.0) ends.corners[1] = p;
+  }
+  ends.count = 2;
+  return ends;
+}
+
+// A polygon is a fan of triangles, most often one.
+void main() {
+  uint thread = gl_LocalInvocationIndex;
+  VitrailViewport viewport = vitrailViewportOf();
+  ivec2 least, most;
+  vitrailBlockOf(least, most);
+  uint count = min(vitrailRasterControl.large, vitrailRaster.largeCapacity);
+  uint shares = gl_NumWorkGroups.x / vitrailRaster.largeBlocks; // of them, each by a work group of a block
+  uint share_ = gl_WorkGroupID.x / vitrailRaster.largeBlocks;
+  for (uint first = share_ * VITRAIL_RASTER_GROUP; first < count; first += shares * VITRAIL_RASTER_GROUP) {
+    bool mine = first + thread < count;
+    uvec2 source = mine ? vitrailLarge[first + thread] : uvec2(0u);
+    VitrailPolygon polygon;
+    polygon.count = 0;
+    uint draw = mine ? vitrailDrawOfItem[source.y] : 0u;
+    uint corners = vitrailCornersOf(vitrailFlagsOf(draw));
+    if (mine) polygon = vitrailClippedOf(viewport, draw, corners, source);
+    int fan = corners == 3u ? polygon.count - 2 : min(polygon.count, 1);
+    barrier(); // all have left the last turn
+    if (thread == 0u) vitrailGroupPieces = 0u;
+    barrier();
+    if (fan > 0) atomicMax(vitrailGroupPieces, uint(fan));
+    barrier();
+    uint pieces = vitrailGroupPieces;
+    for (uint piece = 0u; piece < pieces; ++piece) {
+      uint tilesOfMine = 0u;
+      if (int(piece) < fan) {
+        VitrailTriangle t;
+        if (corners == 3u) {
+          t = vitrailTriangleOf(viewport, polygon.corners[0], polygon.corners[piece + 1u], polygon.corners[piece + 2u],
+                         source);
+        } else {
+          t = vitrailHalfOf(viewport, polygon.corners[0], polygon.corners[corners - 1u], corners, source);
+        }
+        ivec2 inFirst, inLast, low, high;
+        vitrailBoundsOf(t, inFirst, inLast);
+        tilesOfMine = vitrailCandidates(inFirst, inLast, least, most, low, high);
+        VitrailSource of_;
+        if (tilesOfMine > 0u && !vitrailOrientTriangle(t, draw, of_)) tilesOfMine = 0u;
+        if (tilesOfMine > 0u) vitrailShareTriangle(thread, t, of_, low, high);
+      }
+      vitrailCoverAll(vitrailNoSmall(), tilesOfMine);
+      barrier(); // before the next piece takes the place of this one
+    }
+  }
+}
+
+#endif
+
+#endif

@@ -1,0 +1,73 @@
+// What frames of a raster need of the memory that follows them, and how that grows, or is made to do by drawing frames
+// in bands of rows. No graphics API.
+#pragma once
+
+#include <cstdint>
+
+namespace vitrail {
+
+// What a band needs of what grows with what is drawn.
+struct RasterNeeds {
+  std::uint64_t records = 0; // triangles in tiles
+  std::uint64_t large = 0;   // triangles that are set up in a pass of their own
+  std::uint64_t deep = 0;    // tiles whose fragments are collected
+  std::uint64_t blocks = 0;  // of their records
+  std::uint64_t fragments = 0;
+  std::uint64_t chunks = 0; // of their fragments
+
+  [[nodiscard]] bool fitInto(const RasterNeeds& room) const {
+    return records <= room.records && large <= room.large && deep <= room.deep && blocks <= room.blocks &&
+           fragments <= room.fragments && chunks <= room.chunks;
+  }
+  [[nodiscard]] RasterNeeds most(const RasterNeeds& other) const;
+};
+
+// What bounds it.
+struct RasterBounds {
+  std::uint64_t reach = 0;  // bytes of a buffer
+  std::uint64_t budget = 0; // bytes of all together
+  std::uint32_t tiles = 0;  // of a band
+  std::uint32_t samples = 1;
+};
+
+// Bytes of what a frame's passes keep.
+constexpr std::uint64_t kRasterTileBytes = 8;      // of each of two arrays, the other with kRasterTileListBytes
+constexpr std::uint64_t kRasterTileListBytes = 16; // a place in each class
+constexpr std::uint64_t kRasterRecordBytes = 32;
+constexpr std::uint64_t kRasterPlaceBytes = 12; // of a record
+constexpr std::uint64_t kRasterPairBytes = 8;
+constexpr std::uint64_t kRasterFragmentBytes = 8; // in each of two arrays
+constexpr std::uint64_t kRasterDeepTileBytes = 16;
+constexpr std::uint64_t kRasterDeepPixelsBytes = 64 * 16; // of a deep tile
+constexpr std::uint64_t kRasterListedBytes = 8;           // a block, a chunk, a large triangle
+constexpr std::uint64_t rasterMaskBytes(std::uint32_t samples) { return samples > 1 ? samples * 8 : 0; } // of a record
+constexpr std::uint64_t rasterStateBytes(std::uint32_t samples) { return samples * 64 * 32; } // of a deep tile
+
+// How many times too much that is: for what a shader reaches, for numbers of 32 bits, for the budget. At most 1: it
+// fits.
+double rasterExcess(const RasterNeeds& needs, const RasterBounds& bounds);
+
+// The room for what is needed, beside what there has been room for: with some to spare; without; and without what only
+// earlier frames needed. Returns how many times too much the least of these is, and where that is more than 1 `next`
+// says nothing.
+double planRasterRoom(const RasterNeeds& needs, const RasterNeeds& had, const RasterBounds& bounds, RasterNeeds& next);
+
+// With an eighth to spare.
+constexpr std::uint64_t withRasterSpare(std::uint64_t wanted) { return wanted + wanted / 8; }
+
+// The rows of tiles of a band after one of `rows` was so many times too much: fewer, at least 1.
+std::uint32_t fewerRasterRows(std::uint32_t rows, double excess);
+
+// Whether memory should follow frames down: where 120 frames in a row needed less than a quarter of it.
+class RasterLow {
+ public:
+  // Whether that is so after a frame with these needs. `most`: the most that those frames needed.
+  bool note(const RasterNeeds& needs, const RasterNeeds& room, RasterNeeds& most);
+  void forget() { *this = {}; }
+
+ private:
+  std::uint32_t frames_ = 0;
+  RasterNeeds most_;
+};
+
+} // namespace vitrail

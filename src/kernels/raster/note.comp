@@ -1,0 +1,29 @@
+// Keeps what a band wanted: of all bands of a frame the most. One thread.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define VITRAIL_SET 0
+#include "vitrail/raster/frame.glsl"
+
+layout(local_size_x = 1) in;
+
+layout(VITRAIL_RASTER_BOUND(30), std430) buffer TotalBlock { VitrailRasterTotals totals; };
+
+// Of two numbers of two words the greater.
+#define RAISE(value, high, other, otherHigh) \
+  if (otherHigh > high || (otherHigh == high && other > value)) { \
+    value = other; \
+    high = otherHigh; \
+  }
+
+void main() {
+  RAISE(totals.records, totals.recordsHigh, vitrailRasterControl.records, vitrailRasterControl.recordsHigh)
+  RAISE(totals.fragments, totals.fragmentsHigh, vitrailRasterControl.fragments, vitrailRasterControl.fragmentsHigh)
+  totals.large = max(totals.large, vitrailRasterControl.large);
+  totals.deep = max(totals.deep, vitrailRasterControl.deep.count);
+  totals.blocks = max(totals.blocks, vitrailRasterControl.blocks.count);
+  totals.chunks = max(totals.chunks, vitrailRasterControl.chunks.count);
+  totals.mostFragments = max(totals.mostFragments, vitrailRasterControl.mostFragments);
+  totals.cutPixels += vitrailRasterControl.cutPixels;
+  totals.bands += 1u;
+  totals.start = vitrailRasterStart;
+}

@@ -1,0 +1,492 @@
+// Creation, resizing and destruction of a raster, how it follows what frames need, and what it tells.
+#include "raster.h"
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <new>
+
+#include "check.h"
+#include "core/structures.h"
+#include "core/target_common.h"
+
+vitrail::RasterBounds VitrailVkRaster_T::bounds(std::uint32_t rows) const {
+  return {.reach = std::min(context->limits.storageBufferRange, context->limits.allocationSize),
+          .budget = budget,
+          .tiles = tilesX() * rows,
+          .samples = samples};
+}
+
+namespace vitrail {
+
+namespace {
+
+constexpr std::uint32_t kMostSide = 16384; // pixels: coordinates within the guard band
+
+constexpr RasterNeeds kLeast{.records = 1, .large = 1, .deep = 1, .blocks = 1, .fragments = 1, .chunks = 1};
+
+// ---- Checks
+
+VkResult checkStage(const Log& log, const VitrailVkRasterStage& stage, const char* name) {
+  if (stage.code != nullptr && stage.size >= 20 && stage.size % 4 == 0) return VK_SUCCESS;
+  return log.fail(VK_ERROR_INITIALIZATION_FAILED, "VitrailVkRasterDesc::%s: no SPIR-V (%s)", name,
+                  stage.code == nullptr ? "code is null" : "its size is none");
+}
+
+VkResult checkStages(const Log& log, const VitrailVkRasterDesc& desc) {
+  VkResult result = desc.positions.code != nullptr ? checkStage(log, desc.positions, "positions") : VK_SUCCESS;
+  if (result == VK_SUCCESS) result = checkStage(log, desc.setUp, "setUp");
+  if (result == VK_SUCCESS) result = checkStage(log, desc.setUpLarge, "setUpLarge");
+  if (result == VK_SUCCESS) result = checkStage(log, desc.blend, "blend");
+  if (result == VK_SUCCESS) result = checkStage(log, desc.blendDeep, "blendDeep");
+  return result;
+}
+
+VkResult checkExtent(const Log& log, const VkExtent2D& extent) {
+  if (extent.width > 0 && extent.height > 0 && extent.width <= kMostSide && extent.height <= kMostSide) {
+    return VK_SUCCESS;
+  }
+  return log.fail(VK_ERROR_INITIALIZATION_FAILED, "extent %ux%u: each side of a raster has 1 to %u pixels",
+                  extent.width, extent.height, kMostSide);
+}
+
+// By how much a stored depth may differ from the one that was stored; negative: no depth format that is known.
+float depthStepOf(VkFormat format, bool nearestIsZero) {
+  constexpr float kStep24 = 1.0F / 16777216.0F;
+  switch (format) {
+    case VK_FORMAT_D16_UNORM:
+    case VK_FORMAT_D16_UNORM_S8_UINT:
+      return 1.0F / 65535.0F;
+    case VK_FORMAT_X8_D24_UNORM_PACK32:
+    case VK_FORMAT_D24_UNORM_S8_UINT:
+      return 2.0F * kStep24;
+    case VK_FORMAT_D32_SFLOAT:
+    case VK_FORMAT_D32_SFLOAT_S8_UINT:
+      return nearestIsZero ? 2.0F * kStep24 : 0.0F; // what 1 - depth rounds
+    default:
+      return -1.0F;
+  }
+}
+
+VkResult checkFormats(const VitrailVkContext_T& context, const VitrailVkRaster_T& raster, VkFormat depth) {
+  VkFormatProperties properties{};
+  context.vk.GetPhysicalDeviceFormatProperties(context.physicalDevice, raster.colorFormat, &properties);
+  const bool known =
+      raster.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT || raster.colorFormat == VK_FORMAT_R32G32B32A32_SFLOAT;
+  if (!known || (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) == 0) {
+    return context.log.fail(VK_ERROR_FORMAT_NOT_SUPPORTED,
+                            "colorFormat %d: a raster writes storage images of VK_FORMAT_R16G16B16A16_SFLOAT or "
+                            "VK_FORMAT_R32G32B32A32_SFLOAT",
+                            raster.colorFormat);
+  }
+  if (raster.depthStep < 0.0F) {
+    return context.log.fail(VK_ERROR_INITIALIZATION_FAILED, "depthFormat %d is no depth format", depth);
+  }
+  return VK_SUCCESS;
+}
+
+// What shaders of a raster need of the device.
+VkResult checkDevice(const VitrailVkContext_T& context, VitrailVkRaster_T& raster) {
+  constexpr std::uint32_t kBuffers = kRasterBindings - 4; // of a kernel of the library's
+  VkPhysicalDeviceVulkan13Properties properties13{};
+  properties13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES;
+  VkPhysicalDeviceSubgroupProperties subgroups{};
+  subgroups.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = &subgroups;
+  context.vk.GetPhysicalDeviceProperties2(context.physicalDevice, &properties);
+  if (properties.properties.apiVersion >= VK_API_VERSION_1_3) {
+    subgroups.pNext = &properties13;
+    context.vk.GetPhysicalDeviceProperties2(context.physicalDevice, &properties);
+  }
+  const char* name = properties.properties.deviceName;
+  const bool shuffles = (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0 &&
+                        (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT) != 0;
+  if (!shuffles) {
+    return context.log.fail(VK_ERROR_FEATURE_NOT_PRESENT, "%s has no subgroup shuffles in compute shaders", name);
+  }
+  const std::uint32_t has = properties.properties.limits.maxPerStageDescriptorStorageBuffers;
+  if (has < kBuffers) {
+    return context.log.fail(VK_ERROR_FEATURE_NOT_PRESENT, "%s binds %u storage buffers to a shader; a raster needs %u",
+                            name, has, kBuffers);
+  }
+  // Before Vulkan 1.3 a driver may take narrower ones than it says, where it has several sizes.
+  raster.shuffles = properties13.minSubgroupSize >= 32;
+  return VK_SUCCESS;
+}
+
+VkResult checkDesc(const VitrailVkContext_T& context, const VitrailVkRasterDesc& desc) {
+  const Log& log = context.log;
+  constexpr std::uint32_t kMostSets = 7;
+  constexpr std::uint32_t kBlends = 15; // of VitrailBlend
+  VkResult result = checkExtent(log, desc.extent);
+  if (result != VK_SUCCESS) return result;
+  const std::uint32_t samples = desc.samples == 0 ? 1 : desc.samples;
+  if ((samples & (samples - 1)) != 0 || samples > 8 || (context.limits.sampleCounts & samples) == 0) {
+    return log.fail(VK_ERROR_FEATURE_NOT_PRESENT, "samples %u: a raster takes 1, 2, 4 or 8, as the device offers",
+                    samples);
+  }
+  if (desc.setLayoutCount > kMostSets || (desc.setLayoutCount > 0 && desc.setLayouts == nullptr)) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "setLayoutCount %u: setLayouts has up to %u layouts",
+                    desc.setLayoutCount, kMostSets);
+  }
+  if (desc.indexType != VK_INDEX_TYPE_UINT16 && desc.indexType != VK_INDEX_TYPE_UINT32 &&
+      desc.indexType != VK_INDEX_TYPE_NONE_KHR) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "indexType %d: indices have 16 or 32 bits, or there are none",
+                    desc.indexType);
+  }
+  if ((desc.blendModes & ~kBlends) != 0) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "blendModes 0x%x: 0x%x is none of VitrailBlend", desc.blendModes,
+                    desc.blendModes & ~kBlends);
+  }
+  if (desc.depthOrder != VITRAIL_DEPTH_NEAREST_IS_ZERO && desc.depthOrder != VITRAIL_DEPTH_NEAREST_IS_ONE) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "depthOrder %d is none of VitrailDepthOrder", desc.depthOrder);
+  }
+  if (desc.framesInFlight > VITRAIL_MAX_FRAMES_IN_FLIGHT) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "framesInFlight %u: %u is the most", desc.framesInFlight,
+                    static_cast<unsigned>(VITRAIL_MAX_FRAMES_IN_FLIGHT));
+  }
+  return checkStages(log, desc);
+}
+
+// ---- Creation
+
+std::unique_ptr<VitrailVkRaster_T> makeRaster(VitrailVkContext context, const VitrailVkRasterDesc& desc) {
+  constexpr std::uint32_t kAllBlends = 15;
+  std::unique_ptr<VitrailVkRaster_T> made(new (std::nothrow) VitrailVkRaster_T);
+  if (!made) return nullptr;
+  made->context = context;
+  ++context->owners;
+  made->extent = desc.extent;
+  made->samples = desc.samples == 0 ? 1 : desc.samples;
+  made->colorFormat = desc.colorFormat != VK_FORMAT_UNDEFINED ? desc.colorFormat : VK_FORMAT_R16G16B16A16_SFLOAT;
+  made->nearestIsZero = desc.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ZERO;
+  made->depthStep = depthStepOf(desc.depthFormat != VK_FORMAT_UNDEFINED ? desc.depthFormat : VK_FORMAT_D32_SFLOAT,
+                                made->nearestIsZero);
+  made->indexBytes = desc.indexType == VK_INDEX_TYPE_UINT16 ? 2 : desc.indexType == VK_INDEX_TYPE_UINT32 ? 4 : 0;
+  made->keepsPositions = desc.positions.code != nullptr;
+  made->blendModes = desc.blendModes != 0 ? desc.blendModes : kAllBlends;
+  made->solids = desc.solids != VK_FALSE;
+  made->hostSets = desc.setLayoutCount;
+  // What the device has is shared with the host's images and models.
+  made->budget = desc.memoryBudget != 0 ? desc.memoryBudget : context->limits.heapSize / 4 * 3;
+  made->framesInFlight = desc.framesInFlight != 0 ? desc.framesInFlight : 2;
+  made->debugName = desc.debugName != nullptr ? desc.debugName : "vitrail raster";
+  return made;
+}
+
+// Room for the tiles of an extent: for all where the budget has it, else for bands.
+VkResult makeRoom(VitrailVkRaster_T& raster, const RasterNeeds& guess) {
+  std::uint32_t rows = raster.tilesY();
+  RasterNeeds room;
+  while (planRasterRoom(guess, {}, raster.bounds(rows), room) > 1.0 &&
+         planRasterRoom(kLeast, {}, raster.bounds(rows), room) > 1.0) {
+    if (rows == 1) {
+      return raster.context->log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY,
+                                      "%s: a memoryBudget of %llu bytes has no room for a row of tiles, %u pixels wide",
+                                      raster.debugName.c_str(), static_cast<unsigned long long>(raster.budget),
+                                      raster.extent.width);
+    }
+    rows = fewerRasterRows(rows, 1.0);
+  }
+  return resizeRasterRoom(raster, room, rows);
+}
+
+// Most models' triangles are each in a tile or two; what frames need is known after the first.
+RasterNeeds guessOf(std::uint64_t triangles) {
+  RasterNeeds guess = kLeast;
+  guess.records = std::clamp<std::uint64_t>(triangles * 2, 4096, 1U << 20U);
+  guess.large = 256;
+  return guess;
+}
+
+RasterTables tablesOf(const VitrailVkRasterHints& hints, bool keepsPositions) {
+  constexpr std::uint64_t kGroup = raster::VITRAIL_RASTER_GROUP;
+  const auto atLeast = [](std::uint64_t value) { return std::max<std::uint64_t>(value, 1); };
+  return {.draws = atLeast(hints.draws),
+          .groups = atLeast(hints.triangles / kGroup + hints.draws),
+          .vertexGroups = keepsPositions ? atLeast(hints.vertices / kGroup + hints.draws) : 1,
+          .items = atLeast(hints.instances),
+          .vertices = keepsPositions ? atLeast(hints.vertices) : 1};
+}
+
+VkResult createStats(VitrailVkRaster_T& raster) {
+  constexpr VkMemoryPropertyFlags kHost = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  raster.facts.resize(raster.framesInFlight + 1);
+  const VkResult result =
+      raster.stats.create(*raster.context, raster.facts.size() * sizeof(RasterSlot), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                          kHost, VK_MEMORY_PROPERTY_HOST_CACHED_BIT, raster.debugName.c_str(), "statistics");
+  if (result != VK_SUCCESS) return result;
+  std::fill_n(static_cast<RasterSlot*>(raster.stats.mapped), raster.facts.size(), RasterSlot{});
+  return VK_SUCCESS;
+}
+
+VkResult build(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc) {
+  VkResult result = checkDevice(*raster.context, raster);
+  if (result == VK_SUCCESS) {
+    result = checkFormats(*raster.context, raster,
+                          desc.depthFormat != VK_FORMAT_UNDEFINED ? desc.depthFormat : VK_FORMAT_D32_SFLOAT);
+  }
+  if (result == VK_SUCCESS) result = createStats(raster);
+  if (result == VK_SUCCESS) result = createRasterBuffers(raster);
+  if (result == VK_SUCCESS) result = makeRoom(raster, guessOf(desc.hints.triangles));
+  if (result == VK_SUCCESS) result = resizeRasterTables(raster, tablesOf(desc.hints, raster.keepsPositions));
+  if (result == VK_SUCCESS) result = createRasterPipelines(raster, desc);
+  if (result == VK_SUCCESS) result = createRasterSets(raster);
+  return result;
+}
+
+// ---- Statistics
+
+// What a slot holds of a frame. False: it is not there (any more).
+bool readSlot(const VitrailVkRaster_T& raster, std::uint64_t frame, raster::VitrailRasterTotals& totals) {
+  const RasterFacts& facts = raster.facts[raster.slotOf(frame)];
+  if (!facts.any || facts.frame != frame) return false;
+  // The GPU may start to write the slot again at any time: as readSlot() of a target.
+  RasterSlot& slot = static_cast<RasterSlot*>(raster.stats.mapped)[raster.slotOf(frame)];
+  const std::uint64_t tag = frame + 1;
+  const std::atomic_ref<std::uint64_t> written(slot.tag);
+  if (tag == 0 || written.load(std::memory_order_acquire) != tag) return false;
+  totals = slot.totals;
+  std::atomic_thread_fence(std::memory_order_acquire);
+  return written.load(std::memory_order_relaxed) == tag;
+}
+
+std::uint64_t together(std::uint32_t high, std::uint32_t low) { return std::uint64_t{high} << 32U | low; }
+
+RasterNeeds needsOf(const raster::VitrailRasterTotals& totals) {
+  return {.records = together(totals.recordsHigh, totals.records),
+          .large = totals.large,
+          .deep = totals.deep,
+          .blocks = totals.blocks,
+          .fragments = together(totals.fragmentsHigh, totals.fragments),
+          .chunks = totals.chunks};
+}
+
+std::uint32_t mergePassesOf(std::uint32_t mostFragments) {
+  std::uint32_t passes = 0;
+  while (mostFragments > std::uint64_t{raster::VITRAIL_RASTER_CHUNK} << passes) ++passes;
+  return passes;
+}
+
+std::uint32_t slicesOf(std::uint32_t mostFragments) { return mostFragments / raster::VITRAIL_RASTER_SLICE + 1; }
+
+// Whether the frame had all that it needed.
+bool hadRoom(const raster::VitrailRasterTotals& totals, const RasterFacts& facts) {
+  const bool hasDeep = totals.deep == 0 || (facts.deep && mergePassesOf(totals.mostFragments) <= facts.mergePasses &&
+                                            slicesOf(totals.mostFragments) <= facts.slices);
+  return totals.start.fits != 0 && hasDeep && needsOf(totals).fitInto(facts.room);
+}
+
+void decode(const raster::VitrailRasterTotals& totals, const RasterFacts& facts, VitrailVkRasterStats& stats) {
+  clearKeepingNext(stats);
+  stats.frame = facts.frame;
+  stats.bands = facts.bands;
+  const bool whole = facts.empty || (totals.bands == facts.bands && totals.cutPixels == 0 && hadRoom(totals, facts));
+  stats.exact = whole && !facts.misused ? VK_TRUE : VK_FALSE;
+  if (facts.empty) return;
+  stats.errorBound = facts.bounded ? raster::VITRAIL_RASTER_STOP : 0.0F;
+  stats.draws = totals.start.tables.count;
+  stats.instances = totals.start.items;
+  stats.vertices = totals.start.vertexCount;
+  const RasterNeeds needs = needsOf(totals);
+  stats.records = needs.records;
+  stats.largeTriangles = totals.large;
+  stats.deepTiles = totals.deep;
+  stats.deepFragments = needs.fragments;
+  stats.deepestPixel = totals.mostFragments;
+  stats.cutPixels = totals.cutPixels;
+}
+
+// ---- Growth
+
+VkResult growTables(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals& totals, const RasterFacts& facts) {
+  if (totals.start.tooMany != 0) {
+    return raster.context->log.fail(
+        VK_ERROR_OUT_OF_DEVICE_MEMORY,
+        "%s: the frame's draws have more than 2^31 triangles, instances or vertices, or one "
+        "of them more than 2^30: draw fewer at once",
+        raster.debugName.c_str());
+  }
+  const auto grown = [](std::uint64_t wanted, std::uint64_t had) {
+    return wanted > had ? withRasterSpare(wanted) : had;
+  };
+  const RasterTables& had = raster.tables;
+  RasterTables next{.draws = grown(facts.draws, had.draws),
+                    .groups = grown(totals.start.groups.count, had.groups),
+                    .vertexGroups = grown(totals.start.vertices.count, had.vertexGroups),
+                    .items = grown(totals.start.items, had.items),
+                    .vertices = grown(totals.start.vertexCount, had.vertices)};
+  // What is spare is not worth a refusal.
+  const std::uint64_t reach =
+      std::min(raster.context->limits.storageBufferRange, raster.context->limits.allocationSize);
+  if (next.vertices * 16 > reach) next.vertices = std::max<std::uint64_t>(totals.start.vertexCount, had.vertices);
+  return resizeRasterTables(raster, next);
+}
+
+VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
+  RasterNeeds next;
+  std::uint32_t rows = raster.bandRows;
+  const double excess = planRasterRoom(needs, raster.room, raster.bounds(rows), next);
+  if (excess > 1.0) {
+    if (rows == 1) {
+      return raster.context->log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY,
+                                      "%s: there is no room for the %llu triangles of a row of tiles and for %llu "
+                                      "fragments of deep tiles: a larger "
+                                      "memoryBudget or a smaller extent has it",
+                                      raster.debugName.c_str(), static_cast<unsigned long long>(needs.records),
+                                      static_cast<unsigned long long>(needs.fragments));
+    }
+    rows = fewerRasterRows(rows, excess);
+    next = raster.room;
+  }
+  return resizeRasterRoom(raster, next, rows);
+}
+
+// Less memory, or fewer bands, where frames have needed little for long.
+VkResult shrink(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
+  RasterNeeds most;
+  if (!raster.low.note(needs, raster.room, most)) return VK_SUCCESS;
+  const std::uint32_t rows = std::min(raster.tilesY(), raster.bandRows * 2);
+  RasterNeeds next;
+  const bool splits = raster.bandRows < raster.tilesY();
+  if (planRasterRoom(most, {}, raster.bounds(rows), next) > 1.0) return VK_SUCCESS;
+  if (splits) next = raster.room; // more rows need more
+  if (rasterExcess(next, raster.bounds(rows)) > 1.0) return VK_SUCCESS;
+  return resizeRasterRoom(raster, next, rows);
+}
+
+// Makes what frames like this one need.
+VkResult follow(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals& totals, const RasterFacts& facts) {
+  VkResult result = VK_SUCCESS;
+  const RasterNeeds needs = needsOf(totals);
+  if (totals.start.fits == 0) result = growTables(raster, totals, facts);
+  if (result == VK_SUCCESS && totals.deep > 0) {
+    result = createDeepPipelines(raster);
+    if (result == VK_SUCCESS) {
+      raster.deepPlanned = true;
+      raster.mergePasses = std::max(raster.mergePasses, mergePassesOf(totals.mostFragments));
+      raster.slices = std::max(raster.slices, slicesOf(totals.mostFragments));
+    }
+  }
+  if (result != VK_SUCCESS) return result;
+  if (needs.fitInto(raster.room)) return shrink(raster, needs);
+  raster.low.forget();
+  // A band of more rows than they are now needed more.
+  if (facts.bands < raster.bands()) return VK_SUCCESS;
+  return growRoom(raster, needs);
+}
+
+} // namespace
+
+} // namespace vitrail
+
+extern "C" VkResult vitrailVkCreateRaster(VitrailVkContext context, const VitrailVkRasterDesc* desc,
+                                          VitrailVkRaster* raster) {
+  using namespace vitrail;
+  if (raster != nullptr) *raster = nullptr;
+  if (context == nullptr || desc == nullptr || raster == nullptr) {
+    return nullArgument(context, "vitrailVkCreateRaster");
+  }
+  if (context->destroyed) {
+    return context->log.fail(VK_ERROR_INITIALIZATION_FAILED, "vitrailVkCreateRaster: the context was destroyed");
+  }
+  VkResult result = checkNext(context->log, desc->next, "VitrailVkRasterDesc");
+  if (result == VK_SUCCESS) result = checkDesc(*context, *desc);
+  if (result != VK_SUCCESS) return result;
+  std::unique_ptr<VitrailVkRaster_T> made = makeRaster(context, *desc);
+  if (!made) return context->log.fail(VK_ERROR_OUT_OF_HOST_MEMORY, "no memory for a raster");
+  result = build(*made, *desc);
+  if (result != VK_SUCCESS) {
+    vitrailVkDestroyRaster(made.release());
+    return result; // the log has the reason
+  }
+  *raster = made.release();
+  return VK_SUCCESS;
+}
+
+extern "C" void vitrailVkDestroyRaster(VitrailVkRaster raster) {
+  if (raster == nullptr) return;
+  const std::unique_ptr<VitrailVkRaster_T> owned(raster);
+  const VitrailVkContext_T& context = *raster->context;
+  for (vitrail::RetiredBuffer& retired : raster->retired) retired.buffer.destroy(context);
+  for (vitrail::Buffer& buffer : raster->buffers) buffer.destroy(context);
+  raster->stats.destroy(context);
+  context.vk.DestroyDescriptorPool(context.device, raster->descriptors, context.allocator);
+  vitrail::destroyRasterPipelines(*raster);
+  vitrail::releaseContext(raster->context);
+}
+
+extern "C" VkResult vitrailVkResizeRaster(VitrailVkRaster raster, VkExtent2D extent) {
+  using namespace vitrail;
+  if (raster == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
+  const VkResult result = checkExtent(raster->context->log, extent);
+  if (result != VK_SUCCESS) return result;
+  const VkExtent2D before = raster->extent;
+  raster->extent = extent;
+  RasterNeeds guess = raster->room;
+  guess.deep = guess.blocks = guess.fragments = guess.chunks = 1;
+  const VkResult made = makeRoom(*raster, guess);
+  if (made != VK_SUCCESS) raster->extent = before;
+  if (made == VK_SUCCESS) raster->low.forget();
+  return made;
+}
+
+extern "C" VkResult vitrailVkUpdateRaster(VitrailVkRaster raster, uint64_t frame) {
+  using namespace vitrail;
+  if (raster == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
+  // As vitrailVkUpdateTarget().
+  const std::uint64_t number = std::min(raster->frames.numberOf(frame), raster->frames.numberOf(0));
+  const bool again = raster->frames.any() && number == raster->frames.newest() && frame != 0;
+  freeRetired(*raster, raster->frames.begun() + (again ? 0 : 1));
+  raster::VitrailRasterTotals totals{};
+  std::uint64_t newest = number;
+  const bool read = readNewestOf(number, raster->facts.size(), [&](std::uint64_t one) {
+    newest = one;
+    return readSlot(*raster, one, totals);
+  });
+  if (!read || newest + 1 <= raster->newestNews) return VK_SUCCESS;
+  const RasterFacts& facts = raster->facts[raster->slotOf(newest)];
+  if (!facts.empty) {
+    const VkResult result = follow(*raster, totals, facts);
+    if (result != VK_SUCCESS) return result;
+  }
+  raster->newestNews = newest + 1;
+  return VK_SUCCESS;
+}
+
+extern "C" void vitrailVkRasterMemory(VitrailVkRaster raster, VitrailVkRasterMemory* memory) {
+  using namespace vitrail;
+  if (memory == nullptr) return;
+  clearKeepingNext(*memory);
+  if (raster == nullptr) return;
+  for (std::size_t i = 0; i < kRasterBuffers; ++i) {
+    const bool ofDraws = i >= static_cast<std::size_t>(RasterBuffer::DrawPlaces);
+    (ofDraws ? memory->drawBytes : memory->tileBytes) += raster->buffers[i].size;
+  }
+  for (const RetiredBuffer& retired : raster->retired) memory->retiredBytes += retired.buffer.size;
+  memory->totalBytes = memory->tileBytes + memory->drawBytes + memory->retiredBytes + raster->stats.size;
+}
+
+extern "C" uint32_t vitrailVkRasterBands(VitrailVkRaster raster) { return raster != nullptr ? raster->bands() : 0; }
+
+extern "C" VkResult vitrailVkReadRasterStats(VitrailVkRaster raster, uint64_t frame, VitrailVkRasterStats* stats) {
+  using namespace vitrail;
+  if (raster == nullptr || stats == nullptr) {
+    if (stats != nullptr) clearKeepingNext(*stats);
+    return nullArgument(raster != nullptr ? raster->context : nullptr, "vitrailVkReadRasterStats");
+  }
+  raster::VitrailRasterTotals totals{};
+  std::uint64_t found = frame;
+  const bool newest = frame == 0 && !raster->frames.areGiven();
+  const bool read = newest ? readNewestOf(raster->frames.newest(), raster->facts.size(),
+                                          [&](std::uint64_t one) {
+                                            found = one;
+                                            return readSlot(*raster, one, totals);
+                                          })
+                           : readSlot(*raster, frame, totals);
+  if (!read) return VK_NOT_READY;
+  decode(totals, raster->facts[raster->slotOf(found)], *stats);
+  return VK_SUCCESS;
+}

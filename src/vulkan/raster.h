@@ -1,0 +1,212 @@
+// A raster: what its passes keep, its pipelines, and its frames.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "buffer.h"
+#include "context.h"
+#include "core/frame_numbers.h"
+#include "core/raster_needs.h"
+#include "vitrail/raster/layout.h"
+#include "vitrail/vulkan_raster.h"
+
+namespace vitrail {
+
+// The raster's own buffers. Those of one kind follow the same needs.
+enum class RasterBuffer : std::uint8_t {
+  Frame,  // what frames always have
+  Counts, // control, classes of tiles and totals
+  Start,
+  TileRecords, // tiles
+  TileList,
+  Records, // records
+  RecordPlaces,
+  Pairs,
+  SampleMasks,
+  Large, // and what else a band counts
+  DeepTiles,
+  DeepPixels,
+  States,
+  Blocks,
+  Fragments,
+  SortedFragments,
+  Chunks,
+  DrawPlaces, // draws
+  DrawOfGroup,
+  DrawOfVertexGroup,
+  DrawOfItem,
+  Positions,
+  Count
+};
+constexpr std::size_t kRasterBuffers = static_cast<std::size_t>(RasterBuffer::Count);
+
+// Where the parts of RasterBuffer::Counts begin, at what any device aligns buffers to. They are cleared together.
+constexpr std::uint64_t kRasterControlAt = 0;
+constexpr std::uint64_t kRasterClassesAt = 256;
+constexpr std::uint64_t kRasterTotalsAt = 512; // not cleared from band to band
+constexpr std::uint64_t kRasterCountBytes = 768;
+
+// The numbers of bindings of the raster's set are those of shaders/vitrail/raster/frame.glsl and the others in its
+// folder. The set is there three times, with what shaders of a kind look at, as hosts have buffers of their own, and
+// devices bind not many to a shader.
+constexpr std::uint32_t kRasterBindings = 31;
+enum class RasterSet : std::uint8_t {
+  Own,      // of the library's kernels: all
+  Geometry, // of positions and setting up
+  Blend,    // of blending
+  Count
+};
+constexpr std::size_t kRasterSets = static_cast<std::size_t>(RasterSet::Count);
+bool hasRasterBinding(RasterSet set, std::uint32_t samples, std::uint32_t binding);
+VkDescriptorType rasterBindingType(std::uint32_t binding);
+
+// What frames have of draws.
+struct RasterTables {
+  std::uint64_t draws = 1;
+  std::uint64_t groups = 1; // that set up triangles
+  std::uint64_t vertexGroups = 1;
+  std::uint64_t items = 1; // instances of all draws
+  std::uint64_t vertices = 1;
+};
+
+// The library's own kernels.
+enum class RasterKernel : std::uint8_t {
+  Prepare,
+  Tables,
+  Plan,
+  Scatter,
+  Mean,
+  Note,
+  DeepCount, // from here on of deep tiles
+  DeepPlace,
+  DeepFill,
+  DeepSort,
+  DeepMerge,
+  Count
+};
+constexpr std::size_t kRasterKernels = static_cast<std::size_t>(RasterKernel::Count);
+
+// A stage of the host's shader, kept for as long as pipelines are made of it.
+struct RasterStage {
+  VkShaderModule module = VK_NULL_HANDLE;
+  std::vector<VkSpecializationMapEntry> entries;
+  std::vector<std::uint8_t> data;
+};
+
+// The memory that one frame's counters are copied to. The tag is 0 while they are not there.
+struct RasterSlot {
+  raster::VitrailRasterTotals totals;
+  std::uint64_t tag; // frame + 1
+};
+
+// What the host's side knows of a frame.
+struct RasterFacts {
+  std::uint64_t frame = 0;
+  RasterNeeds room;
+  std::uint32_t bands = 0;
+  std::uint32_t draws = 0;
+  bool deep = false; // its passes of deep tiles are there, with so many
+  std::uint32_t mergePasses = 0;
+  std::uint32_t slices = 0;
+  bool empty = false;   // nothing was to be drawn
+  bool bounded = false; // what is hidden was left out
+  bool misused = false;
+  bool any = false;
+};
+
+struct RetiredBuffer {
+  Buffer buffer;
+  FrameUse use;
+};
+
+} // namespace vitrail
+
+struct VitrailVkRaster_T {
+  VitrailVkContext context = nullptr; // which the raster owns a share of
+  VkExtent2D extent{};
+  std::uint32_t samples = 1;
+  VkFormat colorFormat = VK_FORMAT_UNDEFINED;
+  float depthStep = 0.0F; // of the opaque depth, as far as it differs from what is computed
+  bool nearestIsZero = true;
+  std::uint32_t indexBytes = 2; // 0: there are none
+  bool keepsPositions = false;
+  bool shuffles = false;
+  std::uint32_t blendModes = 0;
+  bool solids = false;
+  std::uint32_t hostSets = 0;
+  std::uint64_t budget = 0;
+  std::uint32_t framesInFlight = 2;
+  std::string debugName;
+
+  // Of each RasterSet. In pipeline layouts of the host's shader the set comes behind the host's own, else it is the
+  // first.
+  std::array<VkDescriptorSetLayout, vitrail::kRasterSets> setLayouts{};
+  std::array<VkPipelineLayout, vitrail::kRasterSets> layouts{};
+  VkDescriptorPool descriptors = VK_NULL_HANDLE;
+  std::vector<std::array<VkDescriptorSet, vitrail::kRasterSets>> sets; // of framesInFlight frames
+
+  VkPipeline positions = VK_NULL_HANDLE;
+  VkPipeline setUp = VK_NULL_HANDLE;
+  VkPipeline setUpLarge = VK_NULL_HANDLE;
+  std::array<VkPipeline, vitrail::raster::VITRAIL_RASTER_CLASSES> blends{};
+  VkPipeline blendDeep = VK_NULL_HANDLE;
+  std::array<VkPipeline, vitrail::kRasterKernels> kernels{};
+  vitrail::RasterStage deepStage; // until the first frame that has deep tiles
+
+  std::array<vitrail::Buffer, vitrail::kRasterBuffers> buffers;
+  std::vector<vitrail::RetiredBuffer> retired; // that frames in flight use
+  vitrail::RasterNeeds room;
+  vitrail::RasterTables tables;
+  std::uint32_t bandRows = 0; // of tiles
+  bool deepPlanned = false;   // frames have the passes of deep tiles, and so many of some
+  std::uint32_t mergePasses = 0;
+  std::uint32_t slices = 1;
+  vitrail::RasterLow low;
+  std::uint64_t newestNews = 0; // the frame whose statistics were looked at last, + 1
+  bool tablesAreMade = false;   // by a frame before, in the present buffers
+
+  vitrail::Buffer stats; // RasterSlot[framesInFlight + 1]
+  std::vector<vitrail::RasterFacts> facts;
+  vitrail::FrameNumbers frames;
+  std::uint32_t nextBand = 0; // of the frame that is being recorded; 0: it is whole
+
+  [[nodiscard]] vitrail::Buffer& buffer(vitrail::RasterBuffer which) {
+    return buffers[static_cast<std::size_t>(which)];
+  }
+  [[nodiscard]] VkPipeline kernel(vitrail::RasterKernel which) const {
+    return kernels[static_cast<std::size_t>(which)];
+  }
+  [[nodiscard]] VkPipelineLayout layout(vitrail::RasterSet which) const {
+    return layouts[static_cast<std::size_t>(which)];
+  }
+  [[nodiscard]] const std::array<VkDescriptorSet, vitrail::kRasterSets>& frameSets() const {
+    return sets[frames.begun() % sets.size()];
+  }
+  [[nodiscard]] std::uint32_t tilesX() const { return (extent.width + 7) / 8; }
+  [[nodiscard]] std::uint32_t tilesY() const { return (extent.height + 7) / 8; }
+  [[nodiscard]] std::uint32_t bands() const { return (tilesY() + bandRows - 1) / bandRows; }
+  [[nodiscard]] std::size_t slotOf(std::uint64_t frame) const { return frame % facts.size(); }
+  [[nodiscard]] vitrail::RasterBounds bounds(std::uint32_t rows) const;
+};
+
+namespace vitrail {
+
+// Layouts and pipelines but those of deep tiles. Log their errors.
+VkResult createRasterPipelines(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc);
+VkResult createDeepPipelines(VitrailVkRaster_T& raster);
+void destroyRasterPipelines(VitrailVkRaster_T& raster);
+
+// Makes room. Memory that frames in flight use is retired. Log their errors, on which nothing changes.
+VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, std::uint32_t bandRows);
+VkResult resizeRasterTables(VitrailVkRaster_T& raster, const RasterTables& tables);
+VkResult createRasterBuffers(VitrailVkRaster_T& raster);
+void freeRetired(VitrailVkRaster_T& raster, std::uint64_t place);
+
+VkResult createRasterSets(VitrailVkRaster_T& raster);
+// Writes the sets of the frame that is begun.
+void writeRasterSets(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info);
+
+} // namespace vitrail

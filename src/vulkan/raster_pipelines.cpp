@@ -1,0 +1,284 @@
+// The layouts and pipelines of a raster: the host's shader in its stages, and the library's kernels.
+#include <algorithm>
+#include <cstring>
+#include <span>
+
+#include "raster.h"
+#include "shaders/raster_deep_count.h"
+#include "shaders/raster_deep_fill.h"
+#include "shaders/raster_deep_fill_several.h"
+#include "shaders/raster_deep_merge.h"
+#include "shaders/raster_deep_place.h"
+#include "shaders/raster_deep_sort.h"
+#include "shaders/raster_mean_rgba16f.h"
+#include "shaders/raster_mean_rgba32f.h"
+#include "shaders/raster_note.h"
+#include "shaders/raster_plan.h"
+#include "shaders/raster_prepare.h"
+#include "shaders/raster_scatter.h"
+#include "shaders/raster_tables.h"
+
+namespace vitrail {
+
+namespace {
+
+constexpr std::uint32_t kFirstConstant = 1710; // of shaders/vitrail/raster/frame.glsl
+constexpr std::uint32_t kPushBytes = 3 * sizeof(std::uint32_t);
+
+// The constants of frame.glsl, in the order of their ids.
+struct RasterConstants {
+  std::uint32_t samples = 1;
+  VkBool32 shuffles = VK_FALSE;
+  VkBool32 positions = VK_FALSE;
+  std::uint32_t keep = 16;
+  VkBool32 oneBatch = VK_FALSE;
+  std::uint32_t tileClass = 0;
+  std::uint32_t blends = 0;
+  VkBool32 onlyTriangles = VK_FALSE;
+  VkBool32 nearestIsZero = VK_FALSE;
+  std::uint32_t indexBytes = 4;
+};
+constexpr std::uint32_t kConstants = sizeof(RasterConstants) / sizeof(std::uint32_t);
+
+RasterConstants constantsOf(const VitrailVkRaster_T& raster) {
+  RasterConstants constants;
+  constants.samples = raster.samples;
+  constants.shuffles = raster.shuffles ? VK_TRUE : VK_FALSE;
+  constants.positions = raster.keepsPositions ? VK_TRUE : VK_FALSE;
+  constants.blends = raster.blendModes;
+  constants.onlyTriangles = raster.solids ? VK_FALSE : VK_TRUE;
+  constants.nearestIsZero = raster.nearestIsZero ? VK_TRUE : VK_FALSE;
+  constants.indexBytes = raster.indexBytes;
+  return constants;
+}
+
+VkResult createModule(const VitrailVkContext_T& context, const std::uint32_t* code, std::size_t size,
+                      VkShaderModule* module) {
+  VkShaderModuleCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  info.codeSize = size;
+  info.pCode = code;
+  return context.vk.CreateShaderModule(context.device, &info, context.allocator, module);
+}
+
+// The host's specialization, and behind it room for the library's.
+VkResult keepStage(const VitrailVkContext_T& context, const VitrailVkRasterStage& given, RasterStage& stage) {
+  if (given.specialization != nullptr) {
+    const VkSpecializationInfo& host = *given.specialization;
+    stage.entries.assign(host.pMapEntries, host.pMapEntries + host.mapEntryCount);
+    stage.data.resize(host.dataSize);
+    if (host.dataSize > 0) std::memcpy(stage.data.data(), host.pData, host.dataSize);
+  }
+  return createModule(context, given.code, given.size, &stage.module);
+}
+
+void destroyStage(const VitrailVkContext_T& context, RasterStage& stage) {
+  context.vk.DestroyShaderModule(context.device, stage.module, context.allocator);
+  stage = {};
+}
+
+VkResult createPipeline(const VitrailVkRaster_T& raster, VkPipelineLayout layout, const RasterStage& stage,
+                        const RasterConstants& constants, const char* name, VkPipeline* pipeline) {
+  const VitrailVkContext_T& context = *raster.context;
+  std::vector<VkSpecializationMapEntry> entries = stage.entries;
+  std::vector<std::uint8_t> data = stage.data;
+  data.resize((data.size() + 3) / 4 * 4);
+  for (std::uint32_t i = 0; i < kConstants; ++i) {
+    entries.push_back({kFirstConstant + i, static_cast<std::uint32_t>(data.size() + i * sizeof(std::uint32_t)),
+                       sizeof(std::uint32_t)});
+  }
+  const std::size_t end = data.size();
+  data.resize(end + sizeof(constants));
+  std::memcpy(data.data() + end, &constants, sizeof(constants));
+  const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(), data.size(),
+                                            data.data()};
+  VkComputePipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  info.stage.module = stage.module;
+  info.stage.pName = "main";
+  info.stage.pSpecializationInfo = &specialization;
+  info.layout = layout;
+  const VkResult result =
+      context.vk.CreateComputePipelines(context.device, context.cache, 1, &info, context.allocator, pipeline);
+  if (result != VK_SUCCESS) return context.log.fail(result, "%s %s: no pipeline", raster.debugName.c_str(), name);
+  context.name(VK_OBJECT_TYPE_PIPELINE, *pipeline, (raster.debugName + ' ' + name).c_str());
+  return VK_SUCCESS;
+}
+
+std::span<const std::uint32_t> kernelCode(const VitrailVkRaster_T& raster, RasterKernel kernel) {
+  switch (kernel) {
+    case RasterKernel::Prepare:
+      return shaders::raster_prepare;
+    case RasterKernel::Tables:
+      return shaders::raster_tables;
+    case RasterKernel::Plan:
+      return shaders::raster_plan;
+    case RasterKernel::Scatter:
+      return shaders::raster_scatter;
+    case RasterKernel::Mean:
+      if (raster.colorFormat == VK_FORMAT_R32G32B32A32_SFLOAT) return shaders::raster_mean_rgba32f;
+      return shaders::raster_mean_rgba16f;
+    case RasterKernel::Note:
+      return shaders::raster_note;
+    case RasterKernel::DeepCount:
+      return shaders::raster_deep_count;
+    case RasterKernel::DeepPlace:
+      return shaders::raster_deep_place;
+    case RasterKernel::DeepFill:
+      if (raster.samples > 1) return shaders::raster_deep_fill_several;
+      return shaders::raster_deep_fill;
+    case RasterKernel::DeepSort:
+      return shaders::raster_deep_sort;
+    case RasterKernel::DeepMerge:
+      return shaders::raster_deep_merge;
+    case RasterKernel::Count:
+      break;
+  }
+  return {};
+}
+
+const char* kernelName(RasterKernel kernel) {
+  constexpr std::array<const char*, kRasterKernels> kNames = {"prepare",   "tables",    "plan",       "scatter",
+                                                              "mean",      "note",      "deep count", "deep place",
+                                                              "deep fill", "deep sort", "deep merge"};
+  return kNames[static_cast<std::size_t>(kernel)];
+}
+
+VkResult createKernels(VitrailVkRaster_T& raster, RasterKernel first, RasterKernel end) {
+  for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); ++i) {
+    const auto kernel = static_cast<RasterKernel>(i);
+    if (kernel == RasterKernel::Mean && raster.samples == 1) continue;
+    const std::span<const std::uint32_t> code = kernelCode(raster, kernel);
+    RasterStage stage;
+    VkResult result = createModule(*raster.context, code.data(), code.size_bytes(), &stage.module);
+    if (result == VK_SUCCESS) {
+      result = createPipeline(raster, raster.layout(RasterSet::Own), stage, constantsOf(raster), kernelName(kernel),
+                              &raster.kernels[i]);
+    }
+    destroyStage(*raster.context, stage);
+    if (result != VK_SUCCESS) return result;
+  }
+  return VK_SUCCESS;
+}
+
+VkResult createSetLayout(VitrailVkRaster_T& raster, RasterSet set, VkDescriptorSetLayout* layout) {
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (std::uint32_t i = 0; i < kRasterBindings; ++i) {
+    if (!hasRasterBinding(set, raster.samples, i)) continue;
+    bindings.push_back({i, rasterBindingType(i), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+  }
+  VkDescriptorSetLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  info.bindingCount = static_cast<std::uint32_t>(bindings.size());
+  info.pBindings = bindings.data();
+  const VitrailVkContext_T& context = *raster.context;
+  const VkResult result = context.vk.CreateDescriptorSetLayout(context.device, &info, context.allocator, layout);
+  if (result == VK_SUCCESS) context.name(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, *layout, raster.debugName.c_str());
+  return result;
+}
+
+VkResult createLayout(VitrailVkRaster_T& raster, std::span<const VkDescriptorSetLayout> sets,
+                      VkPipelineLayout* layout) {
+  const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, kPushBytes};
+  VkPipelineLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
+  info.pSetLayouts = sets.data();
+  info.pushConstantRangeCount = 1;
+  info.pPushConstantRanges = &push;
+  const VitrailVkContext_T& context = *raster.context;
+  const VkResult result = context.vk.CreatePipelineLayout(context.device, &info, context.allocator, layout);
+  if (result == VK_SUCCESS) context.name(VK_OBJECT_TYPE_PIPELINE_LAYOUT, *layout, raster.debugName.c_str());
+  return result;
+}
+
+VkResult createLayouts(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc) {
+  for (std::size_t i = 0; i < kRasterSets; ++i) {
+    const auto set = static_cast<RasterSet>(i);
+    VkResult result = createSetLayout(raster, set, &raster.setLayouts[i]);
+    std::vector<VkDescriptorSetLayout> sets;
+    if (set != RasterSet::Own) sets.assign(desc.setLayouts, desc.setLayouts + desc.setLayoutCount);
+    sets.push_back(raster.setLayouts[i]);
+    if (result == VK_SUCCESS) result = createLayout(raster, sets, &raster.layouts[i]);
+    if (result != VK_SUCCESS) return result;
+  }
+  return VK_SUCCESS;
+}
+
+// One pipeline of a stage before blending.
+VkResult createGeometryPipeline(VitrailVkRaster_T& raster, const VitrailVkRasterStage& given, const char* name,
+                                VkPipeline* pipeline) {
+  RasterStage stage;
+  VkResult result = keepStage(*raster.context, given, stage);
+  if (result != VK_SUCCESS) {
+    raster.context->log.error("%s %s: no shader module", raster.debugName.c_str(), name);
+  } else {
+    result = createPipeline(raster, raster.layout(RasterSet::Geometry), stage, constantsOf(raster), name, pipeline);
+  }
+  destroyStage(*raster.context, stage);
+  return result;
+}
+
+// One for each class of tiles. Tiles with few records keep fewer of a pixel's fragments in registers, so that more work
+// groups run at a time. Not of several samples, which need more registers for other things.
+VkResult createBlends(VitrailVkRaster_T& raster, const VitrailVkRasterStage& given) {
+  constexpr std::array<std::uint32_t, raster::VITRAIL_RASTER_CLASSES> kKeep = {8, 16, 16, 32};
+  RasterStage stage;
+  VkResult result = keepStage(*raster.context, given, stage);
+  for (std::uint32_t i = 0; result == VK_SUCCESS && i < raster::VITRAIL_RASTER_CLASSES; ++i) {
+    RasterConstants constants = constantsOf(raster);
+    constants.keep = raster.samples > 1 ? 16 : kKeep[i];
+    constants.oneBatch = i < 2 ? VK_TRUE : VK_FALSE;
+    constants.tileClass = i;
+    result = createPipeline(raster, raster.layout(RasterSet::Blend), stage, constants, "blend", &raster.blends[i]);
+  }
+  destroyStage(*raster.context, stage);
+  return result;
+}
+
+} // namespace
+
+VkResult createRasterPipelines(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc) {
+  const VitrailVkContext_T& context = *raster.context;
+  VkResult result = createLayouts(raster, desc);
+  if (result != VK_SUCCESS) return context.log.fail(result, "%s: no pipeline layout", raster.debugName.c_str());
+  if (raster.keepsPositions) result = createGeometryPipeline(raster, desc.positions, "positions", &raster.positions);
+  if (result == VK_SUCCESS) result = createGeometryPipeline(raster, desc.setUp, "set up", &raster.setUp);
+  if (result == VK_SUCCESS)
+    result = createGeometryPipeline(raster, desc.setUpLarge, "set up large", &raster.setUpLarge);
+  if (result == VK_SUCCESS) result = createBlends(raster, desc.blend);
+  if (result == VK_SUCCESS) result = keepStage(context, desc.blendDeep, raster.deepStage);
+  if (result == VK_SUCCESS) result = createKernels(raster, RasterKernel::Prepare, RasterKernel::DeepCount);
+  return result;
+}
+
+VkResult createDeepPipelines(VitrailVkRaster_T& raster) {
+  if (raster.blendDeep != VK_NULL_HANDLE) return VK_SUCCESS;
+  const VkResult result = createKernels(raster, RasterKernel::DeepCount, RasterKernel::Count);
+  if (result != VK_SUCCESS) return result;
+  return createPipeline(raster, raster.layout(RasterSet::Blend), raster.deepStage, constantsOf(raster), "blend deep",
+                        &raster.blendDeep);
+}
+
+void destroyRasterPipelines(VitrailVkRaster_T& raster) {
+  const VitrailVkContext_T& context = *raster.context;
+  const auto destroy = [&](VkPipeline pipeline) {
+    context.vk.DestroyPipeline(context.device, pipeline, context.allocator);
+  };
+  for (const VkPipeline pipeline : {raster.positions, raster.setUp, raster.setUpLarge, raster.blendDeep}) {
+    destroy(pipeline);
+  }
+  for (const VkPipeline pipeline : raster.blends) destroy(pipeline);
+  for (const VkPipeline pipeline : raster.kernels) destroy(pipeline);
+  destroyStage(context, raster.deepStage);
+  for (const VkPipelineLayout layout : raster.layouts) {
+    context.vk.DestroyPipelineLayout(context.device, layout, context.allocator);
+  }
+  for (const VkDescriptorSetLayout layout : raster.setLayouts) {
+    context.vk.DestroyDescriptorSetLayout(context.device, layout, context.allocator);
+  }
+}
+
+} // namespace vitrail

@@ -1,0 +1,387 @@
+// Records the passes of a raster's frame.
+#include <algorithm>
+#include <cstddef>
+
+#include "check.h"
+#include "raster.h"
+
+namespace vitrail {
+
+namespace {
+
+// Records of a tile that is not deep from the start, and how often it goes through 64 of them before it is. A CPU
+// driver ends loops that it takes for endless.
+constexpr std::uint32_t kMostWalked = 16384;
+constexpr std::uint32_t kMostWalkedOnCpu = 2500;
+constexpr std::uint32_t kMostVisits = 8192;
+constexpr std::uint32_t kMostVisitsOnCpu = 1024;
+
+constexpr std::uint32_t kSide = 8; // of a tile
+
+struct Band {
+  std::uint32_t number = 0;
+  std::uint32_t top = 0; // rows of pixels
+  std::uint32_t bottom = 0;
+};
+
+// A frame that is being recorded.
+class Recording {
+ public:
+  Recording(VkCommandBuffer commands, VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info)
+      : commands_(commands), raster_(raster), info_(info), vk_(raster.context->vk) {}
+
+  void drawBand(const Band& band, bool isFirst, bool isLast);
+
+ private:
+  [[nodiscard]] RasterFacts& facts() { return raster_.facts[raster_.slotOf(raster_.frames.newest())]; }
+  [[nodiscard]] VkDeviceSize slotOffset() const { return raster_.slotOf(raster_.frames.newest()) * sizeof(RasterSlot); }
+
+  void barrier(VkPipelineStageFlags from, VkAccessFlags written, VkPipelineStageFlags to, VkAccessFlags used) const {
+    VkMemoryBarrier memory{};
+    memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    memory.srcAccessMask = written;
+    memory.dstAccessMask = used;
+    vk_.CmdPipelineBarrier(commands_, from, to, 0, 1, &memory, 0, nullptr, 0, nullptr);
+  }
+  // A pass has written -> the next ones go on with it, and take the sizes of their dispatches from it.
+  void passBarrier() const {
+    barrier(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+            VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+  }
+
+  void bind(RasterSet set);
+  void push(const std::array<std::uint32_t, 3>& words, RasterSet set) const {
+    vk_.CmdPushConstants(commands_, raster_.layout(set), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(words), words.data());
+  }
+  void dispatch(VkPipeline pipeline, std::uint32_t x, std::uint32_t y) const {
+    vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    vk_.CmdDispatch(commands_, x, y, 1);
+  }
+  void dispatch(VkPipeline pipeline, RasterBuffer sizes, std::size_t offset) const {
+    vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    vk_.CmdDispatchIndirect(commands_, raster_.buffer(sizes).buffer, offset);
+  }
+  void fill(RasterBuffer which) const {
+    vk_.CmdFillBuffer(commands_, raster_.buffer(which).buffer, 0, VK_WHOLE_SIZE, 0);
+  }
+  void passed(const char* pass) const {
+    if (info_.onPass != nullptr) info_.onPass(pass, commands_, info_.user);
+  }
+
+  [[nodiscard]] raster::VitrailRasterFrame frameOf(const Band& band) const;
+  void clear(const Band& band, bool isFirst);
+  void readDraws(bool isFirst);
+  void setUp(const Band& band);
+  void bin(const Band& band);
+  void blend();
+  void blendDeep();
+  void note(bool isLast);
+
+  VkCommandBuffer commands_;
+  VitrailVkRaster_T& raster_;
+  const VitrailVkRasterInfo& info_;
+  const Functions& vk_;
+};
+
+void Recording::bind(RasterSet set) {
+  const VkPipelineLayout layout = raster_.layout(set);
+  const bool own = set == RasterSet::Own;
+  if (!own && raster_.hostSets > 0) {
+    vk_.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, raster_.hostSets, info_.sets,
+                              info_.dynamicOffsetCount, info_.dynamicOffsets);
+  }
+  const VkDescriptorSet ours = raster_.frameSets()[static_cast<std::size_t>(set)];
+  vk_.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, layout, own ? 0 : raster_.hostSets, 1, &ours, 0,
+                            nullptr);
+}
+
+raster::VitrailRasterFrame Recording::frameOf(const Band& band) const {
+  raster::VitrailRasterFrame data{};
+  data.width = raster_.extent.width;
+  data.height = raster_.extent.height;
+  data.tilesX = raster_.tilesX();
+  data.tilesY = (band.bottom - band.top + kSide - 1) / kSide;
+  data.top = band.top;
+  data.bottom = band.bottom;
+  data.largeBlocks = (data.tilesX + raster::VITRAIL_RASTER_LARGE_BLOCK - 1) / raster::VITRAIL_RASTER_LARGE_BLOCK;
+  data.draws = info_.drawCount;
+  const RasterNeeds& room = raster_.room;
+  data.recordCapacity = static_cast<std::uint32_t>(room.records);
+  data.largeCapacity = static_cast<std::uint32_t>(room.large);
+  data.deepCapacity = static_cast<std::uint32_t>(room.deep);
+  data.blockCapacity = static_cast<std::uint32_t>(room.blocks);
+  data.fragmentCapacity = static_cast<std::uint32_t>(room.fragments);
+  data.chunkCapacity = static_cast<std::uint32_t>(room.chunks);
+  const bool onCpu = raster_.context->limits.isCpu;
+  data.mostWalked = onCpu ? kMostWalkedOnCpu : kMostWalked;
+  data.mostVisits = onCpu ? kMostVisitsOnCpu : kMostVisits;
+  data.pointSize = info_.pointSize > 0.0F ? info_.pointSize : 1.0F;
+  data.lightMost = info_.mostLight > 0.0F ? info_.mostLight : -1.0F;
+  const RasterTables& tables = raster_.tables;
+  data.drawCapacity = static_cast<std::uint32_t>(tables.draws);
+  data.groupCapacity = static_cast<std::uint32_t>(tables.groups);
+  data.vertexGroupCapacity = static_cast<std::uint32_t>(tables.vertexGroups);
+  data.itemCapacity = static_cast<std::uint32_t>(tables.items);
+  data.vertexCapacity = static_cast<std::uint32_t>(tables.vertices);
+  data.hasOrders = info_.orders != VK_NULL_HANDLE ? 1 : 0;
+  data.countsDraws = info_.countBuffer != VK_NULL_HANDLE ? 1 : 0;
+  data.depthStep = raster_.depthStep;
+  for (std::uint32_t i = 0; i < std::size(data.clipPlanes); ++i) {
+    if (i >= info_.clipPlaneCount) {
+      data.clipPlanes[i] = {0.0F, 0.0F, 0.0F, 1.0F}; // keeps all that can be seen
+      continue;
+    }
+    const float* plane = info_.clipPlanes[i];
+    data.clipPlanes[i] = {plane[0], plane[1], plane[2], plane[3]};
+  }
+  return data;
+}
+
+void Recording::clear(const Band& band, bool isFirst) {
+  constexpr VkPipelineStageFlags kStages =
+      VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT;
+  constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+  // The last frame's or band's passes read and wrote them -> they are cleared, set and made.
+  barrier(kStages, kWrites, kStages,
+          kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+  // Nothing of what is cleared is looked at for positions. Where the draws are new their tables come first.
+  if (isFirst && raster_.keepsPositions && raster_.tablesAreMade) {
+    bind(RasterSet::Geometry);
+    dispatch(raster_.positions, RasterBuffer::Start, offsetof(raster::VitrailRasterStart, vertices));
+  }
+  fill(RasterBuffer::TileRecords);
+  if (raster_.deepPlanned) fill(RasterBuffer::DeepPixels);
+  vk_.CmdFillBuffer(commands_, raster_.buffer(RasterBuffer::Counts).buffer, 0,
+                    isFirst ? kRasterCountBytes : kRasterTotalsAt, 0);
+  const raster::VitrailRasterFrame data = frameOf(band);
+  vk_.CmdUpdateBuffer(commands_, raster_.buffer(RasterBuffer::Frame).buffer, 0, sizeof(data), &data);
+  // The clears, the frame's data and the positions -> all passes.
+  barrier(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT, kWrites, kStages,
+          kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+}
+
+// Of a frame whose draws are new: what they come to, and their positions.
+void Recording::readDraws(bool isFirst) {
+  if (!isFirst || raster_.tablesAreMade) return;
+  bind(RasterSet::Own);
+  dispatch(raster_.kernel(RasterKernel::Prepare), 1, 1);
+  passBarrier();
+  dispatch(raster_.kernel(RasterKernel::Tables), RasterBuffer::Start, offsetof(raster::VitrailRasterStart, tables));
+  passBarrier();
+  if (raster_.keepsPositions) {
+    bind(RasterSet::Geometry);
+    dispatch(raster_.positions, RasterBuffer::Start, offsetof(raster::VitrailRasterStart, vertices));
+    passBarrier();
+  }
+}
+
+void Recording::setUp(const Band& band) {
+  bind(RasterSet::Geometry);
+  dispatch(raster_.setUp, RasterBuffer::Start, offsetof(raster::VitrailRasterStart, groups));
+  // Triangles were put aside -> they are taken up; records and counts go on.
+  passBarrier();
+  const std::uint32_t blocks =
+      (raster_.tilesX() + raster::VITRAIL_RASTER_LARGE_BLOCK - 1) / raster::VITRAIL_RASTER_LARGE_BLOCK;
+  // So many that none takes long: a driver ends loops that it takes for endless.
+  constexpr std::uint64_t kTurns = 64;
+  const auto shares = static_cast<std::uint32_t>(raster_.room.large / (raster::VITRAIL_RASTER_GROUP * kTurns) + 2);
+  dispatch(raster_.setUpLarge, blocks * shares, (band.bottom - band.top + kSide - 1) / kSide);
+  // Tiles counted their records -> they are given room.
+  passBarrier();
+}
+
+void Recording::bin(const Band& band) {
+  const std::uint32_t tiles = raster_.tilesX() * ((band.bottom - band.top + kSide - 1) / kSide);
+  const std::uint32_t groups = (tiles + 255) / 256;
+  bind(RasterSet::Own);
+  dispatch(raster_.kernel(RasterKernel::Plan), std::min(groups, raster::VITRAIL_RASTER_ROW),
+           (groups + raster::VITRAIL_RASTER_ROW - 1) / raster::VITRAIL_RASTER_ROW);
+  // Tiles have room -> records go there.
+  passBarrier();
+  dispatch(raster_.kernel(RasterKernel::Scatter), raster::VITRAIL_RASTER_SCATTER, 1);
+  // Records and lists of tiles -> they are blended, and the counts say how many.
+  passBarrier();
+}
+
+void Recording::blend() {
+  bind(RasterSet::Blend);
+  for (std::uint32_t i = raster::VITRAIL_RASTER_CLASSES; i-- > 0;) { // those that take longest first
+    dispatch(
+        raster_.blends[i], RasterBuffer::Counts,
+        kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, of) + i * sizeof(raster::VitrailRasterDispatch));
+  }
+}
+
+// Tiles that the passes before have left over: their fragments are counted, collected, sorted and blended.
+void Recording::blendDeep() {
+  using raster::VitrailRasterControl;
+  bind(RasterSet::Own);
+  // Tiles were left over -> their records are gone through. And so on from pass to pass.
+  passBarrier();
+  dispatch(raster_.kernel(RasterKernel::DeepCount), RasterBuffer::Counts,
+           kRasterControlAt + offsetof(VitrailRasterControl, blocks));
+  passBarrier();
+  dispatch(raster_.kernel(RasterKernel::DeepPlace), RasterBuffer::Counts,
+           kRasterControlAt + offsetof(VitrailRasterControl, deep));
+  passBarrier();
+  dispatch(raster_.kernel(RasterKernel::DeepFill), RasterBuffer::Counts,
+           kRasterControlAt + offsetof(VitrailRasterControl, blocks));
+  passBarrier();
+  passed("collect");
+  dispatch(raster_.kernel(RasterKernel::DeepSort), RasterBuffer::Counts,
+           kRasterControlAt + offsetof(VitrailRasterControl, chunks));
+  for (std::uint32_t pass = 0; pass < raster_.mergePasses; ++pass) {
+    passBarrier();
+    push({pass, 0, 0}, RasterSet::Own);
+    dispatch(raster_.kernel(RasterKernel::DeepMerge), RasterBuffer::Counts,
+             kRasterControlAt + offsetof(VitrailRasterControl, chunks));
+  }
+  passed("sort");
+  bind(RasterSet::Blend);
+  for (std::uint32_t slice = 0; slice < raster_.slices; ++slice) {
+    passBarrier();
+    push({slice, raster_.mergePasses % 2, slice + 1 == raster_.slices ? 1U : 0U}, RasterSet::Blend);
+    dispatch(raster_.blendDeep, RasterBuffer::Counts, kRasterControlAt + offsetof(VitrailRasterControl, deep));
+  }
+  passed("blend deep");
+}
+
+// Keeps what the band wanted, and after the last what the frame did, for the host.
+void Recording::note(bool isLast) {
+  passBarrier();
+  bind(RasterSet::Own);
+  dispatch(raster_.kernel(RasterKernel::Note), 1, 1);
+  if (!isLast) return;
+  barrier(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+          VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT);
+  const VkBufferCopy copy{kRasterTotalsAt, slotOffset() + offsetof(RasterSlot, totals),
+                          sizeof(raster::VitrailRasterTotals)};
+  vk_.CmdCopyBuffer(commands_, raster_.buffer(RasterBuffer::Counts).buffer, raster_.stats.buffer, 1, &copy);
+  // The counters are there before the tag says so.
+  barrier(VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+          VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_HOST_BIT,
+          VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_HOST_READ_BIT);
+  const std::uint64_t tag = raster_.frames.newest() + 1;
+  vk_.CmdUpdateBuffer(commands_, raster_.stats.buffer, slotOffset() + offsetof(RasterSlot, tag), sizeof(tag), &tag);
+  barrier(VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+          VK_ACCESS_HOST_READ_BIT);
+}
+
+// The passes of a band, from its triangles to its pixels.
+void Recording::drawBand(const Band& band, bool isFirst, bool isLast) {
+  clear(band, isFirst);
+  const bool empty = info_.drawCount == 0;
+  if (!empty) readDraws(isFirst);
+  passed("clear");
+  if (raster_.samples > 1) { // the blend writes over it, after barriers of the passes between
+    bind(RasterSet::Own);
+    dispatch(raster_.kernel(RasterKernel::Mean), raster_.tilesX(), (band.bottom - band.top + kSide - 1) / kSide);
+  }
+  if (!empty) {
+    setUp(band);
+    passed("set up");
+    bin(band);
+    passed("bin");
+    blend();
+  }
+  passed("blend");
+  if (!empty && raster_.deepPlanned) blendDeep();
+  note(isLast);
+}
+
+// ---- What is asked for
+
+// Whether the call has what it needs; logs what not.
+bool isWhole(const VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info) {
+  const Log& log = raster.context->log;
+  constexpr std::uint32_t kMostPlanes = 8;
+  const auto fails = [&](const char* what) {
+    log.error("vitrailVkCmdRaster: %s", what);
+    return false;
+  };
+  if (checkNext(log, info.next, "VitrailVkRasterInfo") != VK_SUCCESS) return false;
+  if (info.color == VK_NULL_HANDLE || info.depth == VK_NULL_HANDLE) return fails("color and depth are required");
+  if (raster.samples > 1 && info.opaque == VK_NULL_HANDLE) return fails("of several samples opaque is required");
+  if (info.drawCount > 0 && info.draws == VK_NULL_HANDLE) return fails("drawCount is not 0, and draws is null");
+  if (info.drawCount > 0 && raster.indexBytes > 0 && info.indices == VK_NULL_HANDLE) {
+    return fails("indices is null, and indexType says that draws have some");
+  }
+  if (raster.hostSets > 0 && info.sets == nullptr)
+    return fails("sets is null, and the raster was made with setLayouts");
+  if (info.clipPlaneCount > kMostPlanes || (info.clipPlaneCount > 0 && info.clipPlanes == nullptr)) {
+    return fails("clipPlanes has at most 8 planes");
+  }
+  if (info.drawOffset % 4 != 0 || info.indexOffset % 4 != 0 || info.orderOffset % 4 != 0 || info.countOffset % 4 != 0) {
+    return fails("offsets are multiples of minStorageBufferOffsetAlignment");
+  }
+  return true;
+}
+
+// Starts a frame on the host's side: its number, its memory, its sets.
+void beginFrame(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info, bool misused) {
+  const bool open = raster.nextBand != 0;
+  if (raster.frames.any() && info.frame != 0 && info.frame < raster.frames.newest()) {
+    raster.context->log.warn("frame %llu is begun after frame %llu: frame numbers rise",
+                             static_cast<unsigned long long>(info.frame),
+                             static_cast<unsigned long long>(raster.frames.newest()));
+    raster.newestNews = 0;
+  }
+  if (raster.frames.begin(info.frame, open)) { // a second time: the first one was never submitted
+    for (RetiredBuffer& retired : raster.retired) retired.use.drop(raster.frames.begun());
+    raster.tablesAreMade = false; // perhaps by that one
+  }
+  freeRetired(raster, raster.frames.begun());
+  if (info.sameDraws == VK_FALSE) raster.tablesAreMade = false;
+  RasterFacts& facts = raster.facts[raster.slotOf(raster.frames.newest())];
+  facts = {};
+  facts.any = true;
+  facts.frame = raster.frames.newest();
+  facts.room = raster.room;
+  facts.bands = raster.bands();
+  facts.draws = info.drawCount;
+  facts.deep = raster.deepPlanned;
+  facts.mergePasses = raster.mergePasses;
+  facts.slices = raster.slices;
+  facts.empty = info.drawCount == 0;
+  facts.bounded = info.mostLight > 0.0F && raster.blendModes == 1U << VITRAIL_BLEND_OVER;
+  facts.misused = misused;
+}
+
+} // namespace
+
+} // namespace vitrail
+
+extern "C" void vitrailVkCmdRaster(VkCommandBuffer commandBuffer, VitrailVkRaster raster,
+                                   const VitrailVkRasterInfo* info) {
+  using namespace vitrail;
+  if (raster == nullptr) return;
+  if (commandBuffer == VK_NULL_HANDLE || info == nullptr) {
+    nullArgument(raster->context, "vitrailVkCmdRaster");
+    return;
+  }
+  const bool whole = isWhole(*raster, *info);
+  if (info->firstBand == 0) beginFrame(*raster, *info, !whole);
+  RasterFacts& facts = raster->facts[raster->slotOf(raster->frames.newest())];
+  const std::uint32_t bands = raster->bands();
+  const std::uint32_t count = info->bandCount != 0 ? info->bandCount : bands - std::min(bands, info->firstBand);
+  const bool goesOn = info->firstBand == 0 || (raster->frames.any() && info->firstBand == raster->nextBand);
+  if (!goesOn || count == 0 || info->firstBand + count > bands) {
+    raster->context->log.error("vitrailVkCmdRaster: bands %u to %u, and the frame has %u, in order", info->firstBand,
+                               info->firstBand + count, bands);
+    facts.misused = true;
+    return;
+  }
+  if (!whole) {
+    facts.misused = true;
+    return;
+  }
+  if (info->firstBand == 0) writeRasterSets(*raster, *info);
+  Recording recording(commandBuffer, *raster, *info);
+  const std::uint32_t step = raster->bandRows * kSide;
+  for (std::uint32_t i = info->firstBand; i < info->firstBand + count; ++i) {
+    recording.drawBand({i, i * step, std::min((i + 1) * step, raster->extent.height)}, i == 0, i + 1 == bands);
+  }
+  raster->nextBand = info->firstBand + count == bands ? 0 : info->firstBand + count;
+  raster->tablesAreMade = info->drawCount > 0;
+}
