@@ -171,7 +171,8 @@ typedef struct VitrailVkRasterInfo {
   VkDeviceSize countOffset;
   /* Whether draws are those of the raster's last frame, bit for bit: their tables are not made again. */
   VkBool32 sameDraws;
-  /* Indices of all draws, in such a buffer at such an offset. Required unless indexType says that there are none. */
+  /* Indices of all draws, in such a buffer at such an offset. Shaders read them as words: from there on the buffer has
+   * a multiple of 4 bytes. Required unless indexType says that there are none. */
   VkBuffer indices;
   VkDeviceSize indexOffset;
   /* An order for each instance number, a uint32_t each, in such a buffer: of more than 16 surfaces at one depth those

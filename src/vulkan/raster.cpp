@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <memory>
 #include <new>
 
@@ -20,6 +21,19 @@ vitrail::RasterBounds VitrailVkRaster_T::bounds(std::uint32_t rows) const {
 namespace vitrail {
 
 namespace {
+
+// Hosts and shaders mean the same.
+static_assert(sizeof(VitrailVkRasterDraw) == sizeof(raster::VitrailRasterDraw));
+static_assert(offsetof(VitrailVkRasterDraw, count) == offsetof(raster::VitrailRasterDraw, count));
+static_assert(offsetof(VitrailVkRasterDraw, vertexOffset) == offsetof(raster::VitrailRasterDraw, vertexOffset));
+static_assert(offsetof(VitrailVkRasterDraw, vertexCount) == offsetof(raster::VitrailRasterDraw, vertices));
+static_assert(offsetof(VitrailVkRasterDraw, flags) == offsetof(raster::VitrailRasterDraw, flags));
+static_assert(offsetof(VitrailVkRasterDraw, word) == offsetof(raster::VitrailRasterDraw, word));
+static_assert(VITRAIL_VK_RASTER_LINES == raster::VITRAIL_RASTER_LINES);
+static_assert(VITRAIL_VK_RASTER_POINTS == raster::VITRAIL_RASTER_POINTS);
+static_assert(VITRAIL_VK_RASTER_FRONT_CLOCKWISE == raster::VITRAIL_RASTER_FRONT_CLOCKWISE);
+static_assert(VITRAIL_VK_RASTER_CULL_FRONT == raster::VITRAIL_RASTER_CULL_FRONT);
+static_assert(VITRAIL_VK_RASTER_CULL_BACK == raster::VITRAIL_RASTER_CULL_BACK);
 
 constexpr std::uint32_t kMostSide = 16384; // pixels: coordinates within the guard band
 

@@ -38,3 +38,17 @@ function(embed_vulkan_test_shaders)
   embed_shader(TARGETS ${targets} NAME walk_hlsl.comp SOURCE ${hlsl}/walk.hlsl HLSL_STAGE comp ${common}
                DEFINES VITRAIL_REGISTER_PARAMETERS=b0 VITRAIL_REGISTER_CONTROL=t1 VITRAIL_REGISTER_HEADS=t2 VITRAIL_REGISTER_NODES=t3)
 endfunction()
+
+# embed_raster_test_shaders(target...): the stages of the raster host.
+function(embed_raster_test_shaders)
+  foreach(stage 0 1 2 3 4)
+    foreach(variant one several)
+      set(defines VITRAIL_RASTER_STAGE=${stage} VITRAIL_COLOR_FORMAT=rgba32f VITRAIL_CLIP_PLANES=1)
+      if(variant STREQUAL several)
+        list(APPEND defines VITRAIL_MULTISAMPLED)
+      endif()
+      embed_shader(TARGETS ${ARGN} NAME raster_test_${stage}_${variant} SOURCE ${VITRAIL_VULKAN_TEST_SHADERS}/raster.glsl
+                   NAMESPACE vitrail INCLUDES ${PROJECT_SOURCE_DIR}/shaders DEFINES ${defines})
+    endforeach()
+  endforeach()
+endfunction()

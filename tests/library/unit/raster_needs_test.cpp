@@ -1,0 +1,83 @@
+// How the memory of a raster follows what its frames need.
+#include <gtest/gtest.h>
+
+#include "core/raster_needs.h"
+
+namespace vitrail::tests {
+namespace {
+
+constexpr RasterNeeds kLeast{.records = 1, .large = 1, .deep = 1, .blocks = 1, .fragments = 1, .chunks = 1};
+constexpr RasterBounds kWide{.reach = 1ULL << 32U, .budget = 1ULL << 34U, .tiles = 1000, .samples = 1};
+
+RasterNeeds withRecords(std::uint64_t records) {
+  RasterNeeds needs = kLeast;
+  needs.records = records;
+  return needs;
+}
+
+TEST(RasterNeeds, FitWhereAllOfThemDo) {
+  const RasterNeeds room{.records = 10, .large = 10, .deep = 10, .blocks = 10, .fragments = 10, .chunks = 10};
+  EXPECT_TRUE(kLeast.fitInto(room));
+  EXPECT_TRUE(room.fitInto(room));
+  for (std::uint64_t RasterNeeds::*need : {&RasterNeeds::records, &RasterNeeds::large, &RasterNeeds::deep,
+                                           &RasterNeeds::blocks, &RasterNeeds::fragments, &RasterNeeds::chunks}) {
+    RasterNeeds more = room;
+    ++(more.*need);
+    EXPECT_FALSE(more.fitInto(room));
+    EXPECT_EQ(more.most(room).*need, 11U);
+  }
+}
+
+TEST(RasterNeeds, RoomHasSomeToSpareWhereTheBudgetHas) {
+  RasterNeeds next;
+  EXPECT_LE(planRasterRoom(withRecords(8000), kLeast, kWide, next), 1.0);
+  EXPECT_EQ(next.records, 9000U);
+  EXPECT_EQ(next.deep, 1U); // there was room for one
+  // None to spare: as much as is needed.
+  RasterBounds bounds = kWide;
+  bounds.budget = 24 * 1000 + 8000 * 52 + 10'000;
+  EXPECT_LE(planRasterRoom(withRecords(8000), kLeast, bounds, next), 1.0);
+  EXPECT_EQ(next.records, 8000U);
+  // What only earlier frames needed goes first.
+  RasterNeeds had = kLeast;
+  had.fragments = 10'000;
+  EXPECT_LE(planRasterRoom(withRecords(8000), had, kWide, next), 1.0);
+  EXPECT_EQ(next.fragments, 10'000U);
+  EXPECT_LE(planRasterRoom(withRecords(8000), had, bounds, next), 1.0);
+  EXPECT_EQ(next.fragments, 1U);
+}
+
+TEST(RasterNeeds, TooMuchIsSaidByHowMuch) {
+  RasterBounds bounds = kWide;
+  bounds.budget = 1 << 20U;
+  RasterNeeds next;
+  const double excess = planRasterRoom(withRecords(80'000), kLeast, bounds, next);
+  EXPECT_NEAR(excess, (24.0 * 1000 + 52.0 * 80'000) / (1 << 20U), 0.01);
+  EXPECT_EQ(fewerRasterRows(100, excess), 20U); // 4.0 times too much, and some for what bands share
+  EXPECT_EQ(fewerRasterRows(100, 1.01), 50U);
+  EXPECT_EQ(fewerRasterRows(1, 9.0), 1U);
+  // What a shader reaches, and what numbers of 32 bits count, bound as well.
+  bounds = kWide;
+  bounds.reach = 1 << 20U;
+  EXPECT_NEAR(rasterExcess(withRecords(1 << 16U), bounds), 2.0, 0.01);
+  bounds.reach = bounds.budget = 1ULL << 60U;
+  EXPECT_GT(rasterExcess(withRecords(4'000'000'000), bounds), 1.9);
+  bounds.samples = 8; // whose masks take more than records
+  bounds.reach = 64ULL << 16U;
+  EXPECT_NEAR(rasterExcess(withRecords(1 << 17U), bounds), 2.0, 0.01);
+}
+
+TEST(RasterNeeds, MemoryFollowsDownAfterLong) {
+  RasterLow low;
+  RasterNeeds most;
+  const RasterNeeds room = withRecords(1000);
+  for (int i = 0; i < 119; ++i) EXPECT_FALSE(low.note(withRecords(i == 50 ? 200 : 100), room, most));
+  EXPECT_FALSE(low.note(withRecords(250), room, most)); // not a quarter less
+  for (int i = 0; i < 119; ++i) EXPECT_FALSE(low.note(withRecords(i == 50 ? 200 : 100), room, most));
+  EXPECT_TRUE(low.note(withRecords(100), room, most));
+  EXPECT_EQ(most.records, 200U);
+  EXPECT_FALSE(low.note(withRecords(100), room, most)); // and from the start
+}
+
+} // namespace
+} // namespace vitrail::tests

@@ -1,0 +1,754 @@
+// The raster's calls, with a host that is not the tool: every form of draws, depths and indices gives the picture that
+// follows by hand; frames that have no room say so, and the next ones have it; what is wrong is refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <string>
+
+#include "raster_host.h"
+
+namespace vitrail::tests::vulkan {
+namespace {
+
+// ---- Scenes of rectangles whose borders are those of pixels
+
+struct Rectangle {
+  std::uint32_t left, top, right, bottom; // pixels, without the right and bottom ones
+  float depth;                            // 0 is nearest
+  Vec4 color;
+  VitrailBlend blend = VITRAIL_BLEND_OVER;
+};
+
+constexpr std::uint32_t kSide = 32; // of most pictures
+
+float place(std::uint32_t pixel, std::uint32_t size) {
+  return 2.0F * static_cast<float>(pixel) / static_cast<float>(size) - 1.0F;
+}
+
+// Rectangles that overlap in many ways, each at a depth of its own.
+std::vector<Rectangle> someRectangles(std::uint32_t count, std::uint32_t side = kSide) {
+  std::mt19937 random(7);
+  const auto whole = [&](std::uint32_t least, std::uint32_t most) {
+    return least + static_cast<std::uint32_t>(random() % (most - least + 1));
+  };
+  std::vector<Rectangle> rectangles;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t left = whole(0, side - 2);
+    const std::uint32_t top = whole(0, side - 2);
+    const auto channel = [&] { return static_cast<float>(whole(0, 16)) / 16.0F; };
+    rectangles.push_back({left,
+                          top,
+                          whole(left + 1, side),
+                          whole(top + 1, side),
+                          static_cast<float>(i + 1) / static_cast<float>(count + 1),
+                          {channel(), channel(), channel(), static_cast<float>(whole(1, 7)) / 8.0F}});
+  }
+  std::ranges::shuffle(rectangles, random);
+  return rectangles;
+}
+
+void addQuad(RasterScene& scene, const Rectangle& r, std::uint32_t side, bool nearestIsOne) {
+  const float depth = nearestIsOne ? 1.0F - r.depth : r.depth;
+  for (const std::uint32_t y : {r.top, r.bottom}) {
+    for (const std::uint32_t x : {r.left, r.right}) {
+      scene.vertices.push_back({place(x, side), place(y, side), depth, 1.0F});
+    }
+  }
+}
+
+// How the rectangles become draws.
+enum class Form : std::uint8_t { Indices, VertexOffsets, FirstIndices, NoIndices, Instances };
+
+RasterScene sceneOf(const std::vector<Rectangle>& rectangles, Form form, bool nearestIsOne = false,
+                    std::uint32_t side = kSide) {
+  constexpr std::uint32_t kCorners[] = {0, 1, 2, 1, 3, 2};
+  RasterScene scene;
+  for (std::uint32_t i = 0; i < rectangles.size(); ++i) {
+    const Rectangle& r = rectangles[i];
+    VitrailVkRasterDraw draw{};
+    draw.count = 6;
+    draw.instanceCount = 1;
+    draw.blend = r.blend;
+    draw.word = i;
+    scene.colors.push_back(r.color);
+    const auto firstVertex = static_cast<std::uint32_t>(scene.vertices.size());
+    if (form == Form::NoIndices) {
+      RasterScene quad;
+      addQuad(quad, r, side, nearestIsOne);
+      for (const std::uint32_t corner : kCorners) scene.vertices.push_back(quad.vertices[corner]);
+      draw.vertexCount = 6;
+      draw.vertexOffset = static_cast<std::int32_t>(firstVertex);
+      draw.firstIndex = 77;               // which nobody looks at
+    } else if (form == Form::Instances) { // one square for all, shifted: only its first corner moves
+      addQuad(scene, {0, 0, r.right - r.left, r.bottom - r.top, 0.0F, {}}, side, false);
+      scene.shifts.push_back({2.0F * static_cast<float>(r.left) / static_cast<float>(side),
+                              2.0F * static_cast<float>(r.top) / static_cast<float>(side),
+                              nearestIsOne ? 1.0F - r.depth : r.depth, 0.0F});
+      draw.firstInstance = i;
+      draw.vertexOffset = static_cast<std::int32_t>(firstVertex);
+      draw.vertexCount = 4;
+    } else {
+      addQuad(scene, r, side, nearestIsOne);
+      draw.vertexCount = 4;
+      if (form == Form::VertexOffsets) draw.vertexOffset = static_cast<std::int32_t>(firstVertex);
+      if (form != Form::VertexOffsets) draw.vertexCount = firstVertex + 4;
+    }
+    if (form == Form::Indices || form == Form::FirstIndices) {
+      draw.firstIndex = static_cast<std::uint32_t>(scene.indices.size());
+      for (const std::uint32_t corner : kCorners) scene.indices.push_back(firstVertex + corner);
+    }
+    scene.draws.push_back(draw);
+  }
+  if (form == Form::VertexOffsets || form == Form::Instances) {
+    scene.indices.assign(std::begin(kCorners), std::end(kCorners));
+  }
+  scene.behind = {0.25F, 0.5F, 0.75F, 1.0F};
+  return scene;
+}
+
+// By hand, in double precision.
+std::array<double, 4> blended(std::vector<Rectangle> rectangles, std::uint32_t x, std::uint32_t y, const Vec4& behind,
+                              float opaqueDepth = 1.0F) {
+  std::ranges::sort(rectangles, {}, &Rectangle::depth);
+  std::array<double, 4> color{};
+  std::array<double, 4> through{1.0, 1.0, 1.0, 1.0};
+  for (const Rectangle& r : rectangles) {
+    if (x < r.left || x >= r.right || y < r.top || y >= r.bottom || r.depth > opaqueDepth) continue;
+    const double alpha = r.color[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double value = r.color[c];
+      if (r.blend == VITRAIL_BLEND_OVER) color[c] += through[c] * alpha * value;
+      if (r.blend == VITRAIL_BLEND_PREMULTIPLIED) color[c] += through[c] * value;
+      if (r.blend == VITRAIL_BLEND_ADDITIVE) color[c] += through[c] * alpha * value;
+      const bool hides = r.blend == VITRAIL_BLEND_OVER || r.blend == VITRAIL_BLEND_PREMULTIPLIED;
+      if (hides) through[c] *= 1.0 - alpha;
+      if (r.blend == VITRAIL_BLEND_MULTIPLY) through[c] *= 1.0 - alpha + alpha * value;
+    }
+    if (r.blend <= VITRAIL_BLEND_PREMULTIPLIED) through[3] *= 1.0 - alpha;
+  }
+  for (std::size_t c = 0; c < 3; ++c) color[c] += through[c] * behind[c];
+  color[3] = 1.0 - through[3] + through[3] * behind[3];
+  return color;
+}
+
+void expectPicture(const RasterHost& host, const std::vector<Rectangle>& rectangles, const RasterScene& scene,
+                   std::uint32_t side = kSide, float opaqueDepth = 1.0F) {
+  double worst = 0.0;
+  for (std::uint32_t y = 0; y < side; ++y) {
+    for (std::uint32_t x = 0; x < side; ++x) {
+      const std::array<double, 4> expected = blended(rectangles, x, y, scene.behind, opaqueDepth);
+      const Vec4 drawn = host.at(x, y);
+      for (std::size_t c = 0; c < 4; ++c) worst = std::max(worst, std::abs(expected[c] - drawn[c]));
+    }
+  }
+  EXPECT_LT(worst, 2e-5); // colours have as many bits as halves in nodes; here they are whole
+}
+
+class RasterTest : public VulkanTest {};
+
+TEST_F(RasterTest, EveryFormOfDrawsIsThePictureByHand) {
+  const std::vector<Rectangle> rectangles = someRectangles(24);
+  for (const bool keeps : {true, false}) {
+    for (const VkIndexType type : {VK_INDEX_TYPE_UINT16, VK_INDEX_TYPE_UINT32, VK_INDEX_TYPE_NONE_KHR}) {
+      RasterHostDesc desc;
+      desc.keepsPositions = keeps;
+      desc.indexType = type;
+      RasterHost host(desc);
+      std::vector<Form> forms = {Form::Indices, Form::VertexOffsets, Form::FirstIndices, Form::Instances};
+      if (type == VK_INDEX_TYPE_NONE_KHR) forms = {Form::NoIndices};
+      for (const Form form : forms) {
+        SCOPED_TRACE(testing::Message() << "keeps " << keeps << ", indices " << type << ", form "
+                                        << static_cast<int>(form));
+        const RasterScene scene = sceneOf(rectangles, form);
+        host.setScene(scene);
+        host.draw();
+        expectPicture(host, rectangles, scene);
+      }
+    }
+  }
+}
+
+TEST_F(RasterTest, AnyOrderOfDrawsIsTheSameBits) {
+  std::vector<Rectangle> rectangles = someRectangles(40);
+  RasterHost host({});
+  host.setScene(sceneOf(rectangles, Form::Indices));
+  const std::vector<float> first = host.draw();
+  std::ranges::reverse(rectangles);
+  host.setScene(sceneOf(rectangles, Form::Indices));
+  EXPECT_TRUE(host.draw() == first);
+  std::ranges::shuffle(rectangles, std::mt19937(3));
+  host.setScene(sceneOf(rectangles, Form::Instances));
+  EXPECT_EQ(host.draw(), first);
+}
+
+TEST_F(RasterTest, DepthOrdersAndOpaqueSurfaces) {
+  const std::vector<Rectangle> rectangles = someRectangles(30);
+  for (const VitrailDepthOrder order : {VITRAIL_DEPTH_NEAREST_IS_ZERO, VITRAIL_DEPTH_NEAREST_IS_ONE}) {
+    RasterHostDesc desc;
+    desc.depthOrder = order;
+    RasterHost host(desc);
+    const bool nearestIsOne = order == VITRAIL_DEPTH_NEAREST_IS_ONE;
+    for (const float opaque : {1.0F, 0.51F, 0.0F}) {
+      SCOPED_TRACE(testing::Message() << "order " << order << ", opaque " << opaque);
+      RasterScene scene = sceneOf(rectangles, Form::Indices, nearestIsOne);
+      scene.opaqueDepth = nearestIsOne ? 1.0F - opaque : opaque;
+      host.setScene(scene);
+      host.draw();
+      expectPicture(host, rectangles, scene, kSide, opaque);
+    }
+  }
+}
+
+TEST_F(RasterTest, BlendModes) {
+  std::vector<Rectangle> rectangles = someRectangles(24);
+  for (std::size_t i = 0; i < rectangles.size(); ++i) rectangles[i].blend = static_cast<VitrailBlend>(i % 4);
+  RasterHost host({});
+  const RasterScene scene = sceneOf(rectangles, Form::Indices);
+  host.setScene(scene);
+  host.draw();
+  expectPicture(host, rectangles, scene);
+  EXPECT_EQ(host.stats().errorBound, 0.0F);
+  // Where the host says that there is one mode, it is that of all.
+  for (Rectangle& r : rectangles) r.blend = VITRAIL_BLEND_ADDITIVE;
+  RasterHostDesc one;
+  one.blendModes = 1U << VITRAIL_BLEND_ADDITIVE;
+  RasterHost additive(one);
+  additive.setScene(scene);
+  additive.draw();
+  expectPicture(additive, rectangles, scene);
+}
+
+// What is hidden to within the bound is left out where the host says how much light there is, and only then.
+TEST_F(RasterTest, LightThatIsHidden) {
+  std::vector<Rectangle> rectangles;
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    rectangles.push_back(
+        {0, 0, kSide, kSide, static_cast<float>(i + 1) / 50.0F, {1.0F, i < 39 ? 1.0F : 0.0F, 0.5F, 0.5F}});
+  }
+  RasterHostDesc desc;
+  desc.blendModes = 1U << VITRAIL_BLEND_OVER;
+  RasterHost host(desc);
+  const RasterScene scene = sceneOf(rectangles, Form::Indices);
+  host.setScene(scene);
+  host.draw();
+  expectPicture(host, rectangles, scene);
+  EXPECT_EQ(host.stats().errorBound, 0.0F);
+  host.info().mostLight = 1.0F;
+  host.draw();
+  const float bound = host.stats().errorBound;
+  EXPECT_GT(bound, 0.0F);
+  EXPECT_LT(bound, 0.5F);
+  const std::array<double, 4> expected = blended(rectangles, 3, 3, scene.behind);
+  const auto curve = [](double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055; };
+  const Vec4 drawn = host.at(3, 3);
+  EXPECT_NE(drawn[0], static_cast<float>(expected[0])); // something was left out
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_LE(255.0 * std::abs(curve(drawn[c]) - curve(expected[c])), bound + 0.01);
+  }
+}
+
+// ---- What surfaces tell
+
+// One rectangle over the whole picture, whose colour shows something (raster.glsl of the tests).
+RasterScene showing(std::uint32_t what) {
+  RasterScene scene = sceneOf({{0, 0, kSide, kSide, 0.5F, {1.0F, 1.0F, 1.0F, 1.0F}}}, Form::VertexOffsets);
+  scene.draws[0].word |= what << 16U;
+  return scene;
+}
+
+TEST_F(RasterTest, SidesAndCulling) {
+  RasterHost host({});
+  const auto drawn = [&](std::uint32_t flags) {
+    RasterScene scene = showing(1);
+    scene.draws[0].flags = flags;
+    host.setScene(scene);
+    host.draw();
+    return host.at(5, 9);
+  };
+  const Vec4 front{1.0F, 0.0F, 0.0F, 1.0F};
+  const Vec4 back{0.0F, 0.0F, 1.0F, 1.0F};
+  const Vec4 behind{0.25F, 0.5F, 0.75F, 1.0F};
+  // Its corners run clockwise in the picture, y down.
+  EXPECT_EQ(drawn(0), back);
+  EXPECT_EQ(drawn(VITRAIL_VK_RASTER_FRONT_CLOCKWISE), front);
+  EXPECT_EQ(drawn(VITRAIL_VK_RASTER_CULL_BACK), behind);
+  EXPECT_EQ(drawn(VITRAIL_VK_RASTER_CULL_FRONT), back);
+  EXPECT_EQ(drawn(VITRAIL_VK_RASTER_CULL_FRONT | VITRAIL_VK_RASTER_FRONT_CLOCKWISE), behind);
+  EXPECT_EQ(drawn(VITRAIL_VK_RASTER_CULL_BACK | VITRAIL_VK_RASTER_FRONT_CLOCKWISE), front);
+}
+
+TEST_F(RasterTest, WeightsAreThoseOfPerspective) {
+  RasterHost host({});
+  RasterScene scene = showing(2);
+  // A triangle that goes away from the viewer: w is 1 on the left, 4 on the right.
+  scene.vertices = {{-1.0F, -1.0F, 0.5F, 1.0F}, {-1.0F, 1.0F, 0.5F, 1.0F}, {4.0F, -4.0F, 2.0F, 4.0F}};
+  scene.indices = {0, 1, 2};
+  scene.draws[0].count = 3;
+  scene.draws[0].vertexCount = 3;
+  scene.draws[0].vertexOffset = 0;
+  host.setScene(scene);
+  host.draw();
+  for (const std::uint32_t x : {2U, 10U, 20U}) {
+    const double across = (x + 0.5) / kSide; // 0 on the left, 1 on the right, in the picture
+    const double down = 2.5 / kSide;         // of the third row
+    const double screen[3] = {1.0 - across - down, down, across};
+    const double w[3] = {1.0, 1.0, 4.0};
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i) sum += screen[i] / w[i];
+    const Vec4 drawn = host.at(x, 2);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(drawn[i], screen[i] / w[i] / sum, 1e-5) << "at " << x;
+  }
+}
+
+TEST_F(RasterTest, DerivativesAreDifferencesOfPixels) {
+  RasterHost host({});
+  host.setScene(showing(5));
+  host.draw();
+  const Vec4 drawn = host.at(9, 9);         // weights change by 1/32 from pixel to pixel
+  EXPECT_NEAR(drawn[0], 2.0 / kSide, 1e-5); // of one corner along both axes, of the others along one
+  EXPECT_NEAR(drawn[1], 1.0 / kSide, 1e-5);
+  EXPECT_NEAR(drawn[2], 1.0 / kSide, 1e-5);
+}
+
+TEST_F(RasterTest, NumbersAreTheDraws) {
+  RasterHost host({});
+  RasterScene scene = showing(3);
+  scene.vertices.insert(scene.vertices.begin(), 5, Vec4{9.0F, 9.0F, 9.0F, 1.0F}); // before its own
+  scene.draws[0].vertexOffset = 5;
+  host.setScene(scene);
+  host.draw();
+  EXPECT_EQ(host.at(0, 0), (Vec4{5.0F / 256.0F, 6.0F / 256.0F, 7.0F / 256.0F, 1.0F}));
+  scene.draws[0].word = 4U << 16U;
+  scene.draws[0].instanceCount = 2;
+  scene.draws[0].firstInstance = 3;
+  scene.shifts.assign(5, Vec4{9.0F, 9.0F, 0.0F, 0.0F}); // out of the picture
+  scene.shifts[4] = {};
+  scene.draws.insert(scene.draws.begin(), scene.draws[0]);
+  scene.draws[0].count = 0; // which draws nothing
+  host.setScene(scene);
+  host.draw();
+  EXPECT_EQ(host.at(0, 0), (Vec4{0.0F, 4.0F / 256.0F, 1.0F / 256.0F, 1.0F}));
+  EXPECT_EQ(host.at(31, 31), (Vec4{1.0F / 256.0F, 4.0F / 256.0F, 1.0F / 256.0F, 1.0F}));
+}
+
+TEST_F(RasterTest, AlphaZeroIsNotThere) {
+  RasterHost host({});
+  RasterScene scene = showing(6);
+  host.setScene(scene);
+  host.draw();
+  EXPECT_EQ(host.at(8, 8), (Vec4{1.0F, 1.0F, 1.0F, 1.0F}));
+  EXPECT_EQ(host.at(9, 8), scene.behind);
+}
+
+TEST_F(RasterTest, LinesAndPoints) {
+  RasterHostDesc desc;
+  desc.solids = true;
+  RasterHost host(desc);
+  RasterScene scene = showing(0);
+  // A line along the middle of the row 4, and a point of 6 pixels around the corner of four pixels.
+  scene.vertices = {{-1.0F, -0.71875F, 0.5F, 1.0F}, {1.0F, -0.71875F, 0.5F, 1.0F}, {0.0F, 0.5F, 0.5F, 1.0F}};
+  scene.indices = {0, 1, 2};
+  scene.draws[0] = {};
+  scene.draws[0].count = 2;
+  scene.draws[0].instanceCount = 1;
+  scene.draws[0].vertexCount = 3;
+  scene.draws.push_back(scene.draws[0]);
+  scene.draws[0].flags = VITRAIL_VK_RASTER_LINES;
+  scene.draws[1].flags = VITRAIL_VK_RASTER_POINTS;
+  scene.draws[1].count = 1;
+  scene.draws[1].firstIndex = 2;
+  host.setScene(scene);
+  host.info().pointSize = 6.0F;
+  host.draw();
+  std::uint32_t line = 0;
+  std::uint32_t point = 0;
+  for (std::uint32_t y = 0; y < kSide; ++y) {
+    for (std::uint32_t x = 0; x < kSide; ++x) {
+      if (host.at(x, y) == scene.behind) continue;
+      if (y == 4) {
+        ++line;
+      } else {
+        ++point;
+        EXPECT_TRUE(x >= 13 && x < 19 && y >= 21 && y < 27) << x << ' ' << y;
+      }
+    }
+  }
+  EXPECT_EQ(line, kSide);
+  EXPECT_EQ(point, 36U);
+}
+
+TEST_F(RasterTest, ClipPlanesAndTheEye) {
+  RasterHost host({});
+  RasterScene scene = showing(0);
+  scene.colors[0] = {1.0F, 1.0F, 1.0F, 1.0F};
+  host.setScene(scene);
+  const float plane[1][4] = {{1.0F, 0.0F, 0.0F, 0.0F}}; // the right half
+  host.info().clipPlaneCount = 1;
+  host.info().clipPlanes = plane;
+  host.draw();
+  EXPECT_EQ(host.at(15, 3), scene.behind);
+  EXPECT_EQ(host.at(16, 3), (Vec4{1.0F, 1.0F, 1.0F, 1.0F}));
+  host.info().clipPlaneCount = 0;
+  host.info().clipPlanes = nullptr;
+  // A triangle that reaches behind the eye: what is before it is drawn, over all of the picture's right side.
+  scene.vertices = {{0.0F, 4.0F, 0.25F, 0.5F}, {0.0F, -4.0F, 0.25F, 0.5F}, {4.0F, 0.0F, -1.0F, -2.0F}};
+  scene.indices = {0, 1, 2};
+  scene.draws[0].count = 3;
+  scene.draws[0].vertexCount = 3;
+  host.setScene(scene);
+  host.draw();
+  EXPECT_EQ(host.at(15, 16), scene.behind);
+  EXPECT_NE(host.at(17, 16), scene.behind);
+  EXPECT_NE(host.at(31, 16), scene.behind);
+  EXPECT_GE(host.stats().largeTriangles, 1U);
+}
+
+// ---- Room
+
+TEST_F(RasterTest, FramesWithoutRoomSaySoAndTheNextHaveIt) {
+  const std::vector<Rectangle> rectangles = someRectangles(3000, 64);
+  RasterHostDesc desc;
+  desc.width = desc.height = 64;
+  desc.indexType = VK_INDEX_TYPE_UINT32;
+  RasterHost host(desc);
+  host.setScene(sceneOf(rectangles, Form::VertexOffsets, false, 64));
+  host.drawOnce();
+  EXPECT_EQ(host.stats().exact, VK_FALSE); // nobody said how much there is
+  EXPECT_EQ(host.stats().draws, 3000U);
+  EXPECT_EQ(host.stats().instances, 3000U);
+  EXPECT_EQ(host.stats().vertices, 12000U);
+  host.draw();
+  const VitrailVkRasterStats stats = host.stats();
+  EXPECT_EQ(stats.bands, 1U);
+  const std::vector<float> expected = host.picture();
+
+  // The same, told beforehand: the first frame has room for the draws.
+  desc.hints = {.draws = 3000, .instances = 3000, .triangles = 6000, .vertices = 12000};
+  RasterHost told(desc);
+  told.setScene(sceneOf(rectangles, Form::VertexOffsets, false, 64));
+  told.drawOnce();
+  EXPECT_GT(told.stats().records, 0U);
+  EXPECT_TRUE(told.draw() == expected);
+
+  // And with a budget for a part of it: in bands, to the same bits.
+  VitrailVkRasterMemory memory = host.raster().memory();
+  EXPECT_GT(memory.tileBytes, 0U);
+  EXPECT_GT(memory.drawBytes, 3000U * 64U);
+  desc.memoryBudget = memory.tileBytes / 3;
+  RasterHost bounded(desc);
+  bounded.setScene(sceneOf(rectangles, Form::VertexOffsets, false, 64));
+  EXPECT_TRUE(bounded.draw() == expected);
+  EXPECT_GT(bounded.stats().bands, 1U);
+  EXPECT_LE(bounded.raster().memory().tileBytes, desc.memoryBudget + 4096U); // and what is rounded
+
+  // Each band by a submission of its own.
+  const std::uint32_t bands = bounded.raster().bands();
+  ASSERT_GT(bands, 1U);
+  bounded.info().bandCount = 1;
+  for (std::uint32_t band = 0; band < bands; ++band) {
+    bounded.info().firstBand = band;
+    if (band == 0) {
+      bounded.commands().run([&](VkCommandBuffer commands) { bounded.recordAll(commands); });
+    } else {
+      bounded.commands().run([&](VkCommandBuffer commands) { bounded.recordMore(commands); });
+    }
+  }
+  EXPECT_EQ(bounded.stats().exact, VK_TRUE);
+  bounded.readPicture();
+  EXPECT_TRUE(bounded.picture() == expected);
+}
+
+TEST_F(RasterTest, ABudgetWithoutRoomForARowIsRefused) {
+  RasterHostDesc desc;
+  desc.memoryBudget = 100;
+  EXPECT_THROW(RasterHost{desc}, HostError);
+  expectOneLine("memoryBudget");
+  // One that has room for tiles, and not for what is in them.
+  desc.memoryBudget = 20'000;
+  RasterHost host(desc);
+  host.setScene(sceneOf(someRectangles(500), Form::VertexOffsets));
+  VkResult result = VK_SUCCESS;
+  for (int i = 0; i < 12 && result == VK_SUCCESS; ++i) {
+    host.drawOnce();
+    EXPECT_EQ(host.stats().exact, VK_FALSE);
+    result = host.raster().update();
+  }
+  EXPECT_EQ(result, VK_ERROR_OUT_OF_DEVICE_MEMORY);
+  expectOneLine("no room for the");
+}
+
+// Two frames are recorded before any has run: each has the memory that it was recorded with.
+TEST_F(RasterTest, FramesInFlightKeepTheirMemory) {
+  RasterHostDesc desc;
+  RasterHost host(desc);
+  Commands second(backend().device());
+  host.setScene(sceneOf(someRectangles(200), Form::VertexOffsets));
+  host.drawOnce();
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_EQ(host.raster().update(), VK_SUCCESS);
+    host.recordAll(host.commands().begin());
+    ASSERT_EQ(host.raster().update(), VK_SUCCESS);
+    host.recordAll(second.begin());
+    host.commands().execute();
+    second.execute();
+  }
+  host.readPicture();
+  EXPECT_EQ(host.stats().exact, VK_TRUE);
+  const std::vector<float> drawn = host.picture();
+  EXPECT_EQ(host.raster().memory().retiredBytes, 0U);
+  RasterHost fresh(desc);
+  fresh.setScene(sceneOf(someRectangles(200), Form::VertexOffsets));
+  EXPECT_TRUE(fresh.draw() == drawn);
+}
+
+TEST_F(RasterTest, StatisticsAreNotThereBeforeTheFrame) {
+  RasterHost host({});
+  VitrailVkRasterStats stats{};
+  EXPECT_EQ(host.raster().readStats(0, stats), VK_NOT_READY);
+  host.setScene(sceneOf(someRectangles(4), Form::Indices));
+  host.recordAll(host.commands().begin());
+  EXPECT_EQ(host.raster().readStats(0, stats), VK_NOT_READY);
+  host.commands().execute();
+  EXPECT_EQ(host.raster().readStats(0, stats), VK_SUCCESS);
+  EXPECT_EQ(stats.draws, 4U);
+  // By the host's numbers.
+  host.info().frame = 10;
+  host.drawOnce();
+  EXPECT_EQ(host.raster().readStats(10, stats), VK_SUCCESS);
+  EXPECT_EQ(stats.frame, 10U);
+  EXPECT_EQ(host.raster().readStats(9, stats), VK_NOT_READY);
+}
+
+TEST_F(RasterTest, NothingToDrawIsExact) {
+  for (const std::uint32_t samples : {1U, 4U}) {
+    if (samples > 1 && !std::ranges::count(backend().features().multisampled, samples)) continue;
+    RasterHostDesc desc;
+    desc.samples = samples;
+    RasterHost host(desc);
+    RasterScene scene;
+    scene.behind = {0.1F, 0.2F, 0.3F, 1.0F};
+    host.setScene(scene);
+    host.drawOnce();
+    EXPECT_EQ(host.stats().exact, VK_TRUE);
+    EXPECT_EQ(host.at(7, 7), scene.behind);
+  }
+}
+
+// The GPU has worked out how many draws there are.
+TEST_F(RasterTest, DrawsThatTheGpuCounts) {
+  std::vector<Rectangle> rectangles = someRectangles(20);
+  RasterHost host({});
+  const RasterScene scene = sceneOf(rectangles, Form::Indices);
+  host.setScene(scene);
+  Buffer count(backend().device(), 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, Memory::Host);
+  host.info().countBuffer = count.get();
+  for (const std::uint32_t draws : {20U, 7U, 0U, 100U}) {
+    *static_cast<std::uint32_t*>(count.mapped()) = draws;
+    host.draw();
+    const std::size_t drawn = std::min<std::size_t>(draws, rectangles.size());
+    expectPicture(host, {rectangles.begin(), rectangles.begin() + static_cast<std::ptrdiff_t>(drawn)}, scene);
+    EXPECT_EQ(host.stats().draws, drawn);
+  }
+}
+
+TEST_F(RasterTest, DrawsThatAreTheSameAreNotReadAgain) {
+  RasterHost host({});
+  const std::vector<Rectangle> rectangles = someRectangles(20);
+  const RasterScene scene = sceneOf(rectangles, Form::Indices);
+  host.setScene(scene);
+  const std::vector<float> first = host.draw();
+  host.info().sameDraws = VK_TRUE;
+  EXPECT_TRUE(host.draw() == first);
+  const std::vector<Rectangle> fewer(rectangles.begin(), rectangles.begin() + 5);
+  host.setScene(sceneOf(fewer, Form::Indices));
+  host.info().sameDraws = VK_FALSE;
+  host.draw();
+  expectPicture(host, fewer, scene);
+}
+
+// A pixel with more surfaces than registers hold, of which none hides another: their fragments are collected.
+TEST_F(RasterTest, DeepTiles) {
+  constexpr std::uint32_t kLayers = 6000;
+  std::vector<Rectangle> rectangles;
+  for (std::uint32_t i = 0; i < kLayers; ++i) {
+    rectangles.push_back({2,
+                          2,
+                          4,
+                          4,
+                          static_cast<float>(i + 1) / static_cast<float>(kLayers + 2),
+                          {i % 2 == 0 ? 1.0F : 0.0F, 0.5F, 0.25F, 1.0F / 512.0F}});
+  }
+  std::ranges::shuffle(rectangles, std::mt19937(5));
+  RasterHostDesc desc;
+  desc.indexType = VK_INDEX_TYPE_UINT32;
+  desc.hints = {.draws = kLayers, .instances = kLayers, .triangles = 2 * kLayers, .vertices = 4 * kLayers};
+  RasterHost host(desc);
+  const RasterScene scene = sceneOf(rectangles, Form::VertexOffsets);
+  host.setScene(scene);
+  host.draw();
+  EXPECT_EQ(host.stats().deepTiles, 1U);
+  EXPECT_EQ(host.stats().deepestPixel, kLayers);
+  double worst = 0.0;
+  const std::array<double, 4> expected = blended(rectangles, 3, 3, scene.behind);
+  for (std::size_t c = 0; c < 4; ++c) worst = std::max(worst, std::abs(expected[c] - host.at(3, 3)[c]));
+  EXPECT_LT(worst, 1e-3); // 6,000 roundings
+  EXPECT_EQ(host.at(4, 4), scene.behind);
+}
+
+// More surfaces at one depth than their colours can order: the host's orders decide.
+TEST_F(RasterTest, OrdersOfTheHosts) {
+  constexpr std::uint32_t kLayers = 24;
+  std::vector<Rectangle> rectangles;
+  for (std::uint32_t i = 0; i < kLayers; ++i) {
+    const float shade = static_cast<float>(i) / static_cast<float>(kLayers);
+    rectangles.push_back({0, 0, 8, 8, 0.5F, {shade, 1.0F - shade, 0.5F, 0.5F}});
+  }
+  RasterScene scene = sceneOf(rectangles, Form::Instances);
+  for (std::uint32_t i = 0; i < kLayers; ++i) scene.orders.push_back(kLayers - i); // the last is in front
+  RasterHost host({});
+  host.setScene(scene);
+  host.draw();
+  for (std::uint32_t i = 0; i < kLayers; ++i) rectangles[i].depth = 0.9F - 0.01F * static_cast<float>(i);
+  expectPicture(host, rectangles, scene);
+  std::ranges::reverse(scene.draws);
+  const std::vector<float> before = host.picture();
+  host.setScene(scene);
+  EXPECT_TRUE(host.draw() == before);
+}
+
+// ---- Several samples
+
+TEST_F(RasterTest, SeveralSamples) {
+  for (const std::uint32_t samples : backend().features().multisampled) {
+    SCOPED_TRACE(samples);
+    const std::vector<Rectangle> rectangles = someRectangles(16);
+    RasterHostDesc desc;
+    desc.samples = samples;
+    RasterHost host(desc);
+    RasterScene scene = sceneOf(rectangles, Form::Indices);
+    host.setScene(scene);
+    host.draw();
+    expectPicture(host, rectangles, scene); // their borders are those of pixels
+    // A slanted edge covers a part of the samples.
+    scene.vertices = {{-1.0F, -1.0F, 0.5F, 1.0F}, {1.0F, -1.0F, 0.5F, 1.0F}, {-1.0F, 1.0F, 0.5F, 1.0F}};
+    scene.indices = {0, 1, 2};
+    scene.draws.resize(1);
+    scene.draws[0].count = 3;
+    scene.draws[0].firstIndex = 0;
+    scene.draws[0].vertexCount = 3;
+    scene.colors[0] = {1.0F, 1.0F, 1.0F, 1.0F};
+    scene.behind = {0.0F, 0.0F, 0.0F, 1.0F};
+    host.setScene(scene);
+    host.draw();
+    EXPECT_EQ(host.at(3, 3)[0], 1.0F);
+    EXPECT_EQ(host.at(28, 28)[0], 0.0F);
+    const float edge = host.at(16, 15)[0] * static_cast<float>(samples);
+    EXPECT_GT(edge, 0.0F);
+    EXPECT_LT(edge, static_cast<float>(samples));
+    EXPECT_EQ(edge, std::round(edge));
+  }
+}
+
+// ---- Resizing
+
+TEST_F(RasterTest, AnotherExtent) {
+  RasterHostDesc desc;
+  desc.width = desc.height = 64;
+  RasterHost host(desc);
+  const std::vector<Rectangle> rectangles = someRectangles(30, 64);
+  const RasterScene scene = sceneOf(rectangles, Form::Indices, false, 64);
+  host.setScene(scene);
+  host.draw();
+  expectPicture(host, rectangles, scene, 64);
+  ASSERT_EQ(host.raster().resize({32, 32}), VK_SUCCESS); // a corner of the images
+  const std::vector<Rectangle> small = someRectangles(30);
+  host.setScene(sceneOf(small, Form::Indices));
+  host.draw();
+  expectPicture(host, small, scene);
+  EXPECT_EQ(host.raster().resize({0, 32}), VK_ERROR_INITIALIZATION_FAILED);
+  expectOneLine("extent");
+  EXPECT_EQ(host.raster().resize({20000, 32}), VK_ERROR_INITIALIZATION_FAILED);
+  expectOneLine("extent");
+}
+
+// ---- What is refused
+
+TEST_F(RasterTest, WrongFields) {
+  RasterHost host({});
+  const VitrailVkRasterDesc right = RasterHost::descOf({}, host.layout());
+  const auto expectRefused = [&](VkResult code, const std::string& word, const auto& change) {
+    VitrailVkRasterDesc desc = right;
+    change(desc);
+    vitrail::vulkan::Raster raster;
+    EXPECT_EQ(vitrail::vulkan::Raster::create(backend().context(backend().allFeatures()), desc, raster), code) << word;
+    EXPECT_FALSE(raster) << word;
+    expectOneLine(word);
+  };
+  using Desc = VitrailVkRasterDesc;
+  constexpr VkResult kWrong = VK_ERROR_INITIALIZATION_FAILED;
+  expectRefused(kWrong, "next", [](Desc& desc) { desc.next = &desc; });
+  expectRefused(kWrong, "extent", [](Desc& desc) { desc.extent.height = 0; });
+  expectRefused(kWrong, "extent", [](Desc& desc) { desc.extent.width = 16385; });
+  expectRefused(VK_ERROR_FEATURE_NOT_PRESENT, "samples",
+                [](Desc& desc) { desc.samples = static_cast<VkSampleCountFlagBits>(3); });
+  expectRefused(VK_ERROR_FEATURE_NOT_PRESENT, "samples", [](Desc& desc) { desc.samples = VK_SAMPLE_COUNT_16_BIT; });
+  expectRefused(VK_ERROR_FORMAT_NOT_SUPPORTED, "colorFormat",
+                [](Desc& desc) { desc.colorFormat = VK_FORMAT_R8G8B8A8_UNORM; });
+  expectRefused(kWrong, "depthFormat", [](Desc& desc) { desc.depthFormat = VK_FORMAT_R32_SFLOAT; });
+  expectRefused(kWrong, "depthOrder", [](Desc& desc) { desc.depthOrder = static_cast<VitrailDepthOrder>(2); });
+  expectRefused(kWrong, "setLayoutCount", [](Desc& desc) { desc.setLayoutCount = 8; });
+  expectRefused(kWrong, "setLayoutCount", [](Desc& desc) { desc.setLayouts = nullptr; });
+  expectRefused(kWrong, "indexType", [](Desc& desc) { desc.indexType = VK_INDEX_TYPE_UINT8_EXT; });
+  expectRefused(kWrong, "blendModes", [](Desc& desc) { desc.blendModes = 1U << 4U; });
+  expectRefused(kWrong, "framesInFlight", [](Desc& desc) { desc.framesInFlight = VITRAIL_MAX_FRAMES_IN_FLIGHT + 1; });
+  expectRefused(kWrong, "setUp:", [](Desc& desc) { desc.setUp = {}; });
+  expectRefused(kWrong, "setUpLarge", [](Desc& desc) { desc.setUpLarge.code = nullptr; });
+  expectRefused(kWrong, "blend:", [](Desc& desc) { desc.blend.size = 3; });
+  expectRefused(kWrong, "blendDeep", [](Desc& desc) { desc.blendDeep.size = 0; });
+}
+
+// A call that lacks something draws nothing, says so once, and its frame never has statistics.
+TEST_F(RasterTest, CallsThatLackSomething) {
+  RasterHost host({});
+  host.setScene(sceneOf(someRectangles(8), Form::Indices));
+  host.draw();
+  const VitrailVkRasterInfo right = host.info();
+  std::uint64_t frame = 100;
+  const auto expectRefused = [&](const std::string& word, const auto& change) {
+    host.info() = right;
+    host.info().frame = ++frame;
+    change(host.info());
+    host.commands().run([&](VkCommandBuffer commands) { host.record(commands); });
+    expectOneLine(word);
+    VitrailVkRasterStats stats{};
+    EXPECT_EQ(host.raster().readStats(frame, stats), VK_NOT_READY) << word;
+  };
+  using Info = VitrailVkRasterInfo;
+  expectRefused("color", [](Info& info) { info.color = VK_NULL_HANDLE; });
+  expectRefused("depth", [](Info& info) { info.depth = VK_NULL_HANDLE; });
+  expectRefused("draws", [](Info& info) { info.draws = VK_NULL_HANDLE; });
+  expectRefused("indices", [](Info& info) { info.indices = VK_NULL_HANDLE; });
+  expectRefused("sets", [](Info& info) { info.sets = nullptr; });
+  expectRefused("clipPlanes", [](Info& info) { info.clipPlaneCount = 1; });
+  expectRefused("offset", [](Info& info) { info.drawOffset = 2; });
+  expectRefused("bands", [](Info& info) { info.firstBand = 1; });
+  expectRefused("bands", [](Info& info) { info.bandCount = 99; });
+  // After all that frames are right again.
+  host.info() = right;
+  host.info().frame = ++frame;
+  host.drawOnce();
+  VitrailVkRasterStats stats{};
+  EXPECT_EQ(host.raster().readStats(frame, stats), VK_SUCCESS);
+  EXPECT_EQ(stats.exact, VK_TRUE);
+  vitrailVkCmdRaster(VK_NULL_HANDLE, host.raster().handle(), &right);
+  expectOneLine("null");
+  vitrailVkCmdRaster(VK_NULL_HANDLE, nullptr, &right); // nothing
+  EXPECT_EQ(vitrailVkRasterBands(nullptr), 0U);
+  EXPECT_EQ(vitrailVkUpdateRaster(nullptr, 0), VK_ERROR_INITIALIZATION_FAILED);
+}
+
+} // namespace
+} // namespace vitrail::tests::vulkan
