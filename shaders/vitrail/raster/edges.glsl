@@ -67,6 +67,22 @@ ivec3 vitrailEdgesAt(VitrailEdges e, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 place) 
                vitrailSumOfProducts(ivec2(e.right.z, e.down.z), place - p0, e.bias.z));
 }
 
+// The same of triangles whose corners are less than VITRAIL_MOST_LITTLE apart, and at places among them: products fit
+// into 32 bits.
+const int VITRAIL_MOST_LITTLE = 8192;
+
+int vitrailLittleArea(ivec2 p0, ivec2 p1, ivec2 p2) {
+  ivec2 a = p1 - p0;
+  ivec2 b = p2 - p0;
+  return a.x * b.y - a.y * b.x;
+}
+
+ivec3 vitrailLittleEdgesAt(VitrailEdges e, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 place) {
+  ivec3 x = ivec3(place.x - p1.x, place.x - p2.x, place.x - p0.x);
+  ivec3 y = ivec3(place.y - p1.y, place.y - p2.y, place.y - p0.y);
+  return (e.right * x + e.down * y + e.bias) >> 8;
+}
+
 // The pixels of a tile that are covered, rows top to bottom, 8 bits each; `first` are the edges at the middle of its
 // first pixel.
 uvec2 vitrailTileCoverage(VitrailEdges e, ivec3 first) {
@@ -85,6 +101,36 @@ uvec2 vitrailTileCoverage(VitrailEdges e, ivec3 first) {
       at -= e.right;
     }
     uint bits = outside ^ 0xffu;
+    if (y < 4) {
+      covered.x |= bits << (8 * y);
+    } else {
+      covered.y |= bits << (8 * y - 32);
+    }
+    row += e.down;
+  }
+  return covered;
+}
+
+// The same of a triangle that covers nothing beyond `size` pixels from the first one on: only these are looked at, and
+// at most three to their right.
+uvec2 vitrailPartCoverage(VitrailEdges e, ivec3 first, ivec2 size) {
+  bool isWide = size.x > 4;
+  ivec3 row = first + e.right * (isWide ? 7 : 3);
+  uvec2 covered = uvec2(0u);
+  for (int y = 0; y < size.y; ++y) {
+    ivec3 at = row;
+    uint outside = 0u;
+    if (isWide) {
+      for (int x = 0; x < 4; ++x) {
+        outside = outside << 1 | uint(at.x | at.y | at.z) >> 31;
+        at -= e.right;
+      }
+    }
+    for (int x = 0; x < 4; ++x) {
+      outside = outside << 1 | uint(at.x | at.y | at.z) >> 31;
+      at -= e.right;
+    }
+    uint bits = (outside ^ 0xffu) & (isWide ? 0xffu : 0xfu);
     if (y < 4) {
       covered.x |= bits << (8 * y);
     } else {

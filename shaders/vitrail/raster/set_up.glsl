@@ -19,7 +19,9 @@ shared ivec4 vitrailGroupCorners[VITRAIL_RASTER_GROUP]; // the first two
 shared ivec4 vitrailGroupTiles[VITRAIL_RASTER_GROUP];   // the third; the first tile
 shared vec4 vitrailGroupPlanes[VITRAIL_RASTER_GROUP];   // its depths at the first corner; the nearest depth
 shared uvec4 vitrailGroupSources[VITRAIL_RASTER_GROUP]; // primitive, item; tiles in a row; draw
-shared uint vitrailGroupEnds[VITRAIL_RASTER_GROUP];     // sums: candidates << 16 | records of small ones
+shared uint vitrailGroupEnds[VITRAIL_RASTER_GROUP];     // of the candidates of each, among those of all
+shared uint vitrailGroupSmalls;                         // records of small triangles
+shared uint vitrailGroupShares;                         // 1: some triangle has candidates
 shared uint vitrailGroupFirst;                          // place of the first record of a small triangle
 #ifdef VITRAIL_RASTER_OF_LARGE
 shared uint vitrailGroupPieces;
@@ -120,22 +122,33 @@ struct VitrailSource {
   float nearest; // of its corners
 };
 
-// False: it covers nothing, or is culled. Otherwise its corners run clockwise in the picture.
-bool vitrailOrientTriangle(inout VitrailTriangle t, uint draw, out VitrailSource source) {
-  float area = vitrailArea(t.p0, t.p1, t.p2);
-  if (area == 0.0) return false;
+// Which side shows of one whose corners run clockwise in the picture, or not. False: that is culled.
+bool vitrailSideOf(uint draw, bool isClockwise, out bool front) {
   uint flags = vitrailFlagsOf(draw);
-  bool front = (area < 0.0) != ((flags & VITRAIL_RASTER_FRONT_CLOCKWISE) != 0u);
+  front = isClockwise == ((flags & VITRAIL_RASTER_FRONT_CLOCKWISE) != 0u);
   if (vitrailCornersOf(flags) < 3u) {
     front = true;
-  } else if ((flags & (front ? VITRAIL_RASTER_CULL_FRONT : VITRAIL_RASTER_CULL_BACK)) != 0u) {
-    return false;
+    return true;
   }
+  return (flags & (front ? VITRAIL_RASTER_CULL_FRONT : VITRAIL_RASTER_CULL_BACK)) == 0u;
+}
+
+VitrailSource vitrailSourceOf(VitrailTriangle t, uint draw, bool front, float area) {
+  VitrailSource source;
   source.primitive = t.primitive | (front ? 0x80000000u : 0u);
   source.item = t.item;
   source.draw = draw;
   source.plane = vitrailPlane(t.p0, t.p1, t.p2, t.depths, area);
   source.nearest = max(t.depths.x, max(t.depths.y, t.depths.z));
+  return source;
+}
+
+// False: it covers nothing, or is culled. Otherwise its corners run clockwise in the picture.
+bool vitrailOrientTriangle(inout VitrailTriangle t, uint draw, out VitrailSource source) {
+  float area = vitrailArea(t.p0, t.p1, t.p2);
+  bool front;
+  if (area == 0.0 || !vitrailSideOf(draw, area > 0.0, front)) return false;
+  source = vitrailSourceOf(t, draw, front, area);
   if (area < 0.0) {
     ivec2 other = t.p1;
     t.p1 = t.p2;
@@ -152,12 +165,15 @@ void vitrailShareTriangle(uint thread, VitrailTriangle t, VitrailSource source, 
   vitrailGroupSources[thread] = uvec4(source.primitive, source.item, high.x - low.x, source.draw);
 }
 
-// Makes the record of a triangle in a tile: of the pixels that it covers there, or none.
-void vitrailMakeRecord(uint place, ivec2 tile, uvec2 covered, VitrailSource source) {
-  if (place >= vitrailRaster.recordCapacity) return;
+uint vitrailTileNumber(ivec2 tile) {
+  return uint(tile.y - int(vitrailRaster.top) / VITRAIL_TILE_SIDE) * vitrailRaster.tilesX + uint(tile.x);
+}
+
+// Makes the record of a triangle in a tile: of the pixels that it covers there, or none. It is the tile's `number`-th.
+void vitrailMakeRecord(uint place, ivec2 tile, uint number, uvec2 covered, VitrailSource source) {
   uint at = VITRAIL_NO_TILE;
   if ((covered.x | covered.y) != 0u) {
-    at = uint(tile.y - int(vitrailRaster.top) / VITRAIL_TILE_SIDE) * vitrailRaster.tilesX + uint(tile.x);
+    at = vitrailTileNumber(tile);
     ivec2 middle = tile * (VITRAIL_TILE_SIDE * VITRAIL_SUBPIXELS) + VITRAIL_SUBPIXELS / 2;
     vec3 depth = vitrailPlaneAt(source.plane, middle);
     float steps = float(VITRAIL_TILE_SIDE - 1);
@@ -166,7 +182,7 @@ void vitrailMakeRecord(uint place, ivec2 tile, uvec2 covered, VitrailSource sour
     if (VITRAIL_RASTER_SAMPLES == 1u) nearest = min(source.nearest, nearest);
     vitrailRecords[2u * place] = uvec4(covered, source.primitive, source.item);
     vitrailRecords[2u * place + 1u] = floatBitsToUint(vec4(depth, nearest));
-    vitrailRecordPlaces[3u * place + 1u] = atomicAdd(vitrailTileRecords[at].x, 1u);
+    vitrailRecordPlaces[3u * place + 1u] = number;
     vitrailRecordPlaces[3u * place + 2u] = source.draw;
   }
   vitrailRecordPlaces[3u * place] = at;
@@ -192,7 +208,9 @@ void vitrailCoverTile(uint thread, uint number, uint place) {
     if (VITRAIL_RASTER_SAMPLES > 1u) vitrailSampleMasks[place * VITRAIL_RASTER_SAMPLES + i] = samples;
     covered |= samples;
   }
-  vitrailMakeRecord(place, tile, covered,
+  uint number_ = 0u;
+  if ((covered.x | covered.y) != 0u) number_ = atomicAdd(vitrailTileRecords[vitrailTileNumber(tile)].x, 1u);
+  vitrailMakeRecord(place, tile, number_, covered,
              VitrailSource(source.x, source.y, source.w, VitrailPlane(vec2(corners.xy), plane.xyz), plane.w));
 }
 
@@ -233,38 +251,51 @@ void vitrailCutSmall(inout VitrailSmall small, uvec2 mask, ivec2 first) {
 // this thread's has `mine`.
 void vitrailCoverAll(VitrailSmall small, uint mine) {
   uint thread = gl_LocalInvocationIndex;
-  uint both = mine << 16 | small.count; // at most VITRAIL_RASTER_LARGE or VITRAIL_RASTER_LARGE_BLOCK of each thread
-  vitrailGroupEnds[thread] = both;
+  if (thread == 0u) vitrailGroupSmalls = vitrailGroupShares = 0u;
   barrier();
-  for (uint step = 1u; step < VITRAIL_RASTER_GROUP; step *= 2u) { // sums of what is before (Hillis and Steele, 1986)
-    uint before = thread >= step ? vitrailGroupEnds[thread - step] : 0u;
+  uint place = small.count > 0u ? atomicAdd(vitrailGroupSmalls, small.count) : 0u;
+  if (mine > 0u) vitrailGroupShares = 1u;
+  barrier();
+  uint smalls = vitrailGroupSmalls;
+  uint candidates_ = 0u;
+  if (vitrailGroupShares != 0u) { // sums of what is before (Hillis and Steele, 1986)
+    vitrailGroupEnds[thread] = mine;
     barrier();
-    vitrailGroupEnds[thread] += before;
-    barrier();
+    for (uint step = 1u; step < VITRAIL_RASTER_GROUP; step *= 2u) {
+      uint before = thread >= step ? vitrailGroupEnds[thread - step] : 0u;
+      barrier();
+      vitrailGroupEnds[thread] += before;
+      barrier();
+    }
+    candidates_ = vitrailGroupEnds[VITRAIL_RASTER_GROUP - 1u];
   }
-  uint all = vitrailGroupEnds[VITRAIL_RASTER_GROUP - 1u];
-  if (all == 0u) return;
-  uint smalls = all & 0xffffu;
-  uint candidates_ = all >> 16;
+  if (smalls + candidates_ == 0u) return;
   if (thread == 0u) {
     VITRAIL_TAKE_PLACES(vitrailRasterControl.records, vitrailRasterControl.recordsHigh, smalls + candidates_,
                         vitrailGroupFirst)
   }
   barrier();
   if (small.count > 0u) {
-    uint place = vitrailGroupFirst + (vitrailGroupEnds[thread] & 0xffffu) - small.count;
+    place += vitrailGroupFirst;
+    bool fits = place + small.count <= vitrailRaster.recordCapacity; // else the frame is drawn again
+    uint numbers[4]; // asked for together: nobody waits for one after the other
     for (int i = 0; i < 4; ++i) {
-      if ((small.covered[i].x | small.covered[i].y) == 0u) continue;
-      vitrailMakeRecord(place, small.tile + ivec2(i & 1, i >> 1), small.covered[i], small.source);
+      bool covers = (small.covered[i].x | small.covered[i].y) != 0u;
+      uint at = vitrailTileNumber(small.tile + ivec2(i & 1, i >> 1));
+      if (covers && fits) numbers[i] = atomicAdd(vitrailTileRecords[at].x, 1u);
+    }
+    for (int i = 0; i < 4; ++i) {
+      if ((small.covered[i].x | small.covered[i].y) == 0u || !fits) continue;
+      vitrailMakeRecord(place, small.tile + ivec2(i & 1, i >> 1), numbers[i], small.covered[i], small.source);
       ++place;
     }
   }
   for (uint i = thread; i < candidates_; i += VITRAIL_RASTER_GROUP) {
     uint owner = 0u; // the first whose end is beyond i
     for (uint step = VITRAIL_RASTER_GROUP / 2u; step > 0u; step /= 2u) {
-      if (vitrailGroupEnds[owner + step - 1u] >> 16 <= i) owner += step;
+      if (vitrailGroupEnds[owner + step - 1u] <= i) owner += step;
     }
-    uint first = owner > 0u ? vitrailGroupEnds[owner - 1u] >> 16 : 0u;
+    uint first = owner > 0u ? vitrailGroupEnds[owner - 1u] : 0u;
     vitrailCoverTile(owner, i - first, vitrailGroupFirst + smalls + i);
   }
 }
@@ -293,9 +324,9 @@ uint vitrailSetUp(uint draw, uvec2 number, inout VitrailSmall small) {
     vec4 a = vitrailClipPosition(draw, number.y, vitrailIndex(draw, first));
     vec4 b = vitrailClipPosition(draw, number.y, vitrailIndex(draw, first + 1u));
     vec4 c = vitrailClipPosition(draw, number.y, vitrailIndex(draw, first + 2u));
-    if (vitrailIsOutside(a, b, c)) return 0u;
     isWhole = !vitrailNeedsClipping(viewport, a) && !vitrailNeedsClipping(viewport, b) &&
               !vitrailNeedsClipping(viewport, c);
+    if (!isWhole && vitrailIsOutside(a, b, c)) return 0u;
     t = vitrailTriangleOf(viewport, a, b, c, number);
   } else {
     VitrailPolygon p = vitrailPolygonOf(draw, corners, number);
@@ -313,18 +344,27 @@ uint vitrailSetUp(uint draw, uvec2 number, inout VitrailSmall small) {
     vitrailPutAside(number);
     return 0u;
   }
-  VitrailSource source;
-  if (count == 0u || !vitrailOrientTriangle(t, draw, source)) return 0u;
-  if (VITRAIL_RASTER_SAMPLES == 1u && all(lessThan(last - first, ivec2(VITRAIL_TILE_SIDE)))) {
-    VitrailEdges edges = vitrailEdges(t.p0, t.p1, t.p2);
+  if (count == 0u) return 0u;
+  ivec2 extent = max(t.p0, max(t.p1, t.p2)) - min(t.p0, min(t.p1, t.p2));
+  bool isSmall = all(lessThan(last - first, ivec2(VITRAIL_TILE_SIDE))) && max(extent.x, extent.y) < VITRAIL_MOST_LITTLE;
+  if (VITRAIL_RASTER_SAMPLES == 1u && isSmall) {
+    int area = vitrailLittleArea(t.p0, t.p1, t.p2);
+    bool front;
+    if (area == 0 || !vitrailSideOf(draw, area > 0, front)) return 0u;
+    ivec2 p1 = area > 0 ? t.p1 : t.p2;
+    ivec2 p2 = area > 0 ? t.p2 : t.p1;
+    VitrailEdges edges = vitrailEdges(t.p0, p1, p2);
     ivec2 middle = first * VITRAIL_SUBPIXELS + VITRAIL_SUBPIXELS / 2;
-    uvec2 mask = vitrailTileCoverage(edges, vitrailEdgesAt(edges, t.p0, t.p1, t.p2, middle));
-    small.source = source;
+    uvec2 mask = vitrailPartCoverage(edges, vitrailLittleEdgesAt(edges, t.p0, p1, p2, middle), last - first + 1);
     bool isCut = any(greaterThan(first + VITRAIL_TILE_SIDE, ivec2(vitrailRaster.width, vitrailRaster.bottom)));
     if (isCut) mask &= vitrailTileWindow(ivec2(0), last - first + 1);
+    if ((mask.x | mask.y) == 0u) return 0u;
+    small.source = vitrailSourceOf(t, draw, front, float(area));
     vitrailCutSmall(small, mask, first);
     return 0u;
   }
+  VitrailSource source;
+  if (!vitrailOrientTriangle(t, draw, source)) return 0u;
   vitrailShareTriangle(gl_LocalInvocationIndex, t, source, low, high);
   return count;
 }
