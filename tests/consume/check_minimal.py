@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs examples/minimal under the validation layer and checks its picture: check_minimal.py PROGRAM
 
-check_minimal.py PROGRAM --like MINIMAL does the same with examples/cpu, which draws the same scene, and compares its
-picture with that of examples/minimal.
+check_minimal.py PROGRAM --like MINIMAL does the same with another example that draws the same scene, and compares its
+picture (PPM or PNG) with that of examples/minimal.
 
 check_minimal.py --picture FILE takes a picture that is there.
 
@@ -58,6 +58,11 @@ def read_ppm(path):
     if not data.startswith(header) or len(data) != len(header) + 3 * WIDTH * HEIGHT:
         fail(f"{path} is not a PPM of {WIDTH}x{HEIGHT}")
     return [data[len(header) + 3 * WIDTH * y:][:3 * WIDTH] for y in range(HEIGHT)]
+
+
+def read_picture(path):
+    with open(path, "rb") as file:
+        return read_ppm(path) if file.read(2) == b"P6" else read_png(path)
 
 
 def dot(a, b):
@@ -204,7 +209,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "picture")
         draw(program, path)
-        rows = read_ppm(path) if like else read_png(path)
+        rows = read_picture(path)
         if like:
             draw(like[1], path)
             check_alike(rows, read_png(path))

@@ -5,6 +5,7 @@
 #ifdef WITH_VULKAN
 #include <vitrail/gl.h>
 #include <vitrail/vulkan.h>
+#include <vitrail/vulkan_raster.h>
 #endif
 
 int main(void) {
@@ -15,6 +16,7 @@ int main(void) {
 #ifdef WITH_VULKAN
   vitrailVkDestroyContext(VK_NULL_HANDLE);
   vitrailVkDestroyTarget(VK_NULL_HANDLE);
+  vitrailVkDestroyRaster(VK_NULL_HANDLE);
   vitrailGlDestroyContext(NULL);
 #endif
   printf("components: linked\n");
