@@ -218,4 +218,5 @@ def main():
     check_closed_forms(rows)
 
 
-main()
+if __name__ == "__main__":
+    main()
