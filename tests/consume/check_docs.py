@@ -5,8 +5,8 @@
 
 ```c and ```cpp: the body of a function, after docs/prelude.h or another header of that folder, or docs/opengl.h where it
 calls OpenGL; or, where there is an `int main(`, a program for the rasteriser for CPUs, which pkg-config links and which
-must end with 0 and print what the ```text block after it says. ```glsl: a whole fragment or compute shader, or the body
-of a fragment shader's main(). ```cmake: the end of a CMakeLists.txt with an executable `renderer`. ```sh is not run. A
+must end with 0 and print what the ```text block after it says. ```glsl: a whole fragment or compute shader, one for
+vitrail/raster.glsl in all its stages, or the body of a fragment shader's main(). ```cmake: the end of a CMakeLists.txt with an executable `renderer`. ```sh is not run. A
 block that does not say what it is nobody would compile: an error."""
 import argparse
 import os
@@ -86,7 +86,15 @@ def c_flags(options):
     return ["-fsyntax-only", *warnings, f"-I{HERE}", f"-I{options.prefix}/include"]
 
 
+def compile_raster(options, folder, text):
+    compiler = ["glslc", "--target-env=vulkan1.2", "-Werror", f"-I{options.prefix}/share/vitrail/shaders", "-o", os.devnull,
+                write(folder, "block.comp", text)]
+    return ["sh", "-ec", 'for stage in 0 1 2 3 4; do "$@" -DVITRAIL_RASTER_STAGE=$stage; done', "stages", *compiler]
+
+
 def compile_glsl(options, folder, line, where, text):
+    if '"vitrail/raster.glsl"' in text:
+        return compile_raster(options, folder, text)
     prelude = open(os.path.join(HERE, "prelude.glsl"), encoding="utf-8").read()
     if "void main()" not in text:
         text = SHADER_START + text + "}\n"

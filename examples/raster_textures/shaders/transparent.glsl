@@ -9,8 +9,9 @@
 
 layout(set = 0, binding = 1, std430) readonly buffer VertexBlock { float vertices[]; }; // 8 each
 
-vec3 positionOf(uint vertex) { return vec3(vertices[8u * vertex], vertices[8u * vertex + 1u], vertices[8u * vertex + 2u]); }
-vec3 normalOf(uint vertex) { return vec3(vertices[8u * vertex + 3u], vertices[8u * vertex + 4u], vertices[8u * vertex + 5u]); }
+vec3 vec3At(uint i) { return vec3(vertices[i], vertices[i + 1u], vertices[i + 2u]); }
+vec3 positionOf(uint vertex) { return vec3At(8u * vertex); }
+vec3 normalOf(uint vertex) { return vec3At(8u * vertex + 3u); }
 vec2 texCoordOf(uint vertex) { return vec2(vertices[8u * vertex + 6u], vertices[8u * vertex + 7u]); }
 
 vec4 vitrailPosition(VitrailVertex vertex) {

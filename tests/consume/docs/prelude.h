@@ -3,6 +3,7 @@
 #include <stdint.h>
 
 #include <vitrail/vulkan.h>
+#include <vitrail/vulkan_raster.h>
 #include <vulkan/vulkan.h>
 
 #ifdef __cplusplus
@@ -60,6 +61,28 @@ extern VkPipelineShaderStageCreateInfo fragmentStage;
 extern VkPipelineDepthStencilStateCreateInfo depthStencil;
 extern VkCommandBuffer commands;
 
+extern VitrailVkRaster raster;
+extern VitrailVkRasterInfo info;
+extern const VitrailVkRasterStage stages[5];
+extern const float planes[1][4];
+extern uint32_t drawCount;
+extern uint32_t instanceCount;
+extern uint32_t triangleCount;
+extern uint32_t vertexCount;
+extern uint32_t indexCount;
+extern uint32_t firstIndex;
+extern int32_t vertexOffset;
+extern uint32_t firstInstance;
+extern uint32_t material;
+extern uint32_t mostDraws;
+extern VkBuffer culledDraws;
+extern VkBuffer culledCount;
+extern VkBuffer drawBuffer;
+extern VkBuffer indexBuffer;
+extern VkDescriptorSet materialSet;
+extern VkImage depthImage;
+extern VkImageView depthView;
+
 void printReason(VitrailLogSeverity severity, const char* message, void* user);
 void warn(const char* format, ...);
 void imageBarrier(VkCommandBuffer commandBuffer, VkImage image, VkImageLayout oldLayout, VkImageLayout newLayout,
@@ -70,6 +93,9 @@ void drawInterface(VkCommandBuffer commandBuffer);
 void waitForFenceOf(uint64_t pastFrame);
 void printObject(uint32_t object);
 void recordFrame(VitrailVkTarget drawnTarget, uint64_t frameNumber);
+void recordRasterFrame(VitrailVkRaster drawnRaster, uint64_t frameNumber);
+void submitAndWait(void);
+VkCommandBuffer submitAndBegin(VkCommandBuffer recorded);
 void drawTransparentFrame(VitrailVkTarget drawnTarget, const VitrailVkBeginInfo* info);
 void graphUsesBuffer(VkBuffer buffer, VkDeviceSize offset, VkDeviceSize size, VkPipelineStageFlags source,
                      VkPipelineStageFlags destination);
