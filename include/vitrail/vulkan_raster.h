@@ -12,8 +12,7 @@
  *     vitrailVkUpdateRaster       before recording: lets the memory follow what frames need
  *     (host)  opaque geometry into colour and depth
  *     vitrailVkCmdRaster          outside a rendering scope: draws the transparent geometry over the opaque colour
- *   vitrailVkReadRasterStats      later, whenever the frame has finished: what it needed, and whether all of it was
- * drawn
+ *   vitrailVkReadRasterStats      later, whenever the frame has finished: what it needed, and whether it was exact
  *
  * Exact: every triangle is drawn, in every pixel that hardware would cover, at any number of layers. A frame that needs
  * more memory than there is says so in its statistics (`exact` is 0, and what it leaves in the colour image is not the
@@ -113,14 +112,15 @@ typedef struct VitrailVkRasterDesc {
   const char* debugName;   /* default "vitrail raster" */
 } VitrailVkRasterDesc;
 
-/* Makes the memory and the pipelines of one view. Errors: VK_ERROR_INITIALIZATION_FAILED for a field that is not as
- * described, VK_ERROR_FEATURE_NOT_PRESENT where the device binds fewer than 27 storage buffers to a shader or has no
- * subgroup shuffles in compute shaders, VK_ERROR_FORMAT_NOT_SUPPORTED,
- * VK_ERROR_OUT_OF_DEVICE_MEMORY where the budget has no room for the tiles of a row, or what Vulkan returned; the log
- * says which. On error *raster is null. */
-/* Storage buffers that the stages of the host's shader bind beside the host's own, for
+/* Storage buffers that each stage of the host's shader binds beside the host's own, which together are at most
  * maxPerStageDescriptorStorageBuffers. */
 #define VITRAIL_VK_RASTER_STORAGE_BUFFERS 18
+
+/* Makes the memory and the pipelines of one view. Errors: VK_ERROR_INITIALIZATION_FAILED for a field that is not as
+ * described, VK_ERROR_FEATURE_NOT_PRESENT where the device binds fewer than 27 storage buffers to a shader (which the
+ * library's own kernels need) or has no subgroup shuffles in compute shaders, VK_ERROR_FORMAT_NOT_SUPPORTED,
+ * VK_ERROR_OUT_OF_DEVICE_MEMORY where the budget has no room for the tiles of a row, or what Vulkan returned; the log
+ * says which. On error *raster is null. */
 VITRAIL_API VkResult vitrailVkCreateRaster(VitrailVkContext context, const VitrailVkRasterDesc* desc,
                                            VitrailVkRaster* raster);
 
@@ -207,8 +207,8 @@ typedef struct VitrailVkRasterInfo {
 /* Draws a frame: outside a rendering scope, on a queue with compute. What the host's functions read, the draws, the
  * indices and the images were made visible to (COMPUTE_SHADER, SHADER_READ | SHADER_WRITE | UNIFORM_READ) before.
  * Afterwards color was written by (COMPUTE_SHADER, SHADER_WRITE): the host's next barrier names that as its source. The
- * host's compute bindings are lost. A call that lacks something records nothing and logs an error, and the frame is not
- * exact. */
+ * host's compute bindings are lost. A call that lacks something records nothing and logs an error, and the frame is
+ * misused and not exact. */
 VITRAIL_API void vitrailVkCmdRaster(VkCommandBuffer commandBuffer, VitrailVkRaster raster,
                                     const VitrailVkRasterInfo* info);
 
@@ -219,6 +219,7 @@ typedef struct VitrailVkRasterStats {
   uint64_t frame;
   /* 1: the picture is right: all that was to be drawn had room, and no driver cut a pass short. */
   VkBool32 exact;
+  VkBool32 misused; /* 1: a call was wrong and recorded nothing; the log says which. The rest is 0 */
   /* How far the picture may be from that of all surfaces, in steps of 8-bit colour (1/255 on the sRGB curve), before it
    * is rounded to colorFormat: what is hidden and left out; 0 where nobody knows mostLight. */
   float errorBound;

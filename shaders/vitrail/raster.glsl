@@ -15,7 +15,8 @@
 // read all that the host's descriptor sets have, and may be called for a pixel any number of times; in the stage
 // POSITIONS vitrailPosition() is called once for each vertex of each instance and may write, too: what else it has
 // worked out to vertex.place of an array of the host's, say. There are no implicit derivatives: textures are sampled by
-// textureGrad() and vitrailDerivatives(), or by textureLod(). A surface of alpha 0 is not there: a mask returns that.
+// textureGrad() and vitrailDerivatives(), or by textureLod(). A surface of alpha 0 is not there: a mask returns that
+// (premultiplied, of colour 0 too).
 //
 // Define before the include
 //   VITRAIL_SET                  required: the number of the raster's descriptor set, which comes behind the host's own
@@ -30,6 +31,8 @@
 // Specialization constants 1710 to 1719 are the library's. The stages need SPIR-V 1.3 and subgroup shuffles.
 #ifndef VITRAIL_RASTER_GLSL
 #define VITRAIL_RASTER_GLSL
+
+#include "layout.h" // the names of blend modes
 
 #define VITRAIL_RASTER_STAGE_POSITIONS 0
 #define VITRAIL_RASTER_STAGE_SET_UP 1

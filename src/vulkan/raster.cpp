@@ -127,6 +127,7 @@ VkResult checkDevice(const VitrailVkContext_T& context, VitrailVkRaster_T& raste
   }
   // Before Vulkan 1.3 a driver may take narrower ones than it says, where it has several sizes.
   raster.shuffles = properties13.minSubgroupSize >= 32;
+  raster.offsetAlignment = properties.properties.limits.minStorageBufferOffsetAlignment;
   return VK_SUCCESS;
 }
 
@@ -190,11 +191,11 @@ std::unique_ptr<VitrailVkRaster_T> makeRaster(VitrailVkContext context, const Vi
   return made;
 }
 
-// Room for the tiles of an extent: for all where the budget has it, else for bands.
-VkResult makeRoom(VitrailVkRaster_T& raster, const RasterNeeds& guess) {
+// Room for the tiles of an extent: for all where the budget has it, else for bands. `had`: what there is, or is enough.
+VkResult makeRoom(VitrailVkRaster_T& raster, const RasterNeeds& guess, const RasterNeeds& had) {
   std::uint32_t rows = raster.tilesY();
   RasterNeeds room;
-  while (planRasterRoom(guess, {}, raster.bounds(rows), room) > 1.0 &&
+  while (planRasterRoom(guess, had, raster.bounds(rows), room) > 1.0 &&
          planRasterRoom(kLeast, {}, raster.bounds(rows), room) > 1.0) {
     if (rows == 1) {
       return raster.context->log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY,
@@ -244,7 +245,7 @@ VkResult build(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc) {
   }
   if (result == VK_SUCCESS) result = createStats(raster);
   if (result == VK_SUCCESS) result = createRasterBuffers(raster);
-  if (result == VK_SUCCESS) result = makeRoom(raster, guessOf(desc.hints.triangles));
+  if (result == VK_SUCCESS) result = makeRoom(raster, guessOf(desc.hints.triangles), {});
   if (result == VK_SUCCESS) result = resizeRasterTables(raster, tablesOf(desc.hints, raster.keepsPositions));
   if (result == VK_SUCCESS) result = createRasterPipelines(raster, desc);
   if (result == VK_SUCCESS) result = createRasterSets(raster);
@@ -257,6 +258,7 @@ VkResult build(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc) {
 bool readSlot(const VitrailVkRaster_T& raster, std::uint64_t frame, raster::VitrailRasterTotals& totals) {
   const RasterFacts& facts = raster.facts[raster.slotOf(frame)];
   if (!facts.any || facts.frame != frame) return false;
+  if (facts.misused) return true; // it leaves none
   // The GPU may start to write the slot again at any time: as readSlot() of a target.
   RasterSlot& slot = static_cast<RasterSlot*>(raster.stats.mapped)[raster.slotOf(frame)];
   const std::uint64_t tag = frame + 1;
@@ -297,8 +299,10 @@ void decode(const raster::VitrailRasterTotals& totals, const RasterFacts& facts,
   clearKeepingNext(stats);
   stats.frame = facts.frame;
   stats.bands = facts.bands;
+  stats.misused = facts.misused ? VK_TRUE : VK_FALSE;
+  if (facts.misused) return; // nothing of it is known
   const bool whole = facts.empty || (totals.bands == facts.bands && totals.cutPixels == 0 && hadRoom(totals, facts));
-  stats.exact = whole && !facts.misused ? VK_TRUE : VK_FALSE;
+  stats.exact = whole ? VK_TRUE : VK_FALSE;
   if (facts.empty) return;
   stats.errorBound = facts.bounded ? raster::VITRAIL_RASTER_STOP : 0.0F;
   stats.draws = totals.start.tables.count;
@@ -441,7 +445,7 @@ extern "C" VkResult vitrailVkResizeRaster(VitrailVkRaster raster, VkExtent2D ext
   raster->extent = extent;
   RasterNeeds guess = raster->room;
   guess.deep = guess.blocks = guess.fragments = guess.chunks = 1;
-  const VkResult made = makeRoom(*raster, guess);
+  const VkResult made = makeRoom(*raster, guess, guess);
   if (made != VK_SUCCESS) raster->extent = before;
   if (made == VK_SUCCESS) raster->low.forget();
   return made;
@@ -462,7 +466,7 @@ extern "C" VkResult vitrailVkUpdateRaster(VitrailVkRaster raster, uint64_t frame
   });
   if (!read || newest + 1 <= raster->newestNews) return VK_SUCCESS;
   const RasterFacts& facts = raster->facts[raster->slotOf(newest)];
-  if (!facts.empty) {
+  if (!facts.empty && !facts.misused) {
     const VkResult result = follow(*raster, totals, facts);
     if (result != VK_SUCCESS) return result;
   }

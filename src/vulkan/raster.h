@@ -134,6 +134,7 @@ struct VitrailVkRaster_T {
   std::uint32_t indexBytes = 2; // 0: there are none
   bool keepsPositions = false;
   bool shuffles = false;
+  std::uint64_t offsetAlignment = 1; // of storage buffers
   std::uint32_t blendModes = 0;
   bool solids = false;
   std::uint32_t hostSets = 0;

@@ -79,10 +79,11 @@ class Replacement {
   Replacement(const Replacement&) = delete;
   Replacement& operator=(const Replacement&) = delete;
 
-  // Makes one, unless the raster has it in that size.
-  void make(RasterBuffer which, std::uint64_t bytes) {
+  // Makes one, unless the raster has it in that size, or in up to so many times that.
+  void make(RasterBuffer which, std::uint64_t bytes, std::uint64_t times = 1) {
     bytes = std::max<std::uint64_t>(bytes, 16); // what is bound has a size
-    if (result_ != VK_SUCCESS || raster_.buffer(which).size == bytes) return;
+    const std::uint64_t has = raster_.buffer(which).size;
+    if (result_ != VK_SUCCESS || (has >= bytes && has <= bytes * times)) return;
     Buffer buffer;
     result_ = buffer.create(*raster_.context, bytes, usageOf(which), 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
                             raster_.debugName.c_str(), kKinds[static_cast<std::size_t>(which)].name);
@@ -124,8 +125,9 @@ VkResult createRasterBuffers(VitrailVkRaster_T& raster) {
 VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, std::uint32_t bandRows) {
   const std::uint64_t tiles = std::uint64_t{raster.tilesX()} * bandRows;
   Replacement made(raster);
-  made.make(RasterBuffer::TileRecords, tiles * kRasterTileBytes);
-  made.make(RasterBuffer::TileList, tiles * kRasterTileListBytes);
+  constexpr std::uint64_t kLarger = 4; // extents come and go: what is small is kept
+  made.make(RasterBuffer::TileRecords, tiles * kRasterTileBytes, kLarger);
+  made.make(RasterBuffer::TileList, tiles * kRasterTileListBytes, kLarger);
   made.make(RasterBuffer::Records, room.records * kRasterRecordBytes);
   made.make(RasterBuffer::RecordPlaces, room.records * kRasterPlaceBytes);
   made.make(RasterBuffer::Pairs, room.records * kRasterPairBytes);

@@ -312,8 +312,11 @@ bool isWhole(const VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info) {
   if (info.clipPlaneCount > kMostPlanes || (info.clipPlaneCount > 0 && info.clipPlanes == nullptr)) {
     return fails("clipPlanes has at most 8 planes");
   }
-  if (info.drawOffset % 4 != 0 || info.indexOffset % 4 != 0 || info.orderOffset % 4 != 0 || info.countOffset % 4 != 0) {
-    return fails("offsets are multiples of minStorageBufferOffsetAlignment");
+  for (const VkDeviceSize offset : {info.drawOffset, info.indexOffset, info.orderOffset, info.countOffset}) {
+    if (offset % raster.offsetAlignment == 0) continue;
+    log.error("vitrailVkCmdRaster: offset %llu: offsets are multiples of minStorageBufferOffsetAlignment, %llu here",
+              static_cast<unsigned long long>(offset), static_cast<unsigned long long>(raster.offsetAlignment));
+    return false;
   }
   return true;
 }

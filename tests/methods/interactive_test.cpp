@@ -18,19 +18,23 @@ namespace {
 
 class InteractiveTest : public GpuTest {
  protected:
-  // A picture that is waited for, in the corner of images of its own size.
-  static InteractivePicture drawAlone(InteractiveRenderer& renderer, const RenderOptions& options) {
-    EXPECT_TRUE(renderer.draw(options, {options.width, options.height}, true));
+  // A picture that is waited for, in the corner of images of that size.
+  // Default size: that of the picture.
+  static InteractivePicture drawAlone(InteractiveRenderer& renderer, const RenderOptions& options,
+                                      VkExtent2D size = {}) {
+    if (size.width == 0) size = {options.width, options.height};
+    EXPECT_TRUE(renderer.draw(options, size, true));
     InteractivePicture picture = renderer.finish();
     EXPECT_EQ(renderer.pending(), 0U);
     return picture;
   }
 
   // Until one is complete: at most so many.
-  static InteractivePicture drawComplete(InteractiveRenderer& renderer, const RenderOptions& options, int most) {
+  static InteractivePicture drawComplete(InteractiveRenderer& renderer, const RenderOptions& options, int most,
+                                         VkExtent2D size = {}) {
     for (int i = 1;; ++i) {
-      InteractivePicture picture = drawAlone(renderer, options);
-      if (picture.report.fragmentsMissing == 0 || i == most) return picture;
+      InteractivePicture picture = drawAlone(renderer, options, size);
+      if (picture.report.complete || i == most) return picture;
     }
   }
 
@@ -100,18 +104,21 @@ TEST_F(InteractiveTest, LightThatObjectsAbsorbFollowsTheView) {
 // A part of larger images, of whatever size: nothing is made anew, and what is left of other pictures does not show.
 TEST_F(InteractiveTest, APartOfTheImagesIsAPicture) {
   const Scene scene = makeBuiltinScene("interlocked", {});
-  for (const std::uint32_t samples : {1U, 4U}) {
+  for (const auto& [name, samples] : {std::pair{"linked-list", 1U}, {"linked-list", 4U}, {"tiles", 1U}}) {
     MethodOptions method;
+    method.name = name;
     method.samples = samples;
     InteractiveRenderer renderer(gpu(), scene, {}, method);
     StillRenderer still(gpu(), scene, {}, DrawOrder::Forward, method);
     for (const auto& [width, height] : {std::pair{200U, 150U}, {66U, 50U}, {100U, 75U}, {50U, 37U}, {200U, 150U}}) {
       const RenderOptions options = usualOptions(scene, width, height);
+      drawComplete(renderer, options, 5, {200, 150});
       ASSERT_TRUE(renderer.draw(options, {200, 150}, true));
       const InteractivePicture picture = renderer.finish();
       EXPECT_EQ(picture.image->info().extent.width, 200U);
       EXPECT_EQ(picture.part.width, width);
-      EXPECT_TRUE(picture.pixels == still.render(options).picture.rgba) << width << " with " << samples;
+      EXPECT_TRUE(picture.pixels == still.render(options).picture.rgba)
+          << width << " with " << samples << " by " << name;
     }
   }
 }

@@ -57,8 +57,10 @@ VitrailFragments vitrailFragmentsOf(VitrailSurface surface) {
 #if VITRAIL_RASTER_FRAGMENTS == 1
   VitrailFragments f;
   f.colors[0] = vitrailStoredColor(vitrailShade(surface));
-  f.count = f.colors[0].a > 0.0 ? 1u : 0u;
   f.blends[0] = VITRAIL_ONE_BLEND ? uint(findLSB(VITRAIL_RASTER_BLENDS)) : vitrailBlendOf(surface.draw);
+  bool shows = f.colors[0].a > 0.0;
+  if (f.blends[0] == VITRAIL_PREMULTIPLIED) shows = shows || any(greaterThan(f.colors[0].rgb, vec3(0.0)));
+  f.count = shows ? 1u : 0u;
 #else
   VitrailFragments f = vitrailShadeTwice(surface);
   f.colors[0] = vitrailStoredColor(f.colors[0]);

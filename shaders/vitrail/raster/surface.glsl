@@ -34,7 +34,6 @@ vec4 vitrailClipPosition(uint draw, uint item, uint index) {
 }
 #endif
 
-#if VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_BLEND || VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_BLEND_DEEP
 // Weights of a triangle's corners at a place, with perspective, from the corners' x, y and w in clip space after the
 // place has been moved to the origin (Olano and Greer, "Triangle scan conversion using 2D homogeneous coordinates",
 // 1997): right also where a corner lies behind the eye.
@@ -70,6 +69,7 @@ void vitrailDerivatives(VitrailSurface surface, out vec3 right, out vec3 down) {
   down = (vitrailWeightsAt(surface, vec2(middle.x, middle.y + way.y)) - surface.weights) * way.y;
 }
 
+#if VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_BLEND || VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_BLEND_DEEP
 // `source`: the primitive, with the side in its highest bit, and the item, of that draw.
 VitrailSurface vitrailSurfaceOf(uvec2 source, uint draw, ivec2 pixel) {
   VitrailSurface surface;

@@ -91,15 +91,21 @@ class Tiles final : public Method {
   void releaseTarget() override;
   void draw(Frame& frame) override;
   bool finish() override;
-  FrameStats stats() const override;
+  FrameStats stats() const override { return statsFor(stats_); }
+  bool drawsInFlight() const override { return target_.framesInFlight > 1; }
+  std::uint64_t lastPicture() const override { return frame_; }
+  FrameStats statsOf(std::uint64_t picture) override;
 
  private:
   void check(VkResult result, const char* call) const;
   void makeRaster();
+  void setExtent(VkExtent2D extent);
   std::span<const std::uint32_t> blendCode() const;
   std::span<const std::uint32_t> deepCode() const;
   std::uint32_t blendModes() const;
   void countMemory();
+  void follow();
+  FrameStats statsFor(const VitrailVkRasterStats& stats) const;
 
   Gpu& gpu_;
   const Surfaces& surfaces_;
@@ -110,6 +116,7 @@ class Tiles final : public Method {
   vulkan::Context context_;
   vulkan::Raster raster_;
   MethodTarget target_;
+  VkExtent2D extent_{}; // of the raster
   std::uint64_t budget_ = 0;
   std::uint64_t frame_ = 0;  // of the raster
   bool drawnBefore_ = false; // by the raster: its tables of draws are made
@@ -166,7 +173,7 @@ void Tiles::makeRaster() {
   const bool clipped = surfaces_.list().isClipped();
   const SurfaceConstants constants(geometry_);
   VitrailVkRasterDesc desc{};
-  desc.extent = target_.extent;
+  desc.extent = extent_ = target_.extent;
   desc.samples = static_cast<VkSampleCountFlagBits>(samples_);
   desc.depthOrder = VITRAIL_DEPTH_NEAREST_IS_ONE;
   desc.setLayoutCount = static_cast<std::uint32_t>(layouts.size());
@@ -181,7 +188,7 @@ void Tiles::makeRaster() {
   desc.solids = (geometry_.anyFeatures() & shaders::FEATURE_SOLID) != 0 ? VK_TRUE : VK_FALSE;
   desc.memoryBudget = budget_;
   desc.hints = geometry_.hints();
-  desc.framesInFlight = 1;
+  desc.framesInFlight = surfaces_.framesInFlight();
   desc.debugName = "tiles";
   const VkResult result = vulkan::Raster::create(context_, desc, raster_);
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) {
@@ -200,23 +207,41 @@ void Tiles::countMemory() {
 }
 
 void Tiles::setTarget(const MethodTarget& target) {
-  const bool sameSize = target.extent.width == target_.extent.width && target.extent.height == target_.extent.height;
   target_ = target;
-  const std::uint64_t budget = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
-  if (raster_ && budget == budget_) {
-    if (!sameSize) {
-      check(raster_.resize(target.extent), "vitrailVkResizeRaster");
-      countMemory();
-    }
-    return;
-  }
+  std::uint64_t budget = target.memoryBudget.value_or(std::numeric_limits<std::uint64_t>::max());
+  constexpr std::uint64_t kShare = 2; // of the device's memory: there are other programs
+  if (surfaces_.framesInFlight() > 1) budget = std::min(budget, gpu_.localMemory() / kShare);
+  if (raster_ && budget == budget_) return;
   budget_ = budget;
   makeRaster();
 }
 
+// A picture may be a part of the target.
+void Tiles::setExtent(VkExtent2D extent) {
+  if (extent.width == extent_.width && extent.height == extent_.height) return;
+  extent_ = extent;
+  check(raster_.resize(extent), "vitrailVkResizeRaster");
+  countMemory();
+}
+
 void Tiles::releaseTarget() { target_ = {}; }
 
+// Makes the room that the pictures before have needed.
+void Tiles::follow() {
+  const VkResult result = raster_.update(frame_ + 1);
+  countMemory();
+  if (result == VK_SUCCESS) return;
+  if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY) check(result, "vitrailVkUpdateRaster");
+  if (drawsInFlight()) return; // the picture's report says that it is not whole
+  throw GpuError(
+      fmt::format("the method tiles has no room on {} for the {} triangles in a row of tiles, and for {} "
+                  "fragments of deep tiles: use linked-list, a larger --memory-budget or a smaller --size",
+                  gpu_.properties().deviceName, stats_.records, stats_.deepFragments));
+}
+
 void Tiles::draw(Frame& frame) {
+  setExtent(frame.images().extent());
+  if (drawsInFlight()) follow();
   VkCommandBuffer commands = frame.commands();
   const std::array<VkDescriptorSet, kOwnSet> sets{surfaces_.viewSet(), geometry_.textures(), geometry_.set()};
   const std::uint32_t noDraw = 0; // the offset of its material
@@ -247,8 +272,17 @@ void Tiles::draw(Frame& frame) {
   info.opaque = target_.opaque;
   info.onPass = [](const char* pass, VkCommandBuffer, void* user) { static_cast<Frame*>(user)->endPass(pass); };
   info.user = &frame;
-  // A submission for each band: none takes long, and the Timers have room for its passes.
   const std::uint32_t bands = raster_.bands();
+  drawnBefore_ = true;
+  if (drawsInFlight()) { // in one submission, which has time stamps for a few bands
+    constexpr std::uint32_t kTimedBands = 4;
+    if (bands > kTimedBands) info.onPass = nullptr;
+    frame.images().cmdToComputeResolve(commands);
+    raster_.draw(commands, info);
+    if (bands > kTimedBands) frame.endPass("tiles");
+    return;
+  }
+  // A submission for each band: none takes long, and the Timers have room for its passes.
   info.bandCount = 1;
   for (info.firstBand = 0; info.firstBand < bands; ++info.firstBand) {
     if (info.firstBand > 0) {
@@ -258,32 +292,29 @@ void Tiles::draw(Frame& frame) {
     frame.images().cmdToComputeResolve(commands);
     raster_.draw(commands, info);
   }
-  drawnBefore_ = true;
 }
 
 bool Tiles::finish() {
   check(raster_.readStats(frame_, stats_), "vitrailVkReadRasterStats");
   if (stats_.exact == VK_TRUE || stats_.cutPixels > 0) return true;
-  const VkResult result = raster_.update(frame_ + 1);
-  if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) {
-    throw GpuError(
-        fmt::format("the method tiles has no room on {} for the {} triangles in a row of tiles, and for {} "
-                    "fragments of deep tiles: use linked-list, a larger --memory-budget or a smaller --size",
-                    gpu_.properties().deviceName, stats_.records, stats_.deepFragments));
-  }
-  check(result, "vitrailVkUpdateRaster");
-  countMemory();
+  follow();
   return false;
 }
 
-FrameStats Tiles::stats() const {
+FrameStats Tiles::statsOf(std::uint64_t picture) {
+  VitrailVkRasterStats stats{};
+  check(raster_.readStats(picture, stats), "vitrailVkReadRasterStats");
+  return statsFor(stats);
+}
+
+FrameStats Tiles::statsFor(const VitrailVkRasterStats& drawn) const {
   const VitrailVkRasterMemory memory = raster_.memory();
   FrameStats stats;
   stats.resolve = "compute";
-  stats.cutPixels = stats_.cutPixels;
-  stats.complete = stats_.exact == VK_TRUE;
-  stats.errorBound = 0.5 + stats_.errorBound + 0.05;
-  stats.tiles = raster_.bands();
+  stats.cutPixels = drawn.cutPixels;
+  stats.complete = drawn.exact == VK_TRUE;
+  stats.errorBound = 0.5 + drawn.errorBound + 0.05;
+  stats.tiles = std::max(drawn.bands, 1U);
   stats.nodesBytes = memory.tileBytes; // what the budget is for
   stats.totalBytes = memory.totalBytes + geometry_.bytes();
   return stats;
