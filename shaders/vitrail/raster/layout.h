@@ -95,8 +95,8 @@ struct VitrailRasterFrame {
   uint vertexCapacity;
   uint hasOrders;
   uint framePadding0;
-  uint countsDraws;  // the GPU has
-  float depthStep;   // of the opaque depths
+  uint countsDraws; // the GPU has
+  float depthStep;  // of the opaque depths
   uint drawCapacity;
   uint framePadding2;
   vec4 clipPlanes[8]; // of clip space

@@ -38,7 +38,8 @@ constexpr std::string_view kNoStencil = "has no stencil beside a depth of 32 bit
 constexpr Need kNeeds[] = {
     {"tiles", [](const Gpu& gpu) { return gpu.features().subgroupShuffles; }, "has no subgroup shuffles",
      "linked-list"},
-    {"tiles", [](const Gpu& gpu) { return gpu.properties().limits.maxPerStageDescriptorStorageBuffers >= kTilesBuffers; },
+    {"tiles",
+     [](const Gpu& gpu) { return gpu.properties().limits.maxPerStageDescriptorStorageBuffers >= kTilesBuffers; },
      "lets a shader reach fewer than 29 buffers", "linked-list"},
     {"depth-peeling", [](const Gpu& gpu) { return gpu.features().primitiveNumbers; },
      "does not number triangles for fragment shaders", "reverse-depth-peeling"},
