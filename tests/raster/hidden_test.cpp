@@ -1,5 +1,6 @@
 // Blocks with many rows shade only those of which something shows. The picture must not depend on it.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -108,6 +109,57 @@ TEST_P(HiddenTest, NothingThatShowsIsLeftOut) {
   const double through = std::pow(0.98, kPanes);
   EXPECT_NEAR(picture.at(5, 5)[0], 0.5 * (1.0 - through), 1e-6);
   EXPECT_NEAR(picture.at(5, 5)[1], 0.5 * (1.0 - through) + through, 1e-6);
+}
+
+// Panes that cross in the middle of the picture, of one colour each: what is hidden is found while they come.
+TEST_P(HiddenTest, FlatPanesAreAllCountedInWhateverOrderTheyCome) {
+  constexpr std::uint32_t kPanes = 150;
+  std::vector<std::vector<Position>> corners(kPanes);
+  std::vector<VitrailCpuDraw> draws(kPanes);
+  std::vector<std::array<double, 2>> ends(kPanes); // depths at the left and right border
+  for (std::uint32_t i = 0; i < kPanes; ++i) {
+    const float left = (static_cast<float>(i) + 0.5F) / kPanes;
+    const float right =
+        0.9731F * (static_cast<float>(i * 7 % kPanes) + 0.25F) / kPanes; // no two meet in a pixel's middle
+    const auto at = [&](double x, double y) { return inPixels(kSide, kSide, x, y, x > 0 ? right : left); };
+    corners[i] = {at(0, 0), at(kSide, 0), at(0, kSide), at(kSide, 0), at(kSide, kSide), at(0, kSide)};
+    ends[i] = {left, right};
+  }
+  for (std::uint32_t i = 0; i < kPanes; ++i) {
+    draws[i] = drawOf(corners[i]);
+    const float shade = static_cast<float>(i) / kPanes;
+    const std::array<float, 4> color{shade, 1.0F - shade, 0.5F, i % 3 == 0 ? 0.6F : 0.2F};
+    std::copy(color.begin(), color.end(), draws[i].color);
+  }
+  std::vector<std::size_t> order = inOrder(kPanes);
+  Picture first(kSide, kSide);
+  for (int round = 0; round < 4; ++round) {
+    std::vector<VitrailCpuDraw> ordered;
+    for (const std::size_t i : order) ordered.push_back(draws[i]);
+    Raster raster(GetParam());
+    Picture picture(kSide, kSide);
+    VitrailStats stats{};
+    ASSERT_EQ(raster.render(picture.frame(), ordered, &stats), VITRAIL_SUCCESS);
+    EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{kPanes} * kSide * kSide) << "round " << round;
+    EXPECT_EQ(stats.layersMax, kPanes);
+    if (round == 0) first = picture;
+    EXPECT_TRUE(picture.pixels == first.pixels) << "round " << round;
+    if (round == 0) std::reverse(order.begin(), order.end());
+    if (round > 0) std::shuffle(order.begin(), order.end(), Random(3 + static_cast<std::uint64_t>(round)).engine());
+  }
+  for (std::uint32_t x = 0; x < kSide; x += 3) {
+    const double share = (x + 0.5) / kSide;
+    std::vector<std::size_t> byDepth = inOrder(kPanes);
+    const auto depthOf = [&](std::size_t i) { return ends[i][0] + share * (ends[i][1] - ends[i][0]); };
+    std::ranges::sort(byDepth, {}, depthOf);
+    double red = 0.0;
+    double through = 1.0;
+    for (const std::size_t i : byDepth) {
+      red += through * double{draws[i].color[3]} * double{draws[i].color[0]};
+      through *= 1.0 - double{draws[i].color[3]};
+    }
+    EXPECT_NEAR(first.at(x, 17)[0], red, 2e-5) << "column " << x;
+  }
 }
 
 // Surfaces in one plane, holes, filters and all blend modes, deep enough that some blocks wait and others do not.

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "raster/cpu/finish-inl.h"
 #include "raster/cpu/hidden-inl.h"
 #include "raster/cpu/rasterise-inl.h"
 
@@ -19,8 +20,9 @@ HWY_BEFORE_NAMESPACE();
 namespace vitrail::raster::HWY_NAMESPACE {
 
 // Stores the fragments of a triangle in a block.
-template <bool kShaded>
+template <TileWorker::Kept kKept>
 HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, std::uint32_t item, Window* window) {
+  constexpr bool kShaded = kKept == Kept::Shaded;
   const Met met = meet(item);
   const Work work = met.work;
   const std::uint32_t t = work.triangle;
@@ -38,24 +40,31 @@ HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, s
       return Emitted::IsStored;
     }
   }
+  std::uint32_t hidden = 0;
   if (HWY_UNLIKELY((saturated_ >> block & 1U) != 0)) {
-    const M hidden = andNot(load(until_[block]) > key, maskOf(mask));
-    store(hidden_[block], load(hidden_[block]) + keep(hidden, set(1)));
-    mask &= ~bitsOf(hidden);
+    hidden = mask & ~bitsOf(load(until_[block]) > key);
+    mask &= ~hidden;
+    if (mask == 0) {
+      countHidden(block, hidden);
+      return Emitted::IsStored;
+    }
   }
   if (mask == 0) return Emitted::IsStored;
   const std::int32_t* kept = nullptr;
   const Row row = store_.rowFor(block, mask, kept);
-  if (HWY_UNLIKELY(row == nullptr)) {
+  if (HWY_UNLIKELY(row == nullptr)) { // it comes again
     return store_.isCrowded(block) ? Emitted::IsCrowded : Emitted::IsFull;
   }
+  if (HWY_UNLIKELY(hidden != 0)) countHidden(block, hidden);
   const M here = maskOf(mask);
   const auto put = [&](std::uint32_t vector, const I& value)
                        HWY_ATTR { store(row + kLanes * vector, select(here, value, load(kept + kLanes * vector))); };
   put(RowShape::kKey, key);
   if constexpr (!kShaded) {
     const std::uint32_t number = static_cast<std::uint32_t>(batch_.number[t]) & ~kFrontBit;
-    put(RowShape::kNumber, set(static_cast<std::int32_t>(frame.jobs[number >> kJobBits].draw)));
+    const std::uint32_t draw = frame.jobs[number >> kJobBits].draw;
+    put(RowShape::kNumber, set(static_cast<std::int32_t>(draw)));
+    if constexpr (kKept == Kept::FlatTracked) trackHidden(frame, block, here, key, frame.flatPairs[draw][3]);
   } else {
     F weights[6];
     perspective(t, met.second, met.third, frame.needs.derivatives, weights);
@@ -77,24 +86,35 @@ HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, s
 }
 
 // The same, and makes room where hidden fragments take it. False: the store is full.
-template <bool kShaded>
+template <TileWorker::Kept kKept>
 HWY_INLINE bool TileWorker::emit(const Frame& frame, std::uint32_t item, Window* window) {
-  Emitted emitted = emitTransparent<kShaded>(frame, item, window);
+  Emitted emitted = emitTransparent<kKept>(frame, item, window);
   if (HWY_UNLIKELY(emitted == Emitted::IsCrowded)) {
     thin(frame, work_[item].block);
-    emitted = emitTransparent<kShaded>(frame, item, window);
+    emitted = emitTransparent<kKept>(frame, item, window);
   }
   return emitted == Emitted::IsStored;
 }
 
+// False: the store is full.
+template <TileWorker::Kept kKept>
+inline bool TileWorker::collect(const Frame& frame, std::uint64_t blocks) {
+  return rasterise(frame, blocks, [&](std::uint32_t i) HWY_ATTR { return emit<kKept>(frame, i, nullptr); });
+}
+
 inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, TileCounts& counts) {
-  store_.reset();
+  store_.reset(Store::kFirstLimit);
   saturated_ = 0;
+  allUntil_.fill(kFarKey);
+  if (tracksHidden_) {
+    opaquePixels_.fill(0);
+    std::fill_n(through_[0], kBlocks * kLanes, 1.0F);
+    std::fill_n(farthest_[0], kBlocks * kLanes, 0);
+  }
   edges_ = 0;
-  const bool hasFitted =
-      frame.needs.shaded
-          ? rasterise(frame, blocks, [&](std::uint32_t i) HWY_ATTR { return emit<true>(frame, i, nullptr); })
-          : rasterise(frame, blocks, [&](std::uint32_t i) HWY_ATTR { return emit<false>(frame, i, nullptr); });
+  const bool hasFitted = frame.needs.shaded ? collect<Kept::Shaded>(frame, blocks)
+                         : tracksHidden_    ? collect<Kept::FlatTracked>(frame, blocks)
+                                            : collect<Kept::Flat>(frame, blocks);
   if (hasFitted) {
     for (std::uint64_t left = blocks; left != 0; left &= left - 1) {
       const auto block = static_cast<std::uint32_t>(__builtin_ctzll(left));
@@ -103,6 +123,8 @@ inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, Tile
         if (isDrawn || frame.info.sampleColors != nullptr) finishBlock(frame, block, nullptr);
         continue;
       }
+      const std::uint64_t next = left & (left - 1);
+      if (next != 0) prefetchPixels(frame, static_cast<std::uint32_t>(__builtin_ctzll(next)));
       resolveBlock(frame, block, counts);
     }
     return;
@@ -173,16 +195,16 @@ inline void TileWorker::drawInWindows(const Frame& frame, std::uint32_t block, T
   State state;
   Window window;
   std::fill(std::begin(window.after), std::end(window.after), 0);
-  std::array<std::int32_t, kLanes> layers{};
+  alignas(64) std::array<std::int32_t, kLanes> layers{};
   do {
     window.isCut = false;
     std::fill(std::begin(window.until), std::end(window.until), kFarKey);
-    store_.reset();
-    store_.setLimit(block, Store::kNoLimit);
+    store_.reset(Store::kNoLimit);
     saturated_ = 0;
     store(layers_, set(0));
     rasterise(frame, std::uint64_t{1} << block, [&](std::uint32_t item) HWY_ATTR {
-      while (!(frame.needs.shaded ? emit<true>(frame, item, &window) : emit<false>(frame, item, &window))) {
+      while (
+          !(frame.needs.shaded ? emit<Kept::Shaded>(frame, item, &window) : emit<Kept::Flat>(frame, item, &window))) {
         if (frame.info.list != nullptr) {
           store_.grow(); // the hook takes whole lists
         } else {

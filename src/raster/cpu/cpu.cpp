@@ -131,6 +131,7 @@ VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
   forAll(workers, frame.jobs.size(), [&](std::uint32_t worker, std::uint64_t i) {
     stages.binJob(frame, static_cast<std::uint32_t>(i), frame.bins[worker]);
   });
+  frame.rankJobs();
 
   Progress progress(frame.info, frame.tiles());
   // Those of the frame before, where they fit; where this one fails, none are kept.
@@ -144,7 +145,9 @@ VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
   forAll(workers, frame.tiles(), [&](std::uint32_t worker, std::uint64_t i) {
     if (progress.isGivenUp()) return;
     if (workspaces[worker] == nullptr) workspaces[worker] = stages.makeWorkspace(frame);
-    stages.drawTile(frame, static_cast<std::uint32_t>(i), *workspaces[worker], counts[worker]);
+    raster::TileCounts tile; // not in `counts`, whose entries lie side by side: threads would wait for each other
+    stages.drawTile(frame, static_cast<std::uint32_t>(i), *workspaces[worker], tile);
+    counts[worker].add(tile);
     progress.tileDone();
   });
   context.fragmentBytes = 0;

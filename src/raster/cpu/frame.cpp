@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 namespace vitrail::raster {
 
@@ -28,6 +29,20 @@ void Bins::copy(std::size_t tile, std::uint32_t* to) const {
     left -= count;
     chunk = from.next;
   }
+}
+
+void Frame::rankJobs() {
+  ranks.clear();
+  if (!isFlat() || jobs.size() < 2) return;
+  std::vector<std::uint32_t> order(jobs.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const bool nearestIsOne = info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
+  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+    if (jobs[a].nearest != jobs[b].nearest) return (jobs[a].nearest < jobs[b].nearest) != nearestIsOne;
+    return a < b;
+  });
+  ranks.resize(jobs.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) ranks[order[i]] = i;
 }
 
 void TileCounts::add(const TileCounts& other) {

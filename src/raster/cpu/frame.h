@@ -39,6 +39,7 @@ struct Job {
   std::uint32_t draw;
   std::uint32_t first;
   std::uint32_t count;
+  float nearest = 0.0F; // about its smallest depth, or its largest one where that is the nearest
 };
 
 // Triangle numbers in chunks, of one thread and one tile; in the order in which they were added.
@@ -119,6 +120,7 @@ struct Frame {
   float leastTransmittance = 0.0F; // what is behind less than that does not count
   std::vector<DrawInfo> draws;
   std::vector<Job> jobs;
+  std::vector<std::uint32_t> ranks; // of jobs, about from near to far; empty: their order does not matter
   std::vector<VertexChunk> vertexChunks;
   std::vector<Corner> corners;
   // Of draws without a shade function: what they do to the light behind them (below); after them, one that does
@@ -131,6 +133,11 @@ struct Frame {
   std::vector<ThreadBins> bins; // one for each thread
 
   std::uint32_t tiles() const { return tilesX * tilesY; }
+
+  // Works out the ranks of jobs, all of which were binned.
+  void rankJobs();
+  // Whether what hides fragments is known when they come: each has the colour of its draw.
+  bool isFlat() const { return !needs.shaded && !needs.filters && leastTransmittance > 0.0F; }
 };
 
 // What tiles counted.
@@ -170,7 +177,7 @@ class TileWorkspace {
 struct Stages {
   VitrailCpuInstructions instructions;
   void (*placeVertices)(Frame& frame, const VertexChunk& chunk);
-  void (*binJob)(const Frame& frame, std::uint32_t job, ThreadBins& bins);
+  void (*binJob)(Frame& frame, std::uint32_t job, ThreadBins& bins);
   std::unique_ptr<TileWorkspace> (*makeWorkspace)(const Frame& frame);
   void (*drawTile)(const Frame& frame, std::uint32_t tile, TileWorkspace& workspace, TileCounts& counts);
 };

@@ -194,7 +194,7 @@ void addWork(Frame& frame, std::uint32_t draw, std::uint64_t& vertices) {
   }
   for (std::uint64_t i = 0; i < info.primitives; i += kJobTriangles) {
     const auto first = static_cast<std::uint32_t>(i);
-    frame.jobs.push_back({draw, first, std::min(kJobTriangles, info.primitives - first)});
+    frame.jobs.push_back({draw, first, std::min(kJobTriangles, info.primitives - first), 0.0F});
   }
 }
 

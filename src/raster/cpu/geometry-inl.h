@@ -172,12 +172,14 @@ inline void binPieces(const Frame& frame, const DrawInfo& info, std::uint32_t pr
   addTo(bins, frame, tilesOf(frame, left, top, right, bottom), number);
 }
 
-inline void binJob(const Frame& frame, std::uint32_t jobNumber, ThreadBins& threadBins) {
-  const Job& job = frame.jobs[jobNumber];
+inline void binJob(Frame& frame, std::uint32_t jobNumber, ThreadBins& threadBins) {
+  Job& job = frame.jobs[jobNumber];
   const DrawInfo& info = frame.draws[job.draw];
   const VitrailCpuDraw& draw = info.draw;
   Bins& bins = draw.surface == VITRAIL_CPU_OPAQUE ? threadBins.opaque : threadBins.transparent;
   const Corner* corners = frame.corners.data() + info.firstVertex;
+  const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
+  float nearest = nearestIsOne ? 0.0F : 1.0F;
   for (std::uint32_t i = 0; i < job.count; ++i) {
     const std::uint32_t number = jobNumber << kJobBits | i;
     const std::uint32_t primitive = job.first + i;
@@ -196,7 +198,9 @@ inline void binJob(const Frame& frame, std::uint32_t jobNumber, ThreadBins& thre
     const TileRange range = tilesOf(frame, std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}),
                                     std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}));
     addTo(bins, frame, range, number);
+    nearest = nearestIsOne ? std::max(nearest, a.depth) : std::min(nearest, a.depth); // one corner tells enough
   }
+  job.nearest = nearest;
 }
 
 } // namespace vitrail::raster::HWY_NAMESPACE

@@ -14,6 +14,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace vitrail::raster::HWY_NAMESPACE {
 
+// With how many rows a block is crowded again that has kept so many.
+constexpr std::uint32_t limitOf(std::uint32_t rows) {
+  return std::max(Store::kFirstLimit, (2 * rows + kChunkRows - 1) / kChunkRows * kChunkRows);
+}
+
 // What comes through fragments that are taken one after the other. With several samples only what covers all of a pixel
 // counts.
 class Through {
@@ -63,6 +68,22 @@ inline bool TileWorker::mayHide(const Frame& frame) const {
   return !none(through.isTooLittle());
 }
 
+// The same of flat fragments, of which the block's rows that were looked at before are left out: through_ is what came
+// through them.
+inline bool TileWorker::mayHideFlat(const Frame& frame, std::uint32_t block) {
+  const std::size_t first = store_.shadedRows(block);
+  F through = first == 0 ? set(1.0F) : load(through_[block]);
+  for (std::size_t r = first; r < rows_.size(); ++r) {
+    const std::int32_t* draws = rows_[r] + kLanes * RowShape::kNumber; // of what is not there: one that does nothing
+    const bool isOne = all(load(draws) == set(draws[0]));
+    F alpha = set(frame.flatPairs[static_cast<std::uint32_t>(draws[0])][3]);
+    if (!isOne) alpha = gather(frame.flatPairs.front().data() + 3, shiftLeft<2>(load(draws)));
+    through = fnma(through, alpha, through);
+  }
+  store(through_[block], through);
+  return !none(set(0.5F * frame.leastTransmittance) > through);
+}
+
 // The depth, as a key, from which on each pixel's fragments are hidden by those in front of them: 1 beyond that of the
 // one behind which too little light is left.
 inline I TileWorker::saturationOf(const Frame& frame, const SortedRows& sorted) const {
@@ -95,22 +116,24 @@ inline I TileWorker::saturationOf(const Frame& frame, const SortedRows& sorted) 
   return until;
 }
 
-// Lets go of a block's fragments that are hidden. Whatever comes later can only move that depth nearer.
-inline void TileWorker::thin(const Frame& frame, std::uint32_t block) {
-  const auto limitOf = [](std::size_t rows) {
-    const auto twice = static_cast<std::uint32_t>((2 * rows + kChunkRows - 1) / kChunkRows * kChunkRows);
-    return std::max(Store::kFirstLimit, twice);
-  };
-  shadeBlock(frame, block);
-  if (!mayHide(frame)) {
-    const auto rows = static_cast<std::uint32_t>(rows_.size());
-    return store_.keepFirst(block, rows, limitOf(rows));
+// From these depths on a block's pixels show nothing. Whatever comes later can only move them nearer.
+inline void TileWorker::hideFrom(std::uint32_t block, const I& until) {
+  I nearer = until;
+  if ((saturated_ >> block & 1U) != 0) {
+    nearer = min(nearer, load(until_[block]));
+  } else {
+    store(hidden_[block], set(0));
   }
-  const SortedRows sorted = sortBlock(frame, block);
-  const I until = saturationOf(frame, sorted);
-  if ((saturated_ >> block & 1U) == 0) store(hidden_[block], set(0));
   saturated_ |= std::uint64_t{1} << block;
-  store(until_[block], until);
+  store(until_[block], nearer);
+  allUntil_[block] = mostOf(nearer);
+}
+
+// Lets go of a block's fragments that are hidden, all of which are shaded or flat.
+inline void TileWorker::dropHidden(const Frame& frame, std::uint32_t block) {
+  const SortedRows sorted = sortBlock(frame, block);
+  hideFrom(block, saturationOf(frame, sorted));
+  const I until = load(until_[block]);
   std::uint32_t kept = 0;
   I hiddenCount = load(hidden_[block]);
   for (const Row row : rows_) {
@@ -125,6 +148,35 @@ inline void TileWorker::thin(const Frame& frame, std::uint32_t block) {
   }
   store(hidden_[block], hiddenCount);
   store_.keepFirst(block, kept, limitOf(kept));
+}
+
+// Of a flat fragment in some pixels of a block: where those that have come, in whatever order, let too little light
+// through, what is behind all of them is hidden. They come about from near to far (orderByDepth()), so that this is
+// not far from the truth.
+HWY_INLINE void TileWorker::trackHidden(const Frame& frame, std::uint32_t block, const M& here, const I& key,
+                                        float alpha) {
+  const F before = load(through_[block]);
+  const F through = fnma(before, keep(here, set(alpha)), before);
+  const I farthest = max(load(farthest_[block]), keep(here, key));
+  store(through_[block], through);
+  store(farthest_[block], farthest);
+  // Half of the least, for what rounds otherwise in blending.
+  const std::uint32_t opaque = bitsOf(set(0.5F * frame.leastTransmittance) > through);
+  if (HWY_LIKELY(opaque == opaquePixels_[block])) return;
+  hideFrom(block, select(maskOf(opaque & ~std::uint32_t{opaquePixels_[block]}), farthest + set(1), set(kFarKey)));
+  opaquePixels_[block] = static_cast<std::uint16_t>(opaque);
+}
+
+// A block has become crowded: looks what of it is hidden, and lets go of that where it is worth it.
+inline void TileWorker::thin(const Frame& frame, std::uint32_t block) {
+  if (tracksHidden_) { // what hides was found as it came
+    if ((saturated_ >> block & 1U) != 0) return dropHidden(frame, block);
+    return store_.setLimit(block, limitOf(store_.rows(block)));
+  }
+  shadeBlock(frame, block);
+  if (frame.isFlat() ? mayHideFlat(frame, block) : mayHide(frame)) return dropHidden(frame, block);
+  const auto rows = static_cast<std::uint32_t>(rows_.size());
+  store_.keepFirst(block, rows, limitOf(rows));
 }
 
 } // namespace vitrail::raster::HWY_NAMESPACE

@@ -193,6 +193,23 @@ HWY_INLINE bool all(const M& m) {
   return hn::AllTrue(kF, every);
 }
 
+// The floats at places of an array.
+HWY_INLINE F gather(const float* from, const I& at) {
+  F r;
+  VITRAIL_EACH r.v[i] = hn::GatherIndex(kF, from, at.v[i]);
+  return r;
+}
+HWY_INLINE std::int32_t sumOf(const I& a) {
+  hn::Vec<TagI> sum = a.v[0];
+  for (std::size_t i = 1; i < kVectors; ++i) sum = hn::Add(sum, a.v[i]);
+  return hn::GetLane(hn::SumOfLanes(kI, sum));
+}
+HWY_INLINE std::int32_t mostOf(const I& a) {
+  hn::Vec<TagI> most = a.v[0];
+  for (std::size_t i = 1; i < kVectors; ++i) most = hn::Max(most, a.v[i]);
+  return hn::GetLane(hn::MaxOfLanes(kI, most));
+}
+
 // acc + a's lower half * b's lower half + a's upper half * b's upper half, halves of 16 bits.
 HWY_INLINE I multiplyHalves(const I& acc, const I& a, const I& b) {
   I r;

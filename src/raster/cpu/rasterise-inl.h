@@ -33,6 +33,29 @@ inline void TileWorker::merge(const Frame& frame, std::uint32_t tile, bool opaqu
   }
 }
 
+// Puts the tile's flat triangles about from near to far, where there is so much of them that blocks may become opaque
+// before most have come.
+inline void TileWorker::orderByDepth(const Frame& frame) {
+  tracksHidden_ = false;
+  if (frame.ranks.empty()) return;
+  runs_.clear();
+  for (std::uint32_t i = 0; i < numbers_.size(); ++i) {
+    const std::uint32_t job = numbers_[i] >> kJobBits;
+    if (i == 0 || job != numbers_[i - 1] >> kJobBits) runs_.push_back({frame.ranks[job], i, 0});
+    ++runs_.back().count;
+  }
+  // What comes through one layer of each job: a guess.
+  float through = 1.0F;
+  for (const Run& run : runs_) through *= 1.0F - frame.flatPairs[frame.jobs[numbers_[run.first] >> kJobBits].draw][3];
+  tracksHidden_ = through < 0.5F * frame.leastTransmittance;
+  if (!tracksHidden_) return;
+  std::sort(runs_.begin(), runs_.end(), [](const Run& a, const Run& b) { return a.rank < b.rank; });
+  ordered_.resize(numbers_.size());
+  std::uint32_t* to = ordered_.data();
+  for (const Run& run : runs_) to = std::copy_n(numbers_.data() + run.first, run.count, to);
+  numbers_.swap(ordered_);
+}
+
 // Finds the corners of up to kBatch triangles, so that they are in cache when they are staged.
 HWY_INLINE void TileWorker::fetch(const Frame& frame, std::size_t first, std::uint32_t count, Fetched* fetched) const {
   std::uint32_t jobNumber = ~0U;
@@ -128,8 +151,17 @@ inline bool TileWorker::rasterise(const Frame& frame, std::uint64_t blocks, Emit
   return flush(frame, blocks, emit);
 }
 
+// Fragments that nothing shows of are counted all the same.
+HWY_INLINE void TileWorker::countHidden(std::uint32_t block, std::uint32_t mask) {
+  store(hidden_[block], load(hidden_[block]) + keep(maskOf(mask), set(1)));
+}
+
+// `kHides`: triangles that are behind all that shows of a block are only counted there. They are set aside first: a
+// branch that nobody can foresee would cost as much as it spares.
+template <bool kHides>
 HWY_INLINE std::uint32_t TileWorker::cover(std::uint64_t blocks, std::uint32_t items) {
   std::uint32_t count = 0;
+  std::uint32_t hidden = 0;
   for (std::uint32_t i = 0; i < items; ++i) {
     const std::uint32_t t = tags_[i];
     const std::uint32_t block = ids_[i];
@@ -148,9 +180,20 @@ HWY_INLINE std::uint32_t TileWorker::cover(std::uint64_t blocks, std::uint32_t i
       }
     }
     const std::uint32_t mask = ~signsOf(outside) & tile_.pixels[block];
-    work_[count] = {static_cast<std::uint8_t>(t), static_cast<std::uint8_t>(block), static_cast<std::uint16_t>(mask)};
-    count += static_cast<std::uint32_t>(mask != 0) & static_cast<std::uint32_t>(blocks >> block & 1U);
+    const Work work{static_cast<std::uint8_t>(t), static_cast<std::uint8_t>(block), static_cast<std::uint16_t>(mask)};
+    const std::uint32_t isThere =
+        static_cast<std::uint32_t>(mask != 0) & static_cast<std::uint32_t>(blocks >> block & 1U);
+    work_[count] = work;
+    if constexpr (kHides) {
+      const auto isHidden = static_cast<std::uint32_t>(nearest_[t] >= allUntil_[block]);
+      hiddenWork_[hidden] = work;
+      hidden += isThere & isHidden;
+      count += isThere & (isHidden ^ 1U);
+    } else {
+      count += isThere;
+    }
   }
+  for (std::uint32_t i = 0; kHides && i < hidden; ++i) countHidden(hiddenWork_[i].block, hiddenWork_[i].pixels);
   return count;
 }
 
@@ -201,7 +244,18 @@ inline bool TileWorker::flush(const Frame& frame, std::uint64_t blocks, Emit emi
     items += listBlocks(ids_.data() + items, tags_.data() + items, batch_.x0[t], batch_.x1[t], batch_.y0[t],
                         batch_.y1[t], static_cast<std::uint8_t>(t));
   }
-  const std::uint32_t count = samples == 1 ? cover(blocks, items) : coverSamples(blocks, items, samples);
+  std::uint32_t count = 0;
+  if (samples > 1) {
+    count = coverSamples(blocks, items, samples);
+  } else if (saturated_ == 0 || hasDepth_) {
+    count = cover<false>(blocks, items);
+  } else {
+    const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
+    for (std::uint32_t i = 0; i < triangles; i += kLanes) {
+      store(nearest_.data() + i, nearestOf(batch_, i, nearestIsOne));
+    }
+    count = cover<true>(blocks, items);
+  }
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!emit(i)) return false;
   }

@@ -97,10 +97,14 @@ class Store {
   const RowShape& shape() const { return shape_; }
   const float* base() const { return reinterpret_cast<const float*>(arena_.get()); }
 
-  void reset() {
+  // Lets go of everything. `limit`: how many rows make a block crowded.
+  void reset(std::uint32_t limit) {
     used_ = 0;
     free_ = kNone;
-    for (Head& head : heads_) head = {};
+    for (Head& head : heads_) {
+      head = {};
+      head.limit = limit;
+    }
   }
 
   std::uint32_t rows(std::uint32_t block) const { return heads_[block].rows; }
@@ -187,9 +191,7 @@ class Store {
 
   // An empty store but for `rows` rows of one block, to be filled in.
   void restart(std::uint32_t block, std::uint32_t rows) {
-    const std::uint32_t limit = heads_[block].limit;
-    reset();
-    heads_[block].limit = limit;
+    reset(heads_[block].limit);
     const std::int32_t* kept = nullptr;
     for (std::uint32_t i = 0; i < rows; ++i) static_cast<void>(rowFor(block, 0xffffU, kept));
   }

@@ -33,6 +33,7 @@ inline void TileWorker::draw(const Frame& frame, std::uint32_t tile, TileCounts&
   demand_ = {};
   drawOpaque(frame, tile);
   merge(frame, tile, false);
+  orderByDepth(frame);
   if (!numbers_.empty() || (opaque_ != nullptr && opaque_->drawn != 0) || frame.info.sampleColors != nullptr) {
     drawParts(frame, blocks, counts);
   }

@@ -143,6 +143,7 @@ class TileWorker final : public TileWorkspace {
 
   static RowShape shapeOf(const Frame& frame) { return {frame.needs, frame.info.samples > 1, frame.draws.size()}; }
   void merge(const Frame& frame, std::uint32_t tile, bool opaque);
+  void orderByDepth(const Frame& frame);
   template <class Emit>
   bool rasterise(const Frame& frame, std::uint64_t blocks, Emit emit);
   template <class Emit>
@@ -157,27 +158,37 @@ class TileWorker final : public TileWorkspace {
   bool stage(const Frame& frame, std::uint32_t number, const Fetched& f, std::uint64_t blocks, Emit emit);
   template <class Emit>
   bool stagePieces(const Frame& frame, std::uint32_t number, std::uint64_t blocks, Emit emit);
+  template <bool kHides>
   HWY_INLINE std::uint32_t cover(std::uint64_t blocks, std::uint32_t items);
   HWY_INLINE std::uint32_t coverSamples(std::uint64_t blocks, std::uint32_t items, std::uint32_t samples);
 
   HWY_INLINE void perspective(std::uint32_t t, const F& flatSecond, const F& flatThird, bool derivatives,
                               F* weights) const;
   Met meet(std::uint32_t item) const;
+  HWY_INLINE void countHidden(std::uint32_t block, std::uint32_t mask);
+  // What is kept of a fragment: its triangle and place, its draw, or that and what light is left behind it.
+  enum class Kept { Shaded, Flat, FlatTracked };
   enum class Emitted { IsStored, IsCrowded, IsFull };
-  template <bool kShaded>
+  template <Kept kKept>
   Emitted emitTransparent(const Frame& frame, std::uint32_t item, Window* window);
-  template <bool kShaded>
+  template <Kept kKept>
   bool emit(const Frame& frame, std::uint32_t item, Window* window);
   HWY_INLINE void emitOpaque(const Frame& frame, std::uint32_t item);
   HWY_INLINE std::uint32_t testDepth(const Frame& frame, const Work& work, std::uint32_t item, const F& depth, I* keys);
 
   void drawOpaque(const Frame& frame, std::uint32_t tile);
   void shadeOpaque(const Frame& frame, std::uint32_t block);
+  template <Kept kKept>
+  bool collect(const Frame& frame, std::uint64_t blocks);
   void drawParts(const Frame& frame, std::uint64_t blocks, TileCounts& counts);
   void drawInWindows(const Frame& frame, std::uint32_t block, TileCounts& counts);
   void shrink(Window& window, std::uint32_t block);
   void thin(const Frame& frame, std::uint32_t block);
+  void dropHidden(const Frame& frame, std::uint32_t block);
+  HWY_INLINE void trackHidden(const Frame& frame, std::uint32_t block, const M& here, const I& key, float alpha);
+  void hideFrom(std::uint32_t block, const I& until);
   bool mayHide(const Frame& frame) const;
+  bool mayHideFlat(const Frame& frame, std::uint32_t block);
   void shadeBlock(const Frame& frame, std::uint32_t block);
   bool shadesOnDemand(const Frame& frame, std::uint32_t block);
   void shadeRowsFrom(const Frame& frame, std::uint32_t block, std::size_t first);
@@ -195,6 +206,7 @@ class TileWorker final : public TileWorkspace {
   Row rowOf(const SortedRows& sorted, std::size_t r, std::size_t lane) const;
   void behind(const Frame& frame, std::uint32_t block, std::uint32_t sample, F* color);
   float* pixelsOf(const Frame& frame, std::uint32_t block, std::size_t& stride) const;
+  HWY_INLINE void prefetchPixels(const Frame& frame, std::uint32_t block) const;
   void write(const Frame& frame, std::uint32_t block, const F* color);
   void blendedOver(const Frame& frame, std::uint32_t block, const State* state, F* sum);
   void finishBlock(const Frame& frame, std::uint32_t block, const State* state);
@@ -208,12 +220,20 @@ class TileWorker final : public TileWorkspace {
   Batch batch_{};
   TileBox tile_{};
   std::vector<std::uint32_t> numbers_;
+  struct Run { // of triangles of one job, in numbers_
+    std::uint32_t rank;
+    std::uint32_t first;
+    std::uint32_t count;
+  };
+  std::vector<Run> runs_;
+  std::vector<std::uint32_t> ordered_;
   std::array<std::array<Fetched, kBatch>, 2> fetched_{};
   std::unique_ptr<OpaqueTile> opaque_;
   bool hasDepth_ = false; // opaque surfaces may hide fragments of this tile
   std::array<std::uint8_t, kBatch * kBlocks + 64> ids_{};
   std::array<std::uint8_t, kBatch * kBlocks + 64> tags_{};
   std::array<Work, kBatch * kBlocks + 64> work_{};
+  std::array<Work, kBatch * kBlocks + 64> hiddenWork_{};
   std::array<std::array<std::uint16_t, kBatch * kBlocks + 64>, kMaxSamples> sampleMasks_{};
   // Blocks in which what is far away is known to be hidden: from which depth on, and how many fragments were left out.
   std::uint64_t saturated_ = 0;
@@ -225,6 +245,15 @@ class TileWorker final : public TileWorkspace {
   std::uint64_t edges_ = 0; // blocks in which a fragment does not cover all samples of its pixel
   alignas(64) std::int32_t until_[kBlocks][kLanes];
   alignas(64) std::int32_t hidden_[kBlocks][kLanes];
+  alignas(64) std::array<std::int32_t, kBlocks> allUntil_{}; // in all pixels; kFarKey: in some nothing is hidden
+  // Of flat fragments, whose alpha is known when they come, where there may be enough of them: what light comes through
+  // them, the farthest of them, and the pixels in which it is too little to show anything.
+  alignas(64) float through_[kBlocks][kLanes];
+  alignas(64) std::int32_t farthest_[kBlocks][kLanes];
+  std::array<std::uint16_t, kBlocks> opaquePixels_{};
+  bool tracksHidden_ = false;
+  // Nearer than all that the batch's triangles cover, as keys; where some block is saturated.
+  alignas(64) std::array<std::int32_t, kBatch> nearest_{};
   alignas(64) std::int32_t layers_[kLanes] = {}; // fragments of each pixel of the block that was sorted last
   std::vector<Row> rows_;
   std::vector<double> keyMemory_;
