@@ -643,6 +643,41 @@ TEST(CpuTextures, AreSampledAsTheSpecificationSays) {
   EXPECT_GT(compared, 50000U);
 }
 
+TEST(CpuTextures, KnowWhereTheyAreEmpty) {
+  Random random(8);
+  constexpr std::int32_t kCells = CpuTexture::kCells;
+  for (const auto& [width, height] : {std::pair(256U, 256U), std::pair(100U, 37U), std::pair(512U, 9U)}) {
+    Image image{width, height, std::vector<std::uint8_t>(std::size_t{width} * height * 4)};
+    // A patch that goes round the image's corner.
+    for (std::uint32_t y = 0; y < height; ++y) {
+      for (std::uint32_t x = 0; x < width; ++x) {
+        const bool isThere = (x + width / 8) % width < width / 3 && (y + height / 8) % height < height / 2;
+        for (std::size_t c = 0; c < 4; ++c) image.rgba[(std::size_t{y} * width + x) * 4 + c] = isThere ? 200 : 0;
+      }
+    }
+    const CpuTexture texture = makeCpuTexture(image, Texels::Premultiplied);
+    ASSERT_EQ(texture.emptyCells.size(), std::size_t{kCells} * kCells);
+    std::size_t empty = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const glm::dvec2 uv(random.number(0.0, 1.0), random.number(0.0, 1.0));
+      const auto cell = static_cast<std::size_t>(std::floor(uv.y * kCells) * kCells + std::floor(uv.x * kCells));
+      if (texture.emptyCells[cell] == 0) continue;
+      ++empty;
+      for (std::size_t level = 0; level <= static_cast<std::size_t>(CpuTexture::kEmptyLevels); ++level) {
+        Sampler sampler;
+        sampler.wrapU = static_cast<Wrap>(random.below(3));
+        sampler.wrapV = static_cast<Wrap>(random.below(3));
+        Sample sample;
+        addLevel(sample, texture, sampler, uv, level, true, 1.0);
+        ASSERT_EQ(sample.value, glm::dvec4(0.0)) << width << " x " << height << ", level " << level;
+      }
+    }
+    EXPECT_GT(empty, 500U) << width << " x " << height;
+  }
+  Image full{64, 64, std::vector<std::uint8_t>(std::size_t{64} * 64 * 4, 128)};
+  EXPECT_TRUE(makeCpuTexture(full, Texels::Premultiplied).emptyCells.empty());
+}
+
 TEST(CpuTextures, HaveMipmapsThatAreAveragedInLinearLight) {
   Image image{2, 2, {0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 255}};
   const CpuTexture srgb = makeCpuTexture(image, Texels::Srgb);

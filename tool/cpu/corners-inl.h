@@ -35,10 +35,14 @@ HWY_INLINE std::size_t paddedCount(const Corners& corners) { return (corners.cou
 HWY_INLINE void findCorners(const VitrailCpuFragments& fragments, const ShadeMesh& mesh, Corners& corners) {
   const IntTag di;
   const auto* triangles = reinterpret_cast<const std::int32_t*>(fragments.triangle);
-  for (std::size_t i = 0; i < VITRAIL_CPU_LANES; i += kLanes) hn::Store(hn::Zero(di), di, corners.first + i);
+  alignas(64) std::int32_t lanes[VITRAIL_CPU_LANES];
+  for (std::size_t i = 0; i < VITRAIL_CPU_LANES; i += kLanes) {
+    hn::Store(hn::Zero(di), di, corners.first + i);
+    storeForLanes(hn::LoadU(di, triangles + i), lanes + i);
+  }
   std::size_t count = 0;
   for (std::uint32_t left = fragments.mask; left != 0; count += 3) {
-    const std::uint32_t triangle = fragments.triangle[hwy::Num0BitsBelowLS1Bit_Nonzero32(left)];
+    const auto triangle = static_cast<std::uint32_t>(lanes[hwy::Num0BitsBelowLS1Bit_Nonzero32(left)]);
     std::uint32_t same = 0;
     for (std::size_t i = 0; i < VITRAIL_CPU_LANES; i += kLanes) {
       const auto equal = hn::LoadU(di, triangles + i) == setInt(static_cast<std::int32_t>(triangle));
@@ -74,6 +78,7 @@ HWY_INLINE Places placesOf(const VitrailCpuFragments& fragments, const Corners& 
 // What each fragment's triangle has at a corner, 0 to 2.
 HWY_INLINE V valueAt(const Corners& corners, const CornerValues& values, VI first, std::int32_t corner) {
   const Tag d;
+  if (corners.count == 3) return set(values.of[corner]); // of one triangle
 #if HWY_TARGET == HWY_AVX3
   const __m512i at = (first + setInt(corner)).raw;
   if (HWY_LIKELY(corners.count <= 2 * kLanes)) {

@@ -140,6 +140,51 @@ void copyBase(CpuTexture& texture, const Image& image) {
   }
 }
 
+// Whether all texels of a level are nothing that are read anywhere in a cell of the grid.
+bool isEmptyCell(const CpuTexture& texture, std::size_t level, std::int32_t column, std::int32_t row) {
+  const std::int32_t width = texture.width.at(level);
+  const std::int32_t height = texture.height.at(level);
+  const auto isNothing = [&](std::int32_t x, std::int32_t y) {
+    const auto i = 2 * static_cast<std::size_t>(texture.offset.at(level) + y * width + x);
+    return texture.texels[i] == 0 && texture.texels[i + 1] == 0;
+  };
+  // The left neighbour of a cell's first place, and one more for what rounds.
+  const auto firstOf = [](std::int32_t cell, std::int32_t size) {
+    return static_cast<std::int32_t>(std::floor(static_cast<double>(cell) * size / CpuTexture::kCells - 0.5)) - 1;
+  };
+  const std::int32_t right = firstOf(column + 1, width) + 3;
+  const std::int32_t bottom = firstOf(row + 1, height) + 3;
+  for (std::int32_t y = firstOf(row, height); y <= bottom; ++y) {
+    const std::int32_t inY = std::clamp(y, 0, height - 1);
+    for (std::int32_t x = firstOf(column, width); x <= right; ++x) {
+      const std::int32_t inX = std::clamp(x, 0, width - 1);
+      if (!isNothing(inX, inY)) return false;
+      if (inX == x && inY == y) continue;
+      // Beyond the border may be the texel at it or, where the image repeats, those at the other one.
+      const std::int32_t otherX = (x + 4 * width) % width;
+      const std::int32_t otherY = (y + 4 * height) % height;
+      if (!isNothing(otherX, otherY) || !isNothing(inX, otherY) || !isNothing(otherX, inY)) return false;
+    }
+  }
+  return true;
+}
+
+void findEmptyCells(CpuTexture& texture) {
+  constexpr std::int32_t kCells = CpuTexture::kCells;
+  const std::int32_t levels = std::min(texture.levels, CpuTexture::kEmptyLevels + 1);
+  std::vector<std::int32_t> cells(std::size_t{kCells} * kCells);
+  bool isAny = false;
+  for (std::int32_t i = 0; i < kCells * kCells; ++i) {
+    bool isEmpty = true;
+    for (std::int32_t level = levels - 1; isEmpty && level >= 0; --level) {
+      isEmpty = isEmptyCell(texture, static_cast<std::size_t>(level), i % kCells, i / kCells);
+    }
+    cells[static_cast<std::size_t>(i)] = isEmpty ? 1 : 0;
+    isAny = isAny || isEmpty;
+  }
+  if (isAny) texture.emptyCells = std::move(cells);
+}
+
 } // namespace
 
 CpuTexture makeCpuTexture(const Image& image, Texels kind) {
@@ -162,6 +207,7 @@ CpuTexture makeCpuTexture(const Image& image, Texels kind) {
   texture.texels.resize(kind == Texels::Premultiplied ? 2 * count : count);
   copyBase(texture, image);
   for (std::size_t i = 1; i < static_cast<std::size_t>(texture.levels); ++i) shrink(texture, i);
+  if (kind == Texels::Premultiplied) findEmptyCells(texture);
   return texture;
 }
 

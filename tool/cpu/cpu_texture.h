@@ -28,6 +28,12 @@ struct CpuTexture {
   // Texels of all levels: red in the lowest of four bytes; premultiplied ones take two words each, of 16-bit floats:
   // red and green, blue and alpha.
   std::vector<std::uint32_t> texels;
+
+  // Premultiplied ones, where there are such places: a grid over the image, 1 where whatever is sampled there is
+  // nothing, with coordinates from 0 to 1 and any wrap mode, in levels up to kEmptyLevels.
+  static constexpr std::int32_t kCells = 64; // along each axis
+  static constexpr std::int32_t kEmptyLevels = 2;
+  std::vector<std::int32_t> emptyCells; // none: nowhere
 };
 
 // Throws std::length_error for an image that is too large.

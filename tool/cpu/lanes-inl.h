@@ -24,6 +24,18 @@ using M = hn::Mask<Tag>;
 
 constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
+// Stores what is loaded again lane by lane: in halves where vectors have 64 bytes. Some processors (Intel's) hand over
+// nothing of the upper half of such a store until it has left for the cache, behind all stores before it.
+HWY_INLINE void storeForLanes(VI v, std::int32_t* to) {
+#if HWY_MAX_BYTES == 64
+  const hn::Half<IntTag> half;
+  hn::Store(hn::LowerHalf(half, v), half, to);
+  hn::Store(hn::UpperHalf(half, v), half, to + kLanes / 2);
+#else
+  hn::Store(v, IntTag(), to);
+#endif
+}
+
 struct Float3 {
   V x, y, z;
 };
@@ -107,6 +119,54 @@ HWY_INLINE std::uint32_t bitsOf(AnyTag tag, AnyMask mask, std::size_t first) {
   hn::StoreMaskBits(tag, mask, bytes);
   const std::uint32_t bits = static_cast<std::uint32_t>(bytes[0] | bytes[1] << 8) & ((1U << kLanes) - 1U);
   return bits << first;
+}
+
+// Four numbers side by side, and twice two of them from two places.
+#if HWY_TARGET == HWY_SCALAR
+struct Four {
+  std::int32_t of[4];
+};
+HWY_INLINE Four loadFour(const std::int32_t* from) { return {{from[0], from[1], from[2], from[3]}}; }
+HWY_INLINE Four loadTwos(const std::int32_t* a, const std::int32_t* b) { return {{a[0], a[1], b[0], b[1]}}; }
+#else
+using FourTag = hn::FixedTag<std::int32_t, 4>;
+using Four = hn::Vec<FourTag>;
+HWY_INLINE Four loadFour(const std::int32_t* from) { return hn::LoadU(FourTag(), from); }
+HWY_INLINE Four loadTwos(const std::int32_t* a, const std::int32_t* b) {
+  const hn::FixedTag<std::int32_t, 2> two;
+  return hn::Combine(FourTag(), hn::LoadU(two, b), hn::LoadU(two, a));
+}
+#endif
+
+// The first, second, third and fourth number of what `of(lane)` gives for each lane.
+template <class Of>
+HWY_INLINE void columnsOf(Of of, VI* to) {
+#if HWY_TARGET == HWY_SCALAR
+  const Four four = of(0);
+  for (std::size_t i = 0; i < 4; ++i) to[i] = setInt(four.of[i]);
+#else
+  const IntTag di;
+  const hn::Repartition<std::int64_t, IntTag> pairs;
+  VI column[4]; // block b of column c: lane 4 b + c
+  for (std::size_t c = 0; c < 4; ++c) {
+#if HWY_MAX_BYTES == 16
+    column[c] = of(c);
+#elif HWY_MAX_BYTES == 32
+    column[c] = hn::Combine(di, of(c + 4), of(c));
+#else
+    const hn::FixedTag<std::int32_t, 8> eight;
+    column[c] = hn::Combine(di, hn::Combine(eight, of(c + 12), of(c + 8)), hn::Combine(eight, of(c + 4), of(c)));
+#endif
+  }
+  const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(di, column[0], column[1]));
+  const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(di, column[0], column[1]));
+  const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(di, column[2], column[3]));
+  const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(di, column[2], column[3]));
+  to[0] = hn::BitCast(di, hn::InterleaveLower(pairs, low01, low23));
+  to[1] = hn::BitCast(di, hn::InterleaveUpper(pairs, low01, low23));
+  to[2] = hn::BitCast(di, hn::InterleaveLower(pairs, high01, high23));
+  to[3] = hn::BitCast(di, hn::InterleaveUpper(pairs, high01, high23));
+#endif
 }
 
 // The way from the pixels of some lanes to the eye of a perspective camera, not of unit length.

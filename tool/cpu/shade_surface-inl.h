@@ -154,7 +154,8 @@ HWY_INLINE TexelSet sampleTextures(const VitrailCpuFragments& fragments, const S
                                    const CornerAttributes& attributes, const Places& places, std::size_t lane) {
   const auto texel = [&](std::uint32_t slot) HWY_ATTR {
     if (!features.hasTexture(slot)) return Float4{one(), one(), one(), one()};
-    return sample(surface.slots[slot], coordinatesOf(fragments, surface, corners, attributes, places, slot, lane));
+    return sample(surface.slots[slot], coordinatesOf(fragments, surface, corners, attributes, places, slot, lane),
+                  maskOf(fragments.mask, lane));
   };
   const auto rgb = [&](std::uint32_t slot) HWY_ATTR {
     const Float4 t = texel(slot);
