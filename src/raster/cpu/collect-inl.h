@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -117,24 +118,24 @@ inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, Tile
                                             : collect<Kept::Flat>(frame, blocks);
   if (hasFitted) {
     for (std::uint64_t left = blocks; left != 0; left &= left - 1) {
-      const auto block = static_cast<std::uint32_t>(__builtin_ctzll(left));
+      const auto block = static_cast<std::uint32_t>(std::countr_zero(left));
       if (store_.rows(block) == 0) {
         const bool isDrawn = opaque_ != nullptr && (opaque_->drawn >> block & 1U) != 0;
         if (isDrawn || frame.info.sampleColors != nullptr) finishBlock(frame, block, nullptr);
         continue;
       }
       const std::uint64_t next = left & (left - 1);
-      if (next != 0) prefetchPixels(frame, static_cast<std::uint32_t>(__builtin_ctzll(next)));
+      if (next != 0) prefetchPixels(frame, static_cast<std::uint32_t>(std::countr_zero(next)));
       resolveBlock(frame, block, counts);
     }
     return;
   }
   if ((blocks & (blocks - 1)) == 0)
-    return drawInWindows(frame, static_cast<std::uint32_t>(__builtin_ctzll(blocks)), counts);
+    return drawInWindows(frame, static_cast<std::uint32_t>(std::countr_zero(blocks)), counts);
   // In two halves of as many blocks.
   std::uint64_t half = 0;
   std::uint64_t left = blocks;
-  for (int i = __builtin_popcountll(blocks) / 2; i > 0; --i) {
+  for (int i = std::popcount(blocks) / 2; i > 0; --i) {
     half |= left & (~left + 1);
     left &= left - 1;
   }

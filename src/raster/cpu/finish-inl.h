@@ -8,6 +8,7 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "raster/cpu/worker-inl.h"
@@ -21,7 +22,7 @@ constexpr std::int32_t kMostSummed = INT32_MAX / static_cast<std::int32_t>(kLane
 inline void TileWorker::count(const std::int32_t* layers, TileCounts& counts) {
   const I here = load(layers);
   const I most = set(kMostSummed);
-  counts.pixels += static_cast<std::uint64_t>(__builtin_popcount(bitsOf(here > set(0))));
+  counts.pixels += static_cast<std::uint64_t>(std::popcount(bitsOf(here > set(0))));
   if (HWY_LIKELY(none(here > most))) {
     counts.fragments += static_cast<std::uint32_t>(sumOf(here));
   } else {
@@ -130,7 +131,7 @@ HWY_INLINE std::uint32_t TileWorker::demand(const Frame& frame, std::uint32_t bl
   Row last = nullptr;
   std::uint32_t shaded = 0;
   for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
-    const Row row = rowOf(sorted, r, static_cast<std::size_t>(__builtin_ctz(left)));
+    const Row row = rowOf(sorted, r, static_cast<std::size_t>(std::countr_zero(left)));
     if (row == last) continue;
     last = row;
     if (*row == kShadedMark) continue;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include "raster/cpu/rasterise-inl.h"
@@ -78,7 +79,7 @@ inline void TileWorker::shadeOpaque(const Frame& frame, std::uint32_t block) {
     job.y = frame.info.originY + blockY(block);
     job.present = maskOf(left[s]);
     // Where there is none, any number that exists.
-    const auto lane = static_cast<std::uint32_t>(__builtin_ctz(left[s]));
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left[s]));
     job.numbers = select(job.present, number - set(1), set(shown.number[block][lane] - 1));
     job.depth = depthOf(load(shown.centre[block]), frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE);
     job.second = load(shown.weights[0][block]);
@@ -129,7 +130,7 @@ inline void TileWorker::drawOpaque(const Frame& frame, std::uint32_t tile) {
     return true;
   });
   for (std::uint64_t left = opaque_->drawn; left != 0; left &= left - 1) {
-    const auto block = static_cast<std::uint32_t>(__builtin_ctzll(left));
+    const auto block = static_cast<std::uint32_t>(std::countr_zero(left));
     for (std::uint32_t s = 0; s < samples; ++s) {
       if (s == 0 || frame.info.sampleColors != nullptr) readPixels(frame, tile_, block, s, pixels_);
       for (std::size_t c = 0; c < 4; ++c) {

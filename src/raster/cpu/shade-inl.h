@@ -7,6 +7,7 @@
 #define VITRAIL_SHADE_INL_H
 #endif
 
+#include <bit>
 #include <cstring>
 
 #include "raster/cpu/frame.h"
@@ -99,7 +100,7 @@ HWY_INLINE void shadeAll(const Frame& frame, const ToShade& s, bool derivatives,
   const I within = s.numbers & set(static_cast<std::int32_t>(kJobTriangles) - 1);
   const std::uint32_t every = left;
   while (left != 0) {
-    const auto lane = static_cast<std::uint32_t>(__builtin_ctz(left));
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
     const std::uint32_t jobNumber = (static_cast<std::uint32_t>(numbers[lane]) & 0x7fffffffU) >> kJobBits;
     const Job& job = frame.jobs[jobNumber];
     const DrawInfo& info = frame.draws[job.draw];

@@ -10,6 +10,7 @@
 #endif
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <new>
 #include <vector>
@@ -126,7 +127,7 @@ class Store {
     head.left -= isFresh;
     head.rows += isFresh;
     constexpr std::uint64_t kTop = std::uint64_t{1} << 63U;
-    const auto place = static_cast<std::uint32_t>(__builtin_ctzll(free | kTop)) & 48U; // of its sixteen bits
+    const auto place = static_cast<std::uint32_t>(std::countr_zero(free | kTop)) & 48U; // of its sixteen bits
     head.filled = head.filled >> 16U * isFresh | std::uint64_t{mask} << place;
     const Row row = head.row - (48U - place) * shape_.vectors;          // kLanes numbers a vector, 16 bits a row
     kept = row + (blank_ - row) * static_cast<std::ptrdiff_t>(isFresh); // without a branch: nobody could tell
