@@ -255,7 +255,7 @@ VkResult build(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc) {
 // ---- Statistics
 
 // What a slot holds of a frame. False: it is not there (any more).
-bool readSlot(const VitrailVkRaster_T& raster, std::uint64_t frame, raster::VitrailRasterTotals& totals) {
+bool readSlot(VitrailVkRaster_T& raster, std::uint64_t frame, raster::VitrailRasterTotals& totals) {
   const RasterFacts& facts = raster.facts[raster.slotOf(frame)];
   if (!facts.any || facts.frame != frame) return false;
   if (facts.misused) return true; // it leaves none
@@ -266,7 +266,13 @@ bool readSlot(const VitrailVkRaster_T& raster, std::uint64_t frame, raster::Vitr
   if (tag == 0 || written.load(std::memory_order_acquire) != tag) return false;
   totals = slot.totals;
   std::atomic_thread_fence(std::memory_order_acquire);
-  return written.load(std::memory_order_relaxed) == tag;
+  if (written.load(std::memory_order_relaxed) != tag) return false;
+  if (raster.tablesAreMade && facts.tablesMade == raster.tablesMade && totals.start.fits != 0) {
+    raster.groupsAreKnown = true;
+    raster.knownGroups = totals.start.groups.count;
+    raster.knownVertexGroups = totals.start.vertices.count;
+  }
+  return true;
 }
 
 std::uint64_t together(std::uint32_t high, std::uint32_t low) { return std::uint64_t{high} << 32U | low; }

@@ -63,10 +63,10 @@ class InteractiveRenderer final : public Renderer {
  private:
   // What belongs to a frame in flight.
   struct Slot {
-    explicit Slot(Gpu& gpu) : submitter(gpu), timers(gpu, Frame::kMostPasses) {}
-    Submitter submitter;
+    explicit Slot(Gpu& gpu) : timers(gpu, Frame::kMostPasses), submitter(gpu) {}
     Timers timers;
     GpuBuffer pixels;
+    Submitter submitter; // the first that goes: it waits for what uses the others
   };
   struct Pending {
     Slot* slot = nullptr;

@@ -262,7 +262,10 @@ void showReport(const PanelState& state) {
     ImGui::SameLine();
     ImGui::TextDisabled("(coarse while moving)");
   }
+  // Names of processors are long: the panel is to leave room for the picture.
+  ImGui::PushTextWrapPos(kWidth * ImGui::GetFontSize() / 13.0F);
   ImGui::Text("%ux%u on %s", report.width, report.height, report.device.c_str());
+  ImGui::PopTextWrapPos();
   if (report.counted) {
     ImGui::Text("%llu fragments, at most %u in a pixel", static_cast<unsigned long long>(report.fragmentsRequested),
                 report.layersMax);
