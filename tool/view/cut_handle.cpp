@@ -56,6 +56,7 @@ class Projector {
   Projector(const View& view, const glm::vec2& display)
       : clip_(glm::dmat4(projectionMatrix(view, display.x / display.y)) * glm::dmat4(viewMatrix(view))),
         display_(display) {}
+  [[nodiscard]] const glm::vec2& display() const { return display_; }
   [[nodiscard]] std::optional<glm::vec2> at(const glm::dvec3& point) const {
     const glm::dvec4 clip = clip_ * glm::dvec4(point, 1.0);
     if (clip.w <= 1.0e-6) return {};
@@ -66,6 +67,53 @@ class Projector {
   glm::dmat4 clip_;
   glm::vec2 display_;
 };
+
+// Where the plane's handle is: in the middle of its outline, or, beside the model, as near to it as can be; and a point
+// ahead of it along its normal. Nothing where either is behind the camera.
+struct Handle {
+  glm::vec2 at;
+  glm::vec2 ahead;
+};
+constexpr double kAhead = 0.05; // of the model's size
+
+std::optional<Handle> handleOf(const CutPlane& plane, const std::vector<glm::dvec3>& outline, const Bounds& bounds,
+                               const Projector& projector) {
+  glm::dvec3 middle(0.0);
+  for (const glm::dvec3& point : outline) middle += point / static_cast<double>(outline.size());
+  if (outline.empty()) {
+    middle = 0.5 * glm::dvec3(bounds.min + bounds.max);
+    middle -= plane.normal * (glm::dot(plane.normal, middle) + plane.offset);
+  }
+  const auto at = projector.at(middle);
+  const auto ahead = projector.at(middle + plane.normal * (kAhead * glm::length(glm::dvec3(bounds.max - bounds.min))));
+  if (!at || !ahead) return {};
+  return Handle{*at, *ahead};
+}
+
+// Moves the plane until the handle is at a place of the display, whatever frames have come since it was moved last: in
+// steps, as what is far away moves less in the picture. Seen along its normal the plane comes nearer with a move
+// downwards. False: it is there.
+bool drag(glm::dvec4& cut, CutPlane plane, const Bounds& bounds, const glm::vec2& target, const Projector& projector) {
+  constexpr int kMostSteps = 8;
+  const double size = glm::length(glm::dvec3(bounds.max - bounds.min));
+  const double height = static_cast<double>(projector.display().y);
+  const double least = 0.1 * height / size;
+  bool hasMoved = false;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const auto handle = handleOf(plane, outlineOf(plane, bounds), bounds, projector);
+    if (!handle) break;
+    const glm::dvec2 moved(target - handle->at);
+    const glm::dvec2 step = glm::dvec2(handle->ahead - handle->at) / (kAhead * size); // for a unit of length
+    const bool isSeen = glm::length(step) > least;
+    const double way = isSeen ? glm::dot(moved, step) / glm::dot(step, step) : moved.y * size / height;
+    if (std::abs(way) * std::max(glm::length(step), least) < 0.5) break; // less than a pixel
+    cut.w += way * glm::length(glm::dvec3(cut));
+    plane.offset -= way;
+    hasMoved = true;
+    if (!isSeen) break; // the handle stays where it is
+  }
+  return hasMoved;
+}
 
 } // namespace
 
@@ -83,50 +131,36 @@ bool CutHandle::draw(ImDrawList& list, RenderArguments& arguments, const SceneFa
   plane.offset += glm::dot(plane.normal, scene.origin);
   const Projector projector(view, display);
   const std::vector<glm::dvec3> outline = outlineOf(plane, scene.bounds);
-  glm::dvec3 middle(0.0);
   std::vector<ImVec2> drawn;
   for (const glm::dvec3& point : outline) {
-    middle += point / static_cast<double>(outline.size());
     if (const auto place = projector.at(point)) drawn.emplace_back(place->x, place->y);
-  }
-  if (outline.empty()) { // it is beside the model
-    middle = 0.5 * glm::dvec3(scene.bounds.min + scene.bounds.max);
-    middle -= plane.normal * (glm::dot(plane.normal, middle) + plane.offset);
   }
   if (drawn.size() == outline.size() && !drawn.empty()) {
     list.AddConvexPolyFilled(drawn.data(), static_cast<int>(drawn.size()), kFill);
     list.AddPolyline(drawn.data(), static_cast<int>(drawn.size()), kLine, ImDrawFlags_Closed, 1.5F);
   }
-  const double size = glm::length(glm::dvec3(scene.bounds.max - scene.bounds.min));
-  const auto at = projector.at(middle);
-  const auto ahead = projector.at(middle + plane.normal * (0.05 * size));
-  if (!at || !ahead) return false;
+  const auto handle = handleOf(plane, outline, scene.bounds, projector);
+  if (!handle) return false;
+  const glm::vec2 at = handle->at;
   place_ = at;
   const float scale = ImGui::GetFontSize() / 13.0F;
-  list.AddLine(ImVec2(at->x, at->y), ImVec2(ahead->x, ahead->y), kLine, 3.0F * scale);
-  list.AddCircleFilled(ImVec2(at->x, at->y), 7.0F * scale, kLine);
-  list.AddCircle(ImVec2(at->x, at->y), 7.0F * scale, IM_COL32(255, 255, 255, 255), 0, 1.5F * scale);
+  list.AddLine(ImVec2(at.x, at.y), ImVec2(handle->ahead.x, handle->ahead.y), kLine, 3.0F * scale);
+  list.AddCircleFilled(ImVec2(at.x, at.y), 7.0F * scale, kLine);
+  list.AddCircle(ImVec2(at.x, at.y), 7.0F * scale, IM_COL32(255, 255, 255, 255), 0, 1.5F * scale);
 
   const ImGuiIO& io = ImGui::GetIO();
   const float reach = 10.0F * scale;
   const glm::vec2 mouse(io.MousePos.x, io.MousePos.y);
-  const bool isNear = glm::length(mouse - *at) < reach && !io.WantCaptureMouse;
+  const bool isNear = glm::length(mouse - at) < reach && !io.WantCaptureMouse;
   if (isNear || isDragged_) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
-  if (ImGui::IsMouseClicked(0) && glm::length(pressed - *at) < reach && !io.WantCaptureMouse) {
+  if (ImGui::IsMouseClicked(0) && glm::length(pressed - at) < reach && !io.WantCaptureMouse) {
     isDragged_ = true;
-    grip_ = pressed - *at;
+    grip_ = pressed - at;
   }
-  if (!ImGui::IsMouseDown(0)) isDragged_ = false;
   if (!isDragged_) return false;
-  const glm::dvec2 moved(mouse - grip_ - *at);
-  // The handle stays under the mouse. Seen along its normal the plane comes nearer with a move downwards.
-  const glm::dvec2 step = glm::dvec2(*ahead - *at) / (0.05 * size); // of the display for a unit of length
-  const double least = 0.1 * static_cast<double>(display.y) / size;
-  const double way = glm::length(step) > least ? glm::dot(moved, step) / glm::dot(step, step)
-                                               : moved.y * size / static_cast<double>(display.y);
-  if (std::abs(way) * std::max(glm::length(step), least) < 0.5) return false; // less than a pixel
-  cut.w += way * length;
-  return true;
+  isDragged_ = ImGui::IsMouseDown(0); // a move that is heard of together with the release came before it
+  if (!ImGui::IsMousePosValid(&io.MousePos)) return false;
+  return drag(cut, plane, scene.bounds, mouse - grip_, projector);
 }
 
 } // namespace vitrail::tool

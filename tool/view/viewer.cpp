@@ -337,12 +337,15 @@ class Viewer {
   void steer(PixelSize size) {
     const ImGuiIO& io = ImGui::GetIO();
     constexpr double kDegreesOfAHeight = 180.0;
-    const double right = io.MouseDelta.x / static_cast<double>(size.height);
-    const double up = -io.MouseDelta.y / static_cast<double>(size.height);
+    // A move that is heard of together with a press, or with a release, came before it.
+    const auto isHeld = [](int button) { return ImGui::IsMouseDown(button) || ImGui::IsMouseReleased(button); };
+    const bool begins = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2);
+    const double right = begins ? 0.0 : io.MouseDelta.x / static_cast<double>(size.height);
+    const double up = begins ? 0.0 : -io.MouseDelta.y / static_cast<double>(size.height);
     if (!io.WantCaptureMouse && !dragsDivider_ && !cutHandle_.isDragged()) {
       pickWhereClicked(size);
-      const bool pans = ImGui::IsMouseDown(1) || ImGui::IsMouseDown(2) || (ImGui::IsMouseDown(0) && io.KeyShift);
-      const bool isDown = pans || ImGui::IsMouseDown(0);
+      const bool pans = isHeld(1) || isHeld(2) || (isHeld(0) && io.KeyShift);
+      const bool isDown = pans || isHeld(0);
       drags_ = isDown && (drags_ || right != 0.0 || up != 0.0); // pressing alone moves nothing
       if (drags_ && (right != 0.0 || up != 0.0)) {
         move([&](Navigation& navigation) {
