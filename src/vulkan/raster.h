@@ -53,6 +53,7 @@ constexpr std::uint64_t kRasterCountBytes = 768;
 // folder. The set is there three times, with what shaders of a kind look at, as hosts have buffers of their own, and
 // devices bind not many to a shader.
 constexpr std::uint32_t kRasterBindings = 31;
+constexpr std::uint32_t kFirstRasterConstant = 1710; // of frame.glsl: what is below is the host's
 enum class RasterSet : std::uint8_t {
   Own,      // of the library's kernels: all
   Geometry, // of positions and setting up

@@ -87,7 +87,7 @@ class Replacement {
     Buffer buffer;
     result_ = buffer.create(*raster_.context, bytes, usageOf(which), 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
                             raster_.debugName.c_str(), kKinds[static_cast<std::size_t>(which)].name);
-    if (result_ == VK_SUCCESS) made_.emplace_back(which, buffer);
+    made_.emplace_back(which, buffer); // also one without memory, which is not put in place
   }
 
   // Puts them in place, if all could be made.
@@ -97,6 +97,8 @@ class Replacement {
       Buffer& old = raster_.buffer(which);
       if (old.buffer != VK_NULL_HANDLE) {
         RetiredBuffer retired{old, {}};
+        // Also the frame before the last: that one may turn out never to have been submitted.
+        if (raster_.frames.begun() > 1) retired.use.add(raster_.frames.begun() - 1);
         if (raster_.frames.any()) retired.use.add(raster_.frames.begun());
         raster_.retired.push_back(retired);
       }
@@ -125,9 +127,13 @@ VkResult createRasterBuffers(VitrailVkRaster_T& raster) {
 VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, std::uint32_t bandRows) {
   const std::uint64_t tiles = std::uint64_t{raster.tilesX()} * bandRows;
   Replacement made(raster);
-  constexpr std::uint64_t kLarger = 4; // extents come and go: what is small is kept
-  made.make(RasterBuffer::TileRecords, tiles * kRasterTileBytes, kLarger);
-  made.make(RasterBuffer::TileList, tiles * kRasterTileListBytes, kLarger);
+  // Extents come and go: what is small is kept, where the budget has room for it.
+  constexpr std::uint32_t kLarger = 4;
+  RasterBounds larger = raster.bounds(bandRows);
+  larger.tiles *= kLarger;
+  const std::uint64_t times = rasterExcess(room, larger) <= 1.0 ? kLarger : 1;
+  made.make(RasterBuffer::TileRecords, tiles * kRasterTileBytes, times);
+  made.make(RasterBuffer::TileList, tiles * kRasterTileListBytes, times);
   made.make(RasterBuffer::Records, room.records * kRasterRecordBytes);
   made.make(RasterBuffer::RecordPlaces, room.records * kRasterPlaceBytes);
   made.make(RasterBuffer::Pairs, room.records * kRasterPairBytes);

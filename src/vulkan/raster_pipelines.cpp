@@ -22,7 +22,6 @@ namespace vitrail {
 
 namespace {
 
-constexpr std::uint32_t kFirstConstant = 1710; // of shaders/vitrail/raster/frame.glsl
 constexpr std::uint32_t kPushBytes = 3 * sizeof(std::uint32_t);
 
 // The constants of frame.glsl, in the order of their ids.
@@ -52,24 +51,28 @@ RasterConstants constantsOf(const VitrailVkRaster_T& raster) {
   return constants;
 }
 
-VkResult createModule(const VitrailVkContext_T& context, const std::uint32_t* code, std::size_t size,
+VkResult createModule(const VitrailVkRaster_T& raster, std::span<const std::uint32_t> code, const char* name,
                       VkShaderModule* module) {
+  const VitrailVkContext_T& context = *raster.context;
   VkShaderModuleCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  info.codeSize = size;
-  info.pCode = code;
-  return context.vk.CreateShaderModule(context.device, &info, context.allocator, module);
+  info.codeSize = code.size_bytes();
+  info.pCode = code.data();
+  const VkResult result = context.vk.CreateShaderModule(context.device, &info, context.allocator, module);
+  if (result != VK_SUCCESS) return context.log.fail(result, "%s %s: no shader module", raster.debugName.c_str(), name);
+  return VK_SUCCESS;
 }
 
 // The host's specialization, and behind it room for the library's.
-VkResult keepStage(const VitrailVkContext_T& context, const VitrailVkRasterStage& given, RasterStage& stage) {
+VkResult keepStage(const VitrailVkRaster_T& raster, const VitrailVkRasterStage& given, const char* name,
+                   RasterStage& stage) {
   if (given.specialization != nullptr) {
     const VkSpecializationInfo& host = *given.specialization;
     stage.entries.assign(host.pMapEntries, host.pMapEntries + host.mapEntryCount);
     stage.data.resize(host.dataSize);
     if (host.dataSize > 0) std::memcpy(stage.data.data(), host.pData, host.dataSize);
   }
-  return createModule(context, given.code, given.size, &stage.module);
+  return createModule(raster, {given.code, given.size / sizeof(std::uint32_t)}, name, &stage.module);
 }
 
 void destroyStage(const VitrailVkContext_T& context, RasterStage& stage) {
@@ -84,7 +87,7 @@ VkResult createPipeline(const VitrailVkRaster_T& raster, VkPipelineLayout layout
   std::vector<std::uint8_t> data = stage.data;
   data.resize((data.size() + 3) / 4 * 4);
   for (std::uint32_t i = 0; i < kConstants; ++i) {
-    entries.push_back({kFirstConstant + i, static_cast<std::uint32_t>(data.size() + i * sizeof(std::uint32_t)),
+    entries.push_back({kFirstRasterConstant + i, static_cast<std::uint32_t>(data.size() + i * sizeof(std::uint32_t)),
                        sizeof(std::uint32_t)});
   }
   const std::size_t end = data.size();
@@ -150,9 +153,9 @@ VkResult createKernels(VitrailVkRaster_T& raster, RasterKernel first, RasterKern
   for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); ++i) {
     const auto kernel = static_cast<RasterKernel>(i);
     if (kernel == RasterKernel::Mean && raster.samples == 1) continue;
-    const std::span<const std::uint32_t> code = kernelCode(raster, kernel);
+    if (raster.kernels[i] != VK_NULL_HANDLE) continue; // of a call that made some, and failed then
     RasterStage stage;
-    VkResult result = createModule(*raster.context, code.data(), code.size_bytes(), &stage.module);
+    VkResult result = createModule(raster, kernelCode(raster, kernel), kernelName(kernel), &stage.module);
     if (result == VK_SUCCESS) {
       result = createPipeline(raster, raster.layout(RasterSet::Own), stage, constantsOf(raster), kernelName(kernel),
                               &raster.kernels[i]);
@@ -211,10 +214,8 @@ VkResult createLayouts(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& des
 VkResult createGeometryPipeline(VitrailVkRaster_T& raster, const VitrailVkRasterStage& given, const char* name,
                                 VkPipeline* pipeline) {
   RasterStage stage;
-  VkResult result = keepStage(*raster.context, given, stage);
-  if (result != VK_SUCCESS) {
-    raster.context->log.error("%s %s: no shader module", raster.debugName.c_str(), name);
-  } else {
+  VkResult result = keepStage(raster, given, name, stage);
+  if (result == VK_SUCCESS) {
     result = createPipeline(raster, raster.layout(RasterSet::Geometry), stage, constantsOf(raster), name, pipeline);
   }
   destroyStage(*raster.context, stage);
@@ -226,7 +227,7 @@ VkResult createGeometryPipeline(VitrailVkRaster_T& raster, const VitrailVkRaster
 VkResult createBlends(VitrailVkRaster_T& raster, const VitrailVkRasterStage& given) {
   constexpr std::array<std::uint32_t, raster::VITRAIL_RASTER_CLASSES> kKeep = {8, 16, 16, 32};
   RasterStage stage;
-  VkResult result = keepStage(*raster.context, given, stage);
+  VkResult result = keepStage(raster, given, "blend", stage);
   for (std::uint32_t i = 0; result == VK_SUCCESS && i < raster::VITRAIL_RASTER_CLASSES; ++i) {
     RasterConstants constants = constantsOf(raster);
     constants.keep = raster.samples > 1 ? 16 : kKeep[i];
@@ -249,7 +250,7 @@ VkResult createRasterPipelines(VitrailVkRaster_T& raster, const VitrailVkRasterD
   if (result == VK_SUCCESS)
     result = createGeometryPipeline(raster, desc.setUpLarge, "set up large", &raster.setUpLarge);
   if (result == VK_SUCCESS) result = createBlends(raster, desc.blend);
-  if (result == VK_SUCCESS) result = keepStage(context, desc.blendDeep, raster.deepStage);
+  if (result == VK_SUCCESS) result = keepStage(raster, desc.blendDeep, "blend deep", raster.deepStage);
   if (result == VK_SUCCESS) result = createKernels(raster, RasterKernel::Prepare, RasterKernel::DeepCount);
   return result;
 }

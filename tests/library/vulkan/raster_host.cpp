@@ -107,8 +107,8 @@ RasterHost::RasterHost(const RasterHostDesc& desc)
   info.descriptorSetCount = 1;
   info.pSetLayouts = &layout;
   check(vkAllocateDescriptorSets(device_.get(), &info, &set_), "vkAllocateDescriptorSets");
-  check(vitrail::vulkan::Raster::create(backend().context(backend().allFeatures()), descOf(desc, layout), raster_),
-        "vitrailVkCreateRaster");
+  const Context& context = desc.context != nullptr ? *desc.context : backend().context(backend().allFeatures());
+  check(vitrail::vulkan::Raster::create(context, descOf(desc, layout), raster_), "vitrailVkCreateRaster");
   info_.sets = &set_;
   info_.color = color_.view();
   info_.depth = depth_.sampledView();

@@ -28,6 +28,7 @@ struct RasterHostDesc {
   VkDeviceSize memoryBudget = 0;
   VitrailVkRasterHints hints{};
   std::uint32_t framesInFlight = 2;
+  const Context* context = nullptr; // default: one of the backend's
 };
 
 // What it draws. Indices are stored as indexType says.

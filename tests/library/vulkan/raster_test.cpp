@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <string>
@@ -679,6 +680,47 @@ TEST_F(RasterTest, AnotherExtent) {
   expectOneLine("extent");
   EXPECT_EQ(host.raster().resize({20000, 32}), VK_ERROR_INITIALIZATION_FAILED);
   expectOneLine("extent");
+}
+
+// ---- Frames that are dropped, begun again, or left open
+
+// The frame before one that was dropped may still be drawn: its memory stays.
+TEST_F(RasterTest, DroppedFramesLeaveTheMemoryOfThoseBefore) {
+  RasterHostDesc desc;
+  desc.width = desc.height = 64;
+  RasterHost host(desc);
+  host.setScene(sceneOf(someRectangles(30, 64), Form::Indices, false, 64));
+  host.draw();
+  host.info().frame = 50;
+  host.drawOnce(); // as if it were pending
+  host.info().frame = 51;
+  host.recordAll(host.commands().begin()); // never submitted
+  ASSERT_EQ(host.raster().resize({8, 8}), VK_SUCCESS);
+  EXPECT_GT(host.raster().memory().retiredBytes, 0U);
+  host.drawOnce(); // the same number again
+  EXPECT_GT(host.raster().memory().retiredBytes, 0U);
+  host.info().frame = 52;
+  host.drawOnce();
+  EXPECT_EQ(host.raster().memory().retiredBytes, 0U);
+}
+
+// Small extents after large ones: what is kept for the next large one is within the budget.
+TEST_F(RasterTest, SmallerExtentsKeepToTheBudget) {
+  const RasterScene scene = sceneOf(someRectangles(100, 256), Form::VertexOffsets, false, 256);
+  RasterHostDesc desc;
+  desc.width = desc.height = 256;
+  desc.indexType = VK_INDEX_TYPE_UINT32;
+  RasterHost small(desc);
+  small.setScene(scene);
+  small.draw();
+  desc.width = desc.height = 512; // whose tiles take 73,728 bytes more
+  desc.memoryBudget = small.raster().memory().tileBytes;
+  RasterHost host(desc);
+  ASSERT_EQ(host.raster().resize({256, 256}), VK_SUCCESS);
+  host.setScene(scene);
+  host.draw();
+  EXPECT_EQ(host.stats().bands, 1U);
+  EXPECT_LE(host.raster().memory().tileBytes, desc.memoryBudget + 4096U);
 }
 
 // ---- What is refused
