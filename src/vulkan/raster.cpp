@@ -42,9 +42,19 @@ constexpr RasterNeeds kLeast{.records = 1, .large = 1, .deep = 1, .blocks = 1, .
 // ---- Checks
 
 VkResult checkStage(const Log& log, const VitrailVkRasterStage& stage, const char* name) {
-  if (stage.code != nullptr && stage.size >= 20 && stage.size % 4 == 0) return VK_SUCCESS;
-  return log.fail(VK_ERROR_INITIALIZATION_FAILED, "VitrailVkRasterDesc::%s: no SPIR-V (%s)", name,
-                  stage.code == nullptr ? "code is null" : "its size is none");
+  if (stage.code == nullptr || stage.size < 20 || stage.size % 4 != 0) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "VitrailVkRasterDesc::%s: no SPIR-V (%s)", name,
+                    stage.code == nullptr ? "code is null" : "its size is none");
+  }
+  const VkSpecializationInfo* host = stage.specialization;
+  for (std::uint32_t i = 0; host != nullptr && i < host->mapEntryCount; ++i) {
+    const std::uint32_t id = host->pMapEntries[i].constantID;
+    if (id < kFirstRasterConstant) continue;
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                    "VitrailVkRasterDesc::%s: its specialization has a constant %u, and the host's are below %u", name,
+                    id, kFirstRasterConstant);
+  }
+  return VK_SUCCESS;
 }
 
 VkResult checkStages(const Log& log, const VitrailVkRasterDesc& desc) {
@@ -145,6 +155,10 @@ VkResult checkDesc(const VitrailVkContext_T& context, const VitrailVkRasterDesc&
   if (desc.setLayoutCount > kMostSets || (desc.setLayoutCount > 0 && desc.setLayouts == nullptr)) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED, "setLayoutCount %u: setLayouts has up to %u layouts",
                     desc.setLayoutCount, kMostSets);
+  }
+  for (std::uint32_t i = 0; i < desc.setLayoutCount; ++i) {
+    if (desc.setLayouts[i] != VK_NULL_HANDLE) continue;
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "setLayouts[%u] is null", i);
   }
   if (desc.indexType != VK_INDEX_TYPE_UINT16 && desc.indexType != VK_INDEX_TYPE_UINT32 &&
       desc.indexType != VK_INDEX_TYPE_NONE_KHR) {

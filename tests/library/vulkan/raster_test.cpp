@@ -753,6 +753,12 @@ TEST_F(RasterTest, WrongFields) {
   expectRefused(kWrong, "indexType", [](Desc& desc) { desc.indexType = VK_INDEX_TYPE_UINT8_EXT; });
   expectRefused(kWrong, "blendModes", [](Desc& desc) { desc.blendModes = 1U << 4U; });
   expectRefused(kWrong, "framesInFlight", [](Desc& desc) { desc.framesInFlight = VITRAIL_MAX_FRAMES_IN_FLIGHT + 1; });
+  const VkDescriptorSetLayout nothing = VK_NULL_HANDLE;
+  expectRefused(kWrong, "setLayouts[0]", [&](Desc& desc) { desc.setLayouts = &nothing; });
+  const VkSpecializationMapEntry entry{1710, 0, 4};
+  const std::uint32_t value = 1;
+  const VkSpecializationInfo constants{1, &entry, sizeof(value), &value};
+  expectRefused(kWrong, "constant 1710", [&](Desc& desc) { desc.blend.specialization = &constants; });
   expectRefused(kWrong, "setUp:", [](Desc& desc) { desc.setUp = {}; });
   expectRefused(kWrong, "setUpLarge", [](Desc& desc) { desc.setUpLarge.code = nullptr; });
   expectRefused(kWrong, "blend:", [](Desc& desc) { desc.blend.size = 3; });
