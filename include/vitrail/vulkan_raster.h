@@ -103,7 +103,7 @@ typedef struct VitrailVkRasterDesc {
   /* Which blend modes fragments may have, 1 << VitrailBlend each; default (0): all. Others than VITRAIL_BLEND_OVER
    * alone take longer, as there is no bound then of what is hidden but all of it. */
   uint32_t blendModes;
-  VkBool32 solids; /* whether draws may be lines and points */
+  VkBool32 solids; /* whether draws may be lines and points; else all are triangles, whatever their flags */
   /* Bytes of device memory for all that the raster keeps but positions and tables of draws. Default 0: what the device
    * can give. */
   VkDeviceSize memoryBudget;
@@ -131,11 +131,13 @@ VITRAIL_API void vitrailVkDestroyRaster(VitrailVkRaster raster);
  * that has finished, and where that had too little room makes more, up to the budget, beyond which frames are drawn in
  * bands of rows. Memory that frames in flight use is freed when they have finished. The first time that frames need it,
  * it makes the pipelines of deep tiles, which takes as long as the driver's compiler does. Waits for nothing else.
+ * Between the bands of a frame it does nothing.
  * Errors: VK_ERROR_OUT_OF_DEVICE_MEMORY where a frame has no room even in bands of one row of tiles, or its positions
  * have none (the log says what to do); the raster stays as it was. */
 VITRAIL_API VkResult vitrailVkUpdateRaster(VitrailVkRaster raster, uint64_t frame);
 
-/* Gives the raster another extent from the next frame on. Errors: as vitrailVkCreateRaster. */
+/* Gives the raster another extent from the next frame on. A frame of which bands are still to be recorded has ended
+ * with it. Errors: as vitrailVkCreateRaster. */
 VITRAIL_API VkResult vitrailVkResizeRaster(VitrailVkRaster raster, VkExtent2D extent);
 
 /* Bytes of device memory: for fragments and tiles (which the budget bounds), for draws and positions, and what frames
@@ -156,7 +158,9 @@ VITRAIL_API uint32_t vitrailVkRasterBands(VitrailVkRaster raster);
 
 typedef struct VitrailVkRasterInfo {
   const void* next; /* null */
-  uint64_t frame;   /* the host's number of this frame, as VitrailVkBeginInfo::frame */
+  /* The host's number of this frame, as VitrailVkBeginInfo::frame. A second time: nothing of the first one, no band
+   * either, was submitted. */
+  uint64_t frame;
   /* The host's sets, setLayoutCount of them, from set 0 on, with their dynamic offsets. */
   const VkDescriptorSet* sets;
   uint32_t dynamicOffsetCount;

@@ -466,14 +466,21 @@ extern "C" VkResult vitrailVkResizeRaster(VitrailVkRaster raster, VkExtent2D ext
   RasterNeeds guess = raster->room;
   guess.deep = guess.blocks = guess.fragments = guess.chunks = 1;
   const VkResult made = makeRoom(*raster, guess, guess);
-  if (made != VK_SUCCESS) raster->extent = before;
-  if (made == VK_SUCCESS) raster->low.forget();
-  return made;
+  if (made != VK_SUCCESS) {
+    raster->extent = before;
+    return made;
+  }
+  raster->low.forget();
+  raster->nextBand = 0; // a frame of which bands are still to be recorded has ended
+  return VK_SUCCESS;
 }
 
 extern "C" VkResult vitrailVkUpdateRaster(VitrailVkRaster raster, uint64_t frame) {
   using namespace vitrail;
   if (raster == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
+  // Bands that are still to be recorded go into the memory of the first.
+  if (raster->nextBand != 0 && (frame == 0 || frame == raster->frames.newest())) return VK_SUCCESS;
+  raster->nextBand = 0;
   // As vitrailVkUpdateTarget().
   const std::uint64_t number = std::min(raster->frames.numberOf(frame), raster->frames.numberOf(0));
   const bool again = raster->frames.any() && number == raster->frames.newest() && frame != 0;

@@ -1,5 +1,6 @@
 // Records the passes of a raster's frame.
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 
 #include "check.h"
@@ -194,7 +195,9 @@ void Recording::setUp(const Band& band) {
       (raster_.tilesX() + raster::VITRAIL_RASTER_LARGE_BLOCK - 1) / raster::VITRAIL_RASTER_LARGE_BLOCK;
   // So many that none takes long: a driver ends loops that it takes for endless.
   constexpr std::uint64_t kTurns = 64;
-  const auto shares = static_cast<std::uint32_t>(raster_.room.large / (raster::VITRAIL_RASTER_GROUP * kTurns) + 2);
+  constexpr std::uint64_t kMostGroups = 65535; // that any device takes
+  const auto shares = static_cast<std::uint32_t>(
+      std::min(raster_.room.large / (raster::VITRAIL_RASTER_GROUP * kTurns) + 2, kMostGroups / blocks));
   dispatch(raster_.setUpLarge, blocks * shares, (band.bottom - band.top + kSide - 1) / kSide);
   // Tiles counted their records -> they are given room.
   passBarrier();
@@ -332,20 +335,24 @@ bool isWhole(const VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info) {
 
 // Starts a frame on the host's side: its number, its memory, its sets.
 void beginFrame(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info, bool misused) {
-  const bool open = raster.nextBand != 0;
+  raster.nextBand = 0; // of a frame before whose other bands nobody has recorded
   if (raster.frames.any() && info.frame != 0 && info.frame < raster.frames.newest()) {
     raster.context->log.warn("frame %llu is begun after frame %llu: frame numbers rise",
                              static_cast<unsigned long long>(info.frame),
                              static_cast<unsigned long long>(raster.frames.newest()));
     raster.newestNews = 0;
   }
-  if (raster.frames.begin(info.frame, open)) { // a second time: the first one was never submitted
+  // Bands of an open frame may have been submitted: only the host's number says that it was dropped.
+  if (raster.frames.begin(info.frame, false)) { // a second time: the first one was never submitted
     for (RetiredBuffer& retired : raster.retired) retired.use.drop(raster.frames.begun());
     raster.tablesAreMade = false; // perhaps by that one
   }
   freeRetired(raster, raster.frames.begun());
   if (info.sameDraws == VK_FALSE) raster.tablesAreMade = false;
-  RasterFacts& facts = raster.facts[raster.slotOf(raster.frames.newest())];
+  const std::size_t slot = raster.slotOf(raster.frames.newest());
+  // What a frame of the same number may have left there, before numbers went back.
+  std::atomic_ref<std::uint64_t>(static_cast<RasterSlot*>(raster.stats.mapped)[slot].tag).store(0);
+  RasterFacts& facts = raster.facts[slot];
   facts = {};
   facts.any = true;
   facts.frame = raster.frames.newest();
@@ -379,9 +386,14 @@ extern "C" void vitrailVkCmdRaster(VkCommandBuffer commandBuffer, VitrailVkRaste
   const std::uint32_t bands = raster->bands();
   const std::uint32_t count = info->bandCount != 0 ? info->bandCount : bands - std::min(bands, info->firstBand);
   const bool goesOn = info->firstBand == 0 || (raster->frames.any() && info->firstBand == raster->nextBand);
-  if (!goesOn || count == 0 || info->firstBand + count > bands) {
-    raster->context->log.error("vitrailVkCmdRaster: bands %u to %u, and the frame has %u, in order", info->firstBand,
-                               info->firstBand + count, bands);
+  if (!goesOn || count == 0 || count > bands - info->firstBand) {
+    raster->context->log.error("vitrailVkCmdRaster: bands %u to %llu, and the frame has %u, in order", info->firstBand,
+                               static_cast<unsigned long long>(info->firstBand) + count, bands);
+    facts.misused = true;
+    return;
+  }
+  if ((info->frame != 0 && info->frame != facts.frame) || info->drawCount != facts.draws) {
+    raster->context->log.error("vitrailVkCmdRaster: frame and drawCount are those of the frame's first band");
     facts.misused = true;
     return;
   }

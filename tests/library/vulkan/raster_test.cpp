@@ -704,6 +704,131 @@ TEST_F(RasterTest, DroppedFramesLeaveTheMemoryOfThoseBefore) {
   EXPECT_EQ(host.raster().memory().retiredBytes, 0U);
 }
 
+// Numbers that go back name new frames: what an old one of the number has left is not taken for theirs.
+TEST_F(RasterTest, NumbersThatGoBack) {
+  RasterHost host({});
+  host.setScene(sceneOf(someRectangles(8), Form::Indices));
+  host.draw();
+  for (const std::uint64_t frame : {60, 61, 62}) {
+    host.info().frame = frame;
+    host.drawOnce();
+  }
+  VitrailVkRasterStats stats{};
+  ASSERT_EQ(host.raster().readStats(60, stats), VK_SUCCESS);
+  EXPECT_EQ(stats.exact, VK_TRUE);
+  host.info().frame = 60;
+  host.recordAll(host.commands().begin());
+  expectOneLine("frame numbers rise");
+  EXPECT_EQ(host.raster().readStats(60, stats), VK_NOT_READY);
+  host.commands().execute();
+  EXPECT_EQ(host.raster().readStats(60, stats), VK_SUCCESS);
+}
+
+// A raster that draws in several bands, and its picture.
+RasterHostDesc bandedDesc() {
+  RasterHostDesc desc;
+  desc.width = desc.height = 64;
+  desc.indexType = VK_INDEX_TYPE_UINT32;
+  desc.memoryBudget = 30'000;
+  return desc;
+}
+constexpr std::uint32_t kOfBands = 60; // rectangles
+
+void recordBand(RasterHost& host, std::uint32_t band, std::uint32_t count = 1) {
+  host.info().firstBand = band;
+  host.info().bandCount = count;
+  host.commands().run([&](VkCommandBuffer commands) {
+    if (band == 0) {
+      host.recordAll(commands);
+    } else {
+      host.recordMore(commands);
+    }
+  });
+}
+
+// What comes between the bands of a frame does not change it, or ends it.
+TEST_F(RasterTest, CallsBetweenBands) {
+  RasterHost host(bandedDesc());
+  host.setScene(sceneOf(someRectangles(kOfBands, 64), Form::VertexOffsets, false, 64));
+  const std::vector<float> expected = host.draw();
+  const std::uint32_t bands = host.raster().bands();
+  ASSERT_GT(bands, 2U);
+
+  // An update: the frame before has told of less room than it needs now.
+  host.setScene(sceneOf(someRectangles(2 * kOfBands, 64), Form::VertexOffsets, false, 64));
+  host.drawOnce();
+  EXPECT_EQ(host.stats().exact, VK_FALSE);
+  host.setScene(sceneOf(someRectangles(kOfBands, 64), Form::VertexOffsets, false, 64));
+  for (std::uint32_t band = 0; band < bands; ++band) {
+    recordBand(host, band);
+    ASSERT_EQ(host.raster().update(), VK_SUCCESS);
+    if (band + 1 == bands) break;
+    EXPECT_EQ(host.raster().bands(), bands);
+  }
+  host.readPicture();
+  EXPECT_TRUE(host.picture() == expected);
+
+  // Another extent.
+  host.info().firstBand = host.info().bandCount = 0;
+  EXPECT_TRUE(host.draw() == expected);
+  recordBand(host, 0);
+  ASSERT_EQ(host.raster().resize({64, 56}), VK_SUCCESS);
+  recordBand(host, 1);
+  expectOneLine("in order");
+  EXPECT_EQ(host.stats().misused, VK_TRUE);
+  ASSERT_EQ(host.raster().resize({64, 64}), VK_SUCCESS);
+
+  // A frame that lacks something, with the next bands of the one before.
+  host.info().firstBand = host.info().bandCount = 0;
+  EXPECT_TRUE(host.draw() == expected);
+  const VitrailVkRasterInfo right = host.info();
+  recordBand(host, 0);
+  host.info().color = VK_NULL_HANDLE;
+  recordBand(host, 0);
+  expectOneLine("color");
+  host.info().color = right.color;
+  recordBand(host, 1);
+  expectOneLine("in order");
+  EXPECT_EQ(host.stats().exact, VK_FALSE);
+
+  // What is not the same in all bands.
+  recordBand(host, 0);
+  host.info().drawCount = 0;
+  recordBand(host, 1, host.raster().bands() - 1);
+  expectOneLine("first band");
+  EXPECT_EQ(host.stats().exact, VK_FALSE);
+  host.info().drawCount = right.drawCount;
+  recordBand(host, 0);
+  host.info().frame = 1000;
+  recordBand(host, 1);
+  expectOneLine("first band");
+  host.info().frame = 0;
+  recordBand(host, 0);
+  recordBand(host, 1, 0xffffffffU);
+  expectOneLine("in order");
+  EXPECT_EQ(host.stats().exact, VK_FALSE);
+  host.info() = right;
+  EXPECT_TRUE(host.draw() == expected);
+}
+
+// Of a frame that was left open bands may be drawn: the next one has memory and sets of its own.
+TEST_F(RasterTest, OpenFramesAreNotDropped) {
+  RasterHost host(bandedDesc());
+  Commands second(backend().device());
+  host.setScene(sceneOf(someRectangles(kOfBands, 64), Form::VertexOffsets, false, 64));
+  const std::vector<float> expected = host.draw();
+  ASSERT_GT(host.raster().bands(), 1U);
+  host.info().bandCount = 1;
+  host.recordAll(second.begin()); // and no other band
+  host.info().bandCount = 0;
+  host.recordAll(host.commands().begin());
+  second.execute();
+  host.commands().execute();
+  host.readPicture();
+  EXPECT_EQ(host.stats().exact, VK_TRUE);
+  EXPECT_TRUE(host.picture() == expected);
+}
+
 // Small extents after large ones: what is kept for the next large one is within the budget.
 TEST_F(RasterTest, SmallerExtentsKeepToTheBudget) {
   const RasterScene scene = sceneOf(someRectangles(100, 256), Form::VertexOffsets, false, 256);
