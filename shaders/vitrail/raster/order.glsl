@@ -24,7 +24,11 @@ bool vitrailSourceBefore(uint a, uint b) {
     uint v = vitrailIndex(draw, firstT + i);
     if (u != v) return u < v;
   }
-  return false;
+  // Instances of one order, and triangles of the same corners, which shading may tell apart.
+  uint instanceS = vitrailInstance(draw, s.y);
+  uint instanceT = vitrailInstance(draw, t.y);
+  if (instanceS != instanceT) return instanceS < instanceT;
+  return (s.x & 0x7fffffffu) < (t.x & 0x7fffffffu);
 }
 
 // The order of fragments away from the viewer.

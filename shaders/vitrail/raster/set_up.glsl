@@ -277,7 +277,8 @@ void vitrailCoverAll(VitrailSmall small, uint mine) {
   barrier();
   if (small.count > 0u) {
     place += vitrailGroupFirst;
-    bool fits = place + small.count <= vitrailRaster.recordCapacity; // else the frame is drawn again
+    // Else the frame is drawn again. A sum of places may come round.
+    bool fits = place < vitrailRaster.recordCapacity && place + small.count <= vitrailRaster.recordCapacity;
     uint numbers[4]; // asked for together: nobody waits for one after the other
     for (int i = 0; i < 4; ++i) {
       bool covers = (small.covered[i].x | small.covered[i].y) != 0u;

@@ -37,14 +37,12 @@ void main() {
     VitrailRasterPlace place;
     if (first + thread < count) {
       VitrailRasterDraw draw = draws[first + thread];
-      uint kind = draw.flags & VITRAIL_RASTER_SOLID;
-      place.size.x = kind == VITRAIL_RASTER_LINES    ? draw.count / 2u * 2u
-                     : kind == VITRAIL_RASTER_POINTS ? draw.count * 2u
-                                                     : draw.count / 3u;
+      uint corners = vitrailCornersOf(draw.flags);
+      place.size.x = corners == 3u ? draw.count / 3u : draw.count / corners * 2u;
       place.size.y = draw.instances;
       uint triangles = bounded(place.size.x, draw.instances);
       uint vertices = VITRAIL_RASTER_POSITIONS ? bounded(draw.vertices, draw.instances) : 0u;
-      if (triangles > most || vertices > most || (kind == VITRAIL_RASTER_POINTS && draw.count > most)) {
+      if (triangles > most || vertices > most || (corners == 1u && draw.count > most)) {
         whole = vec4(4294967296.0); // said below
         triangles = vertices = place.size.x = place.size.y = 0u;
       }

@@ -682,6 +682,85 @@ TEST_F(RasterTest, AnotherExtent) {
   expectOneLine("extent");
 }
 
+// ---- What hosts may put in
+
+// Triangles whose corners are no places cover nothing, and change nothing of others.
+TEST_F(RasterTest, PositionsThatAreNone) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  const std::vector<Vec4> wrong = {
+      {kNan, 0.0F, 0.5F, 1.0F},      {0.0F, kNan, 0.5F, 1.0F},       {0.0F, 0.0F, kNan, 1.0F},
+      {0.0F, 0.0F, 0.5F, kNan},      {kInfinite, 0.0F, 0.5F, 1.0F},  {0.0F, -kInfinite, 0.5F, 1.0F},
+      {0.0F, 0.0F, 0.5F, kInfinite}, {0.0F, 0.0F, 0.5F, -kInfinite}, {kInfinite, kInfinite, 0.5F, kInfinite}};
+  const std::vector<Rectangle> rectangles = someRectangles(12);
+  for (const bool keeps : {true, false}) {
+    RasterHostDesc desc;
+    desc.keepsPositions = keeps;
+    desc.indexType = VK_INDEX_TYPE_UINT32;
+    RasterHost host(desc);
+    const RasterScene scene = sceneOf(rectangles, Form::Indices);
+    RasterScene more = scene;
+    const auto add = [&](const Vec4& a, const Vec4& b, const Vec4& c) {
+      VitrailVkRasterDraw draw = scene.draws[0];
+      draw.count = 3;
+      draw.firstIndex = static_cast<std::uint32_t>(more.indices.size());
+      draw.vertexOffset = static_cast<std::int32_t>(more.vertices.size());
+      draw.vertexCount = 3;
+      more.draws.push_back(draw);
+      more.indices.insert(more.indices.end(), {0, 1, 2});
+      more.vertices.insert(more.vertices.end(), {a, b, c});
+    };
+    const Vec4 right{-0.5F, -0.5F, 0.5F, 1.0F};
+    const Vec4 below{-0.5F, 0.5F, 0.5F, 1.0F};
+    for (const Vec4& one : wrong) {
+      add(one, right, below);
+      add(right, one, below);
+      add(right, below, one);
+      add(one, one, one);
+    }
+    const Vec4 none{};
+    const Vec4 eye{0.5F, -0.5F, 0.0F, 0.0F};
+    const Vec4 huge{1e38F, 0.0F, 0.5F, 1.0F};
+    add(none, none, none);
+    add(eye, none, {-0.5F, -0.5F, 0.0F, 0.0F});
+    add(huge, huge, huge);
+    add({-0.5F, -0.5F, -0.5F, -1.0F}, {0.5F, -0.5F, -0.5F, -1.0F}, {0.0F, 0.5F, -0.5F, -1.0F});
+    host.setScene(more);
+    host.draw();
+    expectPicture(host, rectangles, scene);
+  }
+}
+
+TEST_F(RasterTest, ExtentsOfAllForms) {
+  for (const VkExtent2D extent : {VkExtent2D{1, 1}, VkExtent2D{7, 3}, VkExtent2D{16384, 1}, VkExtent2D{1, 16384}}) {
+    SCOPED_TRACE(testing::Message() << extent.width << 'x' << extent.height);
+    RasterHostDesc desc;
+    desc.width = extent.width;
+    desc.height = extent.height;
+    RasterHost host(desc);
+    // A triangle over all of it, and one over a fourth.
+    RasterScene scene = showing(0);
+    scene.vertices = {{-1.0F, -1.0F, 0.5F, 1.0F},  {3.0F, -1.0F, 0.5F, 1.0F},  {-1.0F, 3.0F, 0.5F, 1.0F},
+                      {-1.0F, -1.0F, 0.25F, 1.0F}, {0.0F, -1.0F, 0.25F, 1.0F}, {-1.0F, 0.0F, 0.25F, 1.0F}};
+    scene.indices = {0, 1, 2, 3, 4, 5};
+    scene.draws[0].vertexCount = 6;
+    scene.colors[0] = {1.0F, 1.0F, 1.0F, 0.5F};
+    scene.behind = {0.0F, 0.0F, 0.0F, 1.0F};
+    host.setScene(scene);
+    host.draw();
+    std::uint32_t once = 0;
+    std::uint32_t twice = 0;
+    for (std::uint32_t y = 0; y < extent.height; ++y) {
+      for (std::uint32_t x = 0; x < extent.width; ++x) {
+        once += host.at(x, y)[0] == 0.5F ? 1 : 0;
+        twice += host.at(x, y)[0] == 0.75F ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(once + twice, extent.width * extent.height);
+    EXPECT_LE(twice, extent.width * extent.height / 2);
+  }
+}
+
 // ---- Frames that are dropped, begun again, or left open
 
 // The frame before one that was dropped may still be drawn: its memory stays.
@@ -827,6 +906,22 @@ TEST_F(RasterTest, OpenFramesAreNotDropped) {
   host.readPicture();
   EXPECT_EQ(host.stats().exact, VK_TRUE);
   EXPECT_TRUE(host.picture() == expected);
+}
+
+// Without solids all draws are of triangles, whatever their flags are: no more indices are read than they have.
+TEST_F(RasterTest, FlagsOfSolidsWithoutSolids) {
+  const std::vector<Rectangle> rectangles = someRectangles(2);
+  RasterScene scene = sceneOf(rectangles, Form::Indices);
+  RasterScene first = scene;
+  first.draws.resize(1);
+  for (const std::uint32_t flag : {VITRAIL_VK_RASTER_LINES, VITRAIL_VK_RASTER_POINTS}) {
+    first.draws[0].flags = flag;
+    first.draws[0].vertexCount = 8;
+    RasterHost host({});
+    host.setScene(first);
+    host.draw();
+    expectPicture(host, {rectangles[0]}, scene);
+  }
 }
 
 // Small extents after large ones: what is kept for the next large one is within the budget.
