@@ -259,7 +259,8 @@ VkResult build(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc) {
   }
   if (result == VK_SUCCESS) result = createStats(raster);
   if (result == VK_SUCCESS) result = createRasterBuffers(raster);
-  if (result == VK_SUCCESS) result = makeRoom(raster, guessOf(desc.hints.triangles), {});
+  raster.guess = guessOf(desc.hints.triangles);
+  if (result == VK_SUCCESS) result = makeRoom(raster, raster.guess, {});
   if (result == VK_SUCCESS) result = resizeRasterTables(raster, tablesOf(desc.hints, raster.keepsPositions));
   if (result == VK_SUCCESS) result = createRasterPipelines(raster, desc);
   if (result == VK_SUCCESS) result = createRasterSets(raster);
@@ -386,6 +387,7 @@ VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
 VkResult shrink(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
   RasterNeeds most;
   if (!raster.low.note(needs, raster.room, most)) return VK_SUCCESS;
+  most = most.most(raster.guess); // what the host knew beforehand it still knows
   const std::uint32_t rows = std::min(raster.tilesY(), raster.bandRows * 2);
   RasterNeeds next;
   const bool splits = raster.bandRows < raster.tilesY();

@@ -163,6 +163,7 @@ struct VitrailVkRaster_T {
   std::vector<vitrail::RetiredBuffer> retired; // that frames in flight use
   vitrail::RasterNeeds room;
   vitrail::RasterTables tables;
+  vitrail::RasterNeeds guess; // what there is room for from the start
   std::uint32_t bandRows = 0; // of tiles
   bool deepPlanned = false;   // frames have the passes of deep tiles, and so many of some
   std::uint32_t mergePasses = 0;
@@ -176,6 +177,7 @@ struct VitrailVkRaster_T {
   bool groupsAreKnown = false;
   std::uint32_t knownGroups = 0;
   std::uint32_t knownVertexGroups = 0;
+  std::uint32_t tableDraws = 0; // of how many draws they are
 
   vitrail::Buffer stats; // RasterSlot[framesInFlight + 1]
   std::vector<vitrail::RasterFacts> facts;

@@ -348,7 +348,7 @@ void beginFrame(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info, bool
     raster.tablesAreMade = false; // perhaps by that one
   }
   freeRetired(raster, raster.frames.begun());
-  if (info.sameDraws == VK_FALSE) raster.tablesAreMade = false;
+  if (info.sameDraws == VK_FALSE || info.drawCount != raster.tableDraws) raster.tablesAreMade = false;
   const std::size_t slot = raster.slotOf(raster.frames.newest());
   // What a frame of the same number may have left there, before numbers went back.
   std::atomic_ref<std::uint64_t>(static_cast<RasterSlot*>(raster.stats.mapped)[slot].tag).store(0);
@@ -409,4 +409,5 @@ extern "C" void vitrailVkCmdRaster(VkCommandBuffer commandBuffer, VitrailVkRaste
   }
   raster->nextBand = info->firstBand + count == bands ? 0 : info->firstBand + count;
   raster->tablesAreMade = info->drawCount > 0;
+  raster->tableDraws = info->drawCount;
 }

@@ -571,6 +571,11 @@ TEST_F(RasterTest, DrawsThatAreTheSameAreNotReadAgain) {
   host.info().sameDraws = VK_TRUE;
   EXPECT_TRUE(host.draw() == first);
   const std::vector<Rectangle> fewer(rectangles.begin(), rectangles.begin() + 5);
+  RasterScene some = scene;
+  some.draws.resize(5);
+  host.setScene(some);
+  host.draw(); // which are not the same, as their number shows
+  expectPicture(host, fewer, scene);
   host.setScene(sceneOf(fewer, Form::Indices));
   host.info().sameDraws = VK_FALSE;
   host.draw();
@@ -731,6 +736,59 @@ TEST_F(RasterTest, PositionsThatAreNone) {
   }
 }
 
+// Draws of sizes that nothing has room for, alone and together: the frame says so, and the next one is as before.
+TEST_F(RasterTest, DrawsThatAreTooMany) {
+  RasterHostDesc desc;
+  desc.indexType = VK_INDEX_TYPE_NONE_KHR;
+  desc.solids = true;
+  RasterHost host(desc);
+  const std::vector<Rectangle> rectangles = someRectangles(8);
+  const RasterScene scene = sceneOf(rectangles, Form::NoIndices);
+  host.setScene(scene);
+  host.draw();
+  constexpr std::uint32_t kAll = 0xffffffffU;
+  const auto expectTooMany = [&](const std::vector<VitrailVkRasterDraw>& draws, const std::string& word) {
+    SCOPED_TRACE(testing::Message() << draws[0].count << " indices, " << draws[0].instanceCount << " instances");
+    RasterScene more = scene;
+    more.draws.insert(more.draws.begin() + 3, draws.begin(), draws.end());
+    host.setScene(more);
+    host.drawOnce();
+    EXPECT_EQ(host.stats().exact, VK_FALSE);
+    EXPECT_EQ(host.raster().update(), VK_ERROR_OUT_OF_DEVICE_MEMORY);
+    expectOneLine(word);
+    host.setScene(scene);
+    host.draw();
+    expectPicture(host, rectangles, scene);
+  };
+  const auto draw = [](std::uint32_t count, std::uint32_t instances, std::uint32_t vertices, std::uint32_t flags = 0) {
+    VitrailVkRasterDraw one{};
+    one.count = count;
+    one.instanceCount = instances;
+    one.vertexCount = vertices;
+    one.flags = flags;
+    return one;
+  };
+  expectTooMany({draw(kAll, 1, 3)}, "2^30");
+  expectTooMany({draw(kAll, kAll, kAll)}, "2^30");
+  expectTooMany({draw(3, kAll, 3)}, "2^30");
+  expectTooMany({draw(3, 0x40000001, 0)}, "2^30");
+  expectTooMany({draw(3, 0x10000, 0x10000)}, "2^30");
+  expectTooMany({draw(0x80000001, 2, 3, VITRAIL_VK_RASTER_POINTS)}, "2^30");
+  expectTooMany({draw(kAll, 1, 3, VITRAIL_VK_RASTER_LINES)}, "2^30");
+  expectTooMany({draw(3, 0x40000000, 0), draw(3, 0x40000000, 0), draw(3, 0x40000000, 0)}, "2^31");
+  expectTooMany(std::vector(5, draw(3, 0x40000000, 0)), "2^31"); // the sum comes round
+  expectTooMany({draw(3, 0x40000000, 0)}, "table");
+  // Large draws of which nothing is drawn are as if they were not there.
+  RasterScene none = scene;
+  none.draws.push_back(draw(kAll, 0, kAll));
+  none.draws.push_back(draw(2, 0x40000000, 1));
+  none.draws.push_back(draw(1, kAll, 0, VITRAIL_VK_RASTER_LINES));
+  none.draws.push_back(draw(0, kAll, 0));
+  host.setScene(none);
+  host.draw();
+  expectPicture(host, rectangles, scene);
+}
+
 TEST_F(RasterTest, ExtentsOfAllForms) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, VkExtent2D{7, 3}, VkExtent2D{16384, 1}, VkExtent2D{1, 16384}}) {
     SCOPED_TRACE(testing::Message() << extent.width << 'x' << extent.height);
@@ -759,6 +817,28 @@ TEST_F(RasterTest, ExtentsOfAllForms) {
     EXPECT_EQ(once + twice, extent.width * extent.height);
     EXPECT_LE(twice, extent.width * extent.height / 2);
   }
+}
+
+// What a frame needed long ago is given back, but not what there is from the start: who turns back sees no gap.
+TEST_F(RasterTest, RoomFromTheStartStays) {
+  RasterHost host({});
+  const std::vector<Rectangle> rectangles = someRectangles(8);
+  const RasterScene scene = sceneOf(rectangles, Form::Indices);
+  RasterScene away = scene;
+  for (Vec4& vertex : away.vertices) vertex[0] += 8.0F;
+  host.setScene(away);
+  host.draw();
+  const VkDeviceSize before = host.raster().memory().tileBytes;
+  for (int i = 0; i < 130; ++i) {
+    host.drawOnce();
+    ASSERT_EQ(host.raster().update(), VK_SUCCESS);
+  }
+  EXPECT_EQ(host.stats().records, 0U);
+  EXPECT_EQ(host.raster().memory().tileBytes, before);
+  host.setScene(scene);
+  host.drawOnce();
+  EXPECT_EQ(host.stats().exact, VK_TRUE);
+  expectPicture(host, rectangles, scene);
 }
 
 // ---- Frames that are dropped, begun again, or left open
