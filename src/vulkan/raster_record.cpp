@@ -141,6 +141,9 @@ raster::VitrailRasterFrame Recording::frameOf(const Band& band) const {
     }
     const float* plane = info_.clipPlanes[i];
     data.clipPlanes[i] = {plane[0], plane[1], plane[2], plane[3]};
+    if (!raster_.nearestIsZero) continue;
+    data.clipPlanes[i].z = -plane[2]; // of w - z, which is what positions are kept with
+    data.clipPlanes[i].w = plane[3] + plane[2];
   }
   return data;
 }

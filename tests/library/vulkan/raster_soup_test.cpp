@@ -365,6 +365,148 @@ void drawSoups(const SoupKind& kind, std::uint32_t count) {
   EXPECT_GT(compared, all / 2);
 }
 
+// ---- Triangles that are clipped
+
+struct ClippedTriangle {
+  std::array<Vec4, 3> corners;
+  std::uint32_t draw;
+};
+
+// Where a pixel's middle meets a triangle: its place in clip space, divided by its w, and how far inside the edges that
+// is, in pixels.
+struct Meeting {
+  std::array<double, 4> place;
+  double inside;
+  double slope; // of the depth, for a pixel
+};
+
+std::optional<Meeting> meet(const ClippedTriangle& t, double ndcX, double ndcY, const VkExtent2D& extent) {
+  const auto at = [&](std::size_t i, std::size_t k) { return static_cast<double>(t.corners.at(i).at(k)); };
+  // The weights are planes over the picture (Olano and Greer): the cross products of x, y, w of two corners.
+  std::array<std::array<double, 3>, 3> planes{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const std::size_t k = (i + 2) % 3;
+    planes.at(i) = {at(j, 1) * at(k, 3) - at(j, 3) * at(k, 1), at(j, 3) * at(k, 0) - at(j, 0) * at(k, 3),
+                    at(j, 0) * at(k, 1) - at(j, 1) * at(k, 0)};
+  }
+  const double volume = at(0, 0) * planes[0][0] + at(0, 1) * planes[0][1] + at(0, 3) * planes[0][2];
+  if (std::abs(volume) < 1e-9) return std::nullopt;
+  Meeting m{{}, 1e9, 0.0};
+  double right = 0.0;
+  double down = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double weight = (planes.at(i)[0] * ndcX + planes.at(i)[1] * ndcY + planes.at(i)[2]) / volume;
+    const double stepX = planes.at(i)[0] / volume * 2.0 / extent.width;
+    const double stepY = planes.at(i)[1] / volume * 2.0 / extent.height;
+    m.inside = std::min(m.inside, weight / std::max(std::hypot(stepX, stepY), 1e-12));
+    for (std::size_t k = 0; k < 4; ++k) m.place.at(k) += weight * at(i, k);
+    right += stepX * at(i, 2);
+    down += stepY * at(i, 2);
+  }
+  m.slope = std::abs(right) + std::abs(down);
+  return m;
+}
+
+void drawClipped(VitrailDepthOrder order, std::uint32_t count) {
+  const VkExtent2D extent{72, 40};
+  RasterHostDesc desc;
+  desc.width = extent.width;
+  desc.height = extent.height;
+  desc.depthOrder = order;
+  desc.indexType = VK_INDEX_TYPE_UINT32;
+  desc.blendModes = 1U << VITRAIL_BLEND_OVER;
+  RasterHost host(desc);
+  std::uint32_t compared = 0;
+  std::uint32_t covered = 0;
+  for (std::uint32_t soup = 0; soup < count; ++soup) {
+    SCOPED_TRACE(testing::Message() << "soup " << soup);
+    std::mt19937 random(soup);
+    const auto between = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    RasterScene scene;
+    std::vector<ClippedTriangle> triangles;
+    scene.behind = {0.25F, 0.5F, 0.75F, 1.0F};
+    for (std::uint32_t i = 0; i < 40; ++i) {
+      ClippedTriangle t{};
+      const double far_ = std::exp2(between(0.0, 12.0)); // out of the picture, up to beyond the guard band
+      for (Vec4& corner : t.corners) {
+        const double reach = random() % 3 == 0 ? far_ : 1.5;
+        corner = {static_cast<float>(between(-reach, reach)), static_cast<float>(between(-reach, reach)),
+                  static_cast<float>(between(-0.3, 1.3)), static_cast<float>(between(-0.5, 2.0))};
+        scene.vertices.push_back(corner);
+      }
+      t.draw = i;
+      VitrailVkRasterDraw draw{};
+      draw.count = draw.vertexCount = 3;
+      draw.instanceCount = 1;
+      draw.vertexOffset = static_cast<std::int32_t>(3 * i);
+      draw.word = i;
+      scene.draws.push_back(draw);
+      scene.colors.push_back({static_cast<float>(between(0, 1)), static_cast<float>(between(0, 1)),
+                              static_cast<float>(between(0, 1)), static_cast<float>(between(0.2, 1))});
+      triangles.push_back(t);
+    }
+    scene.indices = {0, 1, 2};
+    const float plane[1][4] = {{static_cast<float>(between(-1, 1)), static_cast<float>(between(-1, 1)),
+                                static_cast<float>(between(-1, 1)), static_cast<float>(between(0, 1))}};
+    host.info().clipPlaneCount = soup % 2;
+    host.info().clipPlanes = plane;
+    host.setScene(scene);
+    host.draw();
+    for (std::uint32_t y = 0; y < extent.height; ++y) {
+      for (std::uint32_t x = 0; x < extent.width; ++x) {
+        struct Seen {
+          double depth;
+          double blur;
+          std::uint32_t draw;
+        };
+        std::vector<Seen> seen;
+        bool sure = true;
+        for (const ClippedTriangle& t : triangles) {
+          const auto m = meet(t, (x + 0.5) / extent.width * 2.0 - 1.0, (y + 0.5) / extent.height * 2.0 - 1.0, extent);
+          if (!m) continue;
+          const double blur = 1e-4 + 0.02 * m->slope;
+          const double depth = m->place[2];
+          double kept = std::min(depth, 1.0 - depth) / blur;
+          if (soup % 2 == 1) {
+            double value = 0.0;
+            for (std::size_t k = 0; k < 3; ++k) value += static_cast<double>(plane[0][k]) * m->place.at(k);
+            value += plane[0][3]; // w is 1
+            kept = std::min(kept, value / (blur + 0.02));
+          }
+          const double all = std::min(kept, m->inside / 0.02);
+          if (all <= -1.0) continue;
+          if (all < 1.0) sure = false;
+          const double nearness = order == VITRAIL_DEPTH_NEAREST_IS_ZERO ? depth : 1.0 - depth;
+          seen.push_back({nearness, blur, t.draw});
+        }
+        std::ranges::sort(seen, {}, &Seen::depth);
+        for (std::size_t i = 0; i + 1 < seen.size(); ++i) {
+          sure = sure && seen[i + 1].depth - seen[i].depth > seen[i].blur + seen[i + 1].blur;
+        }
+        if (!sure) continue;
+        ++compared;
+        covered += seen.empty() ? 0 : 1;
+        std::array<double, 3> color{};
+        double through = 1.0;
+        for (const Seen& one : seen) {
+          const Vec4& c = scene.colors[one.draw];
+          for (std::size_t k = 0; k < 3; ++k) color.at(k) += through * c[3] * c.at(k);
+          through *= 1.0 - c[3];
+        }
+        const Vec4 found = host.at(x, y);
+        for (std::size_t k = 0; k < 3; ++k) {
+          ASSERT_NEAR(found.at(k), color.at(k) + through * scene.behind.at(k), 1e-4) << x << ' ' << y;
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, count * extent.width * extent.height / 2);
+  EXPECT_GT(covered, compared / 2);
+}
+
 // More where the environment says so: VITRAIL_SOUPS=1000.
 std::uint32_t soups() {
   const char* given = std::getenv("VITRAIL_SOUPS");
@@ -379,6 +521,11 @@ TEST_F(RasterSoupTest, LinesAndPoints) { drawSoups({.solids = true}, soups()); }
 TEST_F(RasterSoupTest, SeveralSamples) {
   for (const std::uint32_t samples : backend().features().multisampled)
     drawSoups({.samples = samples, .solids = true}, soups());
+}
+
+TEST_F(RasterSoupTest, ClippedTriangles) {
+  drawClipped(VITRAIL_DEPTH_NEAREST_IS_ZERO, 2 * soups());
+  drawClipped(VITRAIL_DEPTH_NEAREST_IS_ONE, 2 * soups());
 }
 
 } // namespace

@@ -399,6 +399,21 @@ TEST_F(RasterTest, ClipPlanesAndTheEye) {
   host.draw();
   EXPECT_EQ(host.at(15, 3), scene.behind);
   EXPECT_EQ(host.at(16, 3), (Vec4{1.0F, 1.0F, 1.0F, 1.0F}));
+  // Planes across the depth, of the host's depths.
+  for (const VitrailDepthOrder order : {VITRAIL_DEPTH_NEAREST_IS_ZERO, VITRAIL_DEPTH_NEAREST_IS_ONE}) {
+    RasterHostDesc desc;
+    desc.depthOrder = order;
+    RasterHost across(desc);
+    for (Vec4& vertex : scene.vertices) vertex[2] = 0.25F;
+    across.setScene(scene);
+    for (const float side : {1.0F, -1.0F}) {
+      const float deep[1][4] = {{0.0F, 0.0F, side, -0.4F * side}};
+      across.info().clipPlaneCount = 1;
+      across.info().clipPlanes = deep;
+      across.draw();
+      EXPECT_EQ(across.at(16, 3) == scene.behind, side > 0.0F) << order;
+    }
+  }
   host.info().clipPlaneCount = 0;
   host.info().clipPlanes = nullptr;
   // A triangle that reaches behind the eye: what is before it is drawn, over all of the picture's right side.
