@@ -473,7 +473,7 @@ extern "C" VkResult vitrailVkResizeRaster(VitrailVkRaster raster, VkExtent2D ext
     return made;
   }
   raster->low.forget();
-  raster->nextBand = 0; // a frame of which bands are still to be recorded has ended
+  raster->leaveOpenFrame();
   return VK_SUCCESS;
 }
 
@@ -482,7 +482,7 @@ extern "C" VkResult vitrailVkUpdateRaster(VitrailVkRaster raster, uint64_t frame
   if (raster == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
   // Bands that are still to be recorded go into the memory of the first.
   if (raster->nextBand != 0 && (frame == 0 || frame == raster->frames.newest())) return VK_SUCCESS;
-  raster->nextBand = 0;
+  raster->leaveOpenFrame();
   // As vitrailVkUpdateTarget().
   const std::uint64_t number = std::min(raster->frames.numberOf(frame), raster->frames.numberOf(0));
   const bool again = raster->frames.any() && number == raster->frames.newest() && frame != 0;

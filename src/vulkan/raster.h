@@ -196,6 +196,11 @@ struct VitrailVkRaster_T {
   [[nodiscard]] const std::array<VkDescriptorSet, vitrail::kRasterSets>& frameSets() const {
     return sets[frames.begun() % sets.size()];
   }
+  // Nobody records the other bands of an open frame any more; perhaps its first were never submitted.
+  void leaveOpenFrame() {
+    if (nextBand != 0) tablesAreMade = false;
+    nextBand = 0;
+  }
   [[nodiscard]] std::uint32_t tilesX() const { return (extent.width + 7) / 8; }
   [[nodiscard]] std::uint32_t tilesY() const { return (extent.height + 7) / 8; }
   [[nodiscard]] std::uint32_t bands() const { return (tilesY() + bandRows - 1) / bandRows; }

@@ -338,7 +338,7 @@ bool isWhole(const VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info) {
 
 // Starts a frame on the host's side: its number, its memory, its sets.
 void beginFrame(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info, bool misused) {
-  raster.nextBand = 0; // of a frame before whose other bands nobody has recorded
+  raster.leaveOpenFrame();
   if (raster.frames.any() && info.frame != 0 && info.frame < raster.frames.newest()) {
     raster.context->log.warn("frame %llu is begun after frame %llu: frame numbers rise",
                              static_cast<unsigned long long>(info.frame),

@@ -1001,6 +1001,19 @@ TEST_F(RasterTest, OpenFramesAreNotDropped) {
   host.readPicture();
   EXPECT_EQ(host.stats().exact, VK_TRUE);
   EXPECT_TRUE(host.picture() == expected);
+
+  // Nor may its bands be drawn: its tables are not there for draws that are the same.
+  RasterScene other = sceneOf(someRectangles(kOfBands, 64), Form::VertexOffsets, false, 64);
+  std::swap(other.draws.front().word, other.draws.back().word);
+  host.setScene(other);
+  host.info().bandCount = 1;
+  host.recordAll(second.begin());
+  host.info().bandCount = 0;
+  host.info().sameDraws = VK_TRUE;
+  const std::vector<float> swapped = host.draw();
+  host.info().sameDraws = VK_FALSE;
+  EXPECT_TRUE(host.draw() == swapped);
+  EXPECT_FALSE(swapped == expected);
 }
 
 // Without solids all draws are of triangles, whatever their flags are: no more indices are read than they have.
