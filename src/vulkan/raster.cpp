@@ -276,9 +276,9 @@ bool readSlot(VitrailVkRaster_T& raster, std::uint64_t frame, raster::VitrailRas
   if (facts.misused) return true; // it leaves none
   // The GPU may start to write the slot again at any time: as readSlot() of a target.
   RasterSlot& slot = static_cast<RasterSlot*>(raster.stats.mapped)[raster.slotOf(frame)];
-  const std::uint64_t tag = frame + 1;
+  const std::uint64_t tag = facts.tag;
   const std::atomic_ref<std::uint64_t> written(slot.tag);
-  if (tag == 0 || written.load(std::memory_order_acquire) != tag) return false;
+  if (written.load(std::memory_order_acquire) != tag) return false;
   totals = slot.totals;
   std::atomic_thread_fence(std::memory_order_acquire);
   if (written.load(std::memory_order_relaxed) != tag) return false;
@@ -493,13 +493,13 @@ extern "C" VkResult vitrailVkUpdateRaster(VitrailVkRaster raster, uint64_t frame
     newest = one;
     return readSlot(*raster, one, totals);
   });
-  if (!read || newest + 1 <= raster->newestNews) return VK_SUCCESS;
   const RasterFacts& facts = raster->facts[raster->slotOf(newest)];
+  if (!read || facts.tag <= raster->newestNews) return VK_SUCCESS;
   if (!facts.empty && !facts.misused) {
     const VkResult result = follow(*raster, totals, facts);
     if (result != VK_SUCCESS) return result;
   }
-  raster->newestNews = newest + 1;
+  raster->newestNews = facts.tag;
   return VK_SUCCESS;
 }
 

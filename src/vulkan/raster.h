@@ -97,15 +97,16 @@ struct RasterStage {
   std::vector<std::uint8_t> data;
 };
 
-// The memory that one frame's counters are copied to. The tag is 0 while they are not there.
+// The memory that one frame's counters are copied to. The tag is another one, or 0, while they are not there.
 struct RasterSlot {
   raster::VitrailRasterTotals totals;
-  std::uint64_t tag; // frame + 1
+  std::uint64_t tag; // RasterFacts::tag
 };
 
 // What the host's side knows of a frame.
 struct RasterFacts {
   std::uint64_t frame = 0;
+  std::uint64_t tag = 0; // of no other frame, also where numbers come twice
   RasterNeeds room;
   std::uint32_t bands = 0;
   std::uint32_t draws = 0;
@@ -169,7 +170,7 @@ struct VitrailVkRaster_T {
   std::uint32_t mergePasses = 0;
   std::uint32_t slices = 1;
   vitrail::RasterLow low;
-  std::uint64_t newestNews = 0; // the frame whose statistics were looked at last, + 1
+  std::uint64_t newestNews = 0; // the tag of the frame whose statistics were looked at last
   bool tablesAreMade = false;   // by a frame before, in the present buffers
   // How often they were made, and how many work groups the last ones have, once a frame with these has been read: they
   // are dispatched directly then, which is faster.
@@ -182,6 +183,7 @@ struct VitrailVkRaster_T {
   vitrail::Buffer stats; // RasterSlot[framesInFlight + 1]
   std::vector<vitrail::RasterFacts> facts;
   vitrail::FrameNumbers frames;
+  std::uint64_t newestTag = 0;
   std::uint32_t nextBand = 0; // of the frame that is being recorded; 0: it is whole
 
   [[nodiscard]] vitrail::Buffer& buffer(vitrail::RasterBuffer which) {

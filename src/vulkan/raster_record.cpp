@@ -1,6 +1,5 @@
 // Records the passes of a raster's frame.
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 
 #include "check.h"
@@ -277,7 +276,7 @@ void Recording::note(bool isLast) {
   barrier(VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
           VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_HOST_BIT,
           VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_HOST_READ_BIT);
-  const std::uint64_t tag = raster_.frames.newest() + 1;
+  const std::uint64_t tag = facts().tag;
   vk_.CmdUpdateBuffer(commands_, raster_.stats.buffer, slotOffset() + offsetof(RasterSlot, tag), sizeof(tag), &tag);
   barrier(VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
           VK_ACCESS_HOST_READ_BIT);
@@ -343,7 +342,6 @@ void beginFrame(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info, bool
     raster.context->log.warn("frame %llu is begun after frame %llu: frame numbers rise",
                              static_cast<unsigned long long>(info.frame),
                              static_cast<unsigned long long>(raster.frames.newest()));
-    raster.newestNews = 0;
   }
   // Bands of an open frame may have been submitted: only the host's number says that it was dropped.
   if (raster.frames.begin(info.frame, false)) { // a second time: the first one was never submitted
@@ -352,11 +350,9 @@ void beginFrame(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info, bool
   }
   freeRetired(raster, raster.frames.begun());
   if (info.sameDraws == VK_FALSE || info.drawCount != raster.tableDraws) raster.tablesAreMade = false;
-  const std::size_t slot = raster.slotOf(raster.frames.newest());
-  // What a frame of the same number may have left there, before numbers went back.
-  std::atomic_ref<std::uint64_t>(static_cast<RasterSlot*>(raster.stats.mapped)[slot].tag).store(0);
-  RasterFacts& facts = raster.facts[slot];
+  RasterFacts& facts = raster.facts[raster.slotOf(raster.frames.newest())];
   facts = {};
+  facts.tag = ++raster.newestTag;
   facts.any = true;
   facts.frame = raster.frames.newest();
   facts.room = raster.room;
