@@ -270,7 +270,7 @@ VkResult build(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc) {
 // ---- Statistics
 
 // What a slot holds of a frame. False: it is not there (any more).
-bool readSlot(VitrailVkRaster_T& raster, std::uint64_t frame, raster::VitrailRasterTotals& totals) {
+bool readSlot(const VitrailVkRaster_T& raster, std::uint64_t frame, raster::VitrailRasterTotals& totals) {
   const RasterFacts& facts = raster.facts[raster.slotOf(frame)];
   if (!facts.any || facts.frame != frame) return false;
   if (facts.misused) return true; // it leaves none
@@ -281,13 +281,7 @@ bool readSlot(VitrailVkRaster_T& raster, std::uint64_t frame, raster::VitrailRas
   if (written.load(std::memory_order_acquire) != tag) return false;
   totals = slot.totals;
   std::atomic_thread_fence(std::memory_order_acquire);
-  if (written.load(std::memory_order_relaxed) != tag) return false;
-  if (raster.tablesAreMade && facts.tablesMade == raster.tablesMade && totals.start.fits != 0) {
-    raster.groupsAreKnown = true;
-    raster.knownGroups = totals.start.groups.count;
-    raster.knownVertexGroups = totals.start.vertices.count;
-  }
-  return true;
+  return written.load(std::memory_order_relaxed) == tag;
 }
 
 std::uint64_t together(std::uint32_t high, std::uint32_t low) { return std::uint64_t{high} << 32U | low; }

@@ -113,7 +113,6 @@ struct RasterFacts {
   bool deep = false; // its passes of deep tiles are there, with so many
   std::uint32_t mergePasses = 0;
   std::uint32_t slices = 0;
-  std::uint64_t tablesMade = 0;
   bool empty = false;   // nothing was to be drawn
   bool bounded = false; // what is hidden was left out
   bool misused = false;
@@ -172,12 +171,6 @@ struct VitrailVkRaster_T {
   vitrail::RasterLow low;
   std::uint64_t newestNews = 0; // the tag of the frame whose statistics were looked at last
   bool tablesAreMade = false;   // by a frame before, in the present buffers
-  // How often they were made, and how many work groups the last ones have, once a frame with these has been read: they
-  // are dispatched directly then, which is faster.
-  std::uint64_t tablesMade = 0;
-  bool groupsAreKnown = false;
-  std::uint32_t knownGroups = 0;
-  std::uint32_t knownVertexGroups = 0;
   std::uint32_t tableDraws = 0; // of how many draws they are
 
   vitrail::Buffer stats; // RasterSlot[framesInFlight + 1]

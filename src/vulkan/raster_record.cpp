@@ -62,12 +62,6 @@ class Recording {
     vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     vk_.CmdDispatchIndirect(commands_, raster_.buffer(sizes).buffer, offset);
   }
-  // As many work groups as the draws have.
-  void dispatchGroups(VkPipeline pipeline, std::uint32_t known, std::size_t offset) const {
-    if (!raster_.groupsAreKnown) return dispatch(pipeline, RasterBuffer::Start, offset);
-    constexpr std::uint32_t kRow = raster::VITRAIL_RASTER_ROW;
-    dispatch(pipeline, std::min(known, kRow), (known + kRow - 1) / kRow);
-  }
   void fill(RasterBuffer which) const {
     vk_.CmdFillBuffer(commands_, raster_.buffer(which).buffer, 0, VK_WHOLE_SIZE, 0);
   }
@@ -157,7 +151,7 @@ void Recording::clear(const Band& band, bool isFirst) {
   // Nothing of what is cleared is looked at for positions. Where the draws are new their tables come first.
   if (isFirst && raster_.keepsPositions && raster_.tablesAreMade) {
     bind(RasterSet::Geometry);
-    dispatchGroups(raster_.positions, raster_.knownVertexGroups, offsetof(raster::VitrailRasterStart, vertices));
+    dispatch(raster_.positions, RasterBuffer::Start, offsetof(raster::VitrailRasterStart, vertices));
   }
   fill(RasterBuffer::TileRecords);
   if (raster_.deepPlanned) fill(RasterBuffer::DeepPixels);
@@ -173,9 +167,6 @@ void Recording::clear(const Band& band, bool isFirst) {
 // Of a frame whose draws are new: what they come to, and their positions.
 void Recording::readDraws(bool isFirst) {
   if (!isFirst || raster_.tablesAreMade) return;
-  raster_.groupsAreKnown = false;
-  ++raster_.tablesMade;
-  facts().tablesMade = raster_.tablesMade;
   bind(RasterSet::Own);
   dispatch(raster_.kernel(RasterKernel::Prepare), 1, 1);
   passBarrier();
@@ -190,7 +181,7 @@ void Recording::readDraws(bool isFirst) {
 
 void Recording::setUp(const Band& band) {
   bind(RasterSet::Geometry);
-  dispatchGroups(raster_.setUp, raster_.knownGroups, offsetof(raster::VitrailRasterStart, groups));
+  dispatch(raster_.setUp, RasterBuffer::Start, offsetof(raster::VitrailRasterStart, groups));
   // Triangles were put aside -> they are taken up; records and counts go on.
   passBarrier();
   const std::uint32_t blocks =
@@ -361,7 +352,6 @@ void beginFrame(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info, bool
   facts.deep = raster.deepPlanned;
   facts.mergePasses = raster.mergePasses;
   facts.slices = raster.slices;
-  facts.tablesMade = raster.tablesMade;
   facts.empty = info.drawCount == 0;
   facts.bounded = info.mostLight > 0.0F && raster.blendModes == 1U << VITRAIL_BLEND_OVER;
   facts.misused = misused;
