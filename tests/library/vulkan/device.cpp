@@ -141,6 +141,7 @@ void Device::choose() {
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physicalDevice_, &properties);
   limits_ = properties.limits;
+  isCpu_ = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   vkGetPhysicalDeviceMemoryProperties(physicalDevice_, &memory_);
 }
 

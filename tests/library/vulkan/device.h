@@ -41,6 +41,7 @@ class Device {
   [[nodiscard]] VkQueue queue() const { return queue_; }
   [[nodiscard]] std::uint32_t queueFamily() const { return queueFamily_; }
   [[nodiscard]] const VkPhysicalDeviceLimits& limits() const { return limits_; }
+  [[nodiscard]] bool isCpu() const { return isCpu_; } // a driver that runs on the CPU
   [[nodiscard]] const Features& features() const { return features_; }
 
   // A type of memory among the allowed ones that has all of the properties; throws HostError where there is none.
@@ -66,6 +67,7 @@ class Device {
   VkQueue queue_ = VK_NULL_HANDLE;
   std::uint32_t queueFamily_ = 0;
   VkPhysicalDeviceLimits limits_{};
+  bool isCpu_ = false;
   VkPhysicalDeviceMemoryProperties memory_{};
   Features features_;
   std::mutex mutex_; // messages arrive on any thread
