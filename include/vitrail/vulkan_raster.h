@@ -104,8 +104,8 @@ typedef struct VitrailVkRasterDesc {
    * alone take longer, as there is no bound then of what is hidden but all of it. */
   uint32_t blendModes;
   VkBool32 solids; /* whether draws may be lines and points; else all are triangles, whatever their flags */
-  /* Bytes of device memory for all that the raster keeps but positions and tables of draws. Default 0: what the device
-   * can give. */
+  /* Bytes of device memory for all that the raster keeps but positions, tables of draws and some kilobytes of counters.
+   * Default 0: three quarters of what the device has. */
   VkDeviceSize memoryBudget;
   VitrailVkRasterHints hints;
   uint32_t framesInFlight; /* at most VITRAIL_MAX_FRAMES_IN_FLIGHT; default 2 */

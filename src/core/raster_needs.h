@@ -40,6 +40,7 @@ constexpr std::uint64_t kRasterFragmentBytes = 8; // in each of two arrays
 constexpr std::uint64_t kRasterDeepTileBytes = 16;
 constexpr std::uint64_t kRasterDeepPixelsBytes = 64 * 16; // of a deep tile
 constexpr std::uint64_t kRasterListedBytes = 8;           // a block, a chunk, a large triangle
+constexpr std::uint64_t kRasterPositionBytes = 16;        // of a vertex of an instance; no part of the budget
 constexpr std::uint64_t rasterMaskBytes(std::uint32_t samples) { return samples > 1 ? samples * 8 : 0; } // of a record
 constexpr std::uint64_t rasterStateBytes(std::uint32_t samples) { return samples * 64 * 32; } // of a deep tile
 

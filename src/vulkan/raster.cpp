@@ -12,10 +12,7 @@
 #include "core/target_common.h"
 
 vitrail::RasterBounds VitrailVkRaster_T::bounds(std::uint32_t rows) const {
-  return {.reach = std::min(context->limits.storageBufferRange, context->limits.allocationSize),
-          .budget = budget,
-          .tiles = tilesX() * rows,
-          .samples = samples};
+  return {.reach = reach(), .budget = budget, .tiles = tilesX() * rows, .samples = samples};
 }
 
 namespace vitrail {
@@ -35,6 +32,7 @@ static_assert(VITRAIL_VK_RASTER_FRONT_CLOCKWISE == raster::VITRAIL_RASTER_FRONT_
 static_assert(VITRAIL_VK_RASTER_CULL_FRONT == raster::VITRAIL_RASTER_CULL_FRONT);
 static_assert(VITRAIL_VK_RASTER_CULL_BACK == raster::VITRAIL_RASTER_CULL_BACK);
 
+constexpr std::uint32_t kAllBlends = 15;   // 1 << VitrailBlend each
 constexpr std::uint32_t kMostSide = 16384; // pixels: coordinates within the guard band
 
 constexpr RasterNeeds kLeast{.records = 1, .large = 1, .deep = 1, .blocks = 1, .fragments = 1, .chunks = 1};
@@ -144,7 +142,6 @@ VkResult checkDevice(const VitrailVkContext_T& context, VitrailVkRaster_T& raste
 VkResult checkDesc(const VitrailVkContext_T& context, const VitrailVkRasterDesc& desc) {
   const Log& log = context.log;
   constexpr std::uint32_t kMostSets = 7;
-  constexpr std::uint32_t kBlends = 15; // of VitrailBlend
   VkResult result = checkExtent(log, desc.extent);
   if (result != VK_SUCCESS) return result;
   const std::uint32_t samples = desc.samples == 0 ? 1 : desc.samples;
@@ -165,9 +162,9 @@ VkResult checkDesc(const VitrailVkContext_T& context, const VitrailVkRasterDesc&
     return log.fail(VK_ERROR_INITIALIZATION_FAILED, "indexType %d: indices have 16 or 32 bits, or there are none",
                     desc.indexType);
   }
-  if ((desc.blendModes & ~kBlends) != 0) {
+  if ((desc.blendModes & ~kAllBlends) != 0) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED, "blendModes 0x%x: 0x%x is none of VitrailBlend", desc.blendModes,
-                    desc.blendModes & ~kBlends);
+                    desc.blendModes & ~kAllBlends);
   }
   if (desc.depthOrder != VITRAIL_DEPTH_NEAREST_IS_ZERO && desc.depthOrder != VITRAIL_DEPTH_NEAREST_IS_ONE) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED, "depthOrder %d is none of VitrailDepthOrder", desc.depthOrder);
@@ -182,7 +179,6 @@ VkResult checkDesc(const VitrailVkContext_T& context, const VitrailVkRasterDesc&
 // ---- Creation
 
 std::unique_ptr<VitrailVkRaster_T> makeRaster(VitrailVkContext context, const VitrailVkRasterDesc& desc) {
-  constexpr std::uint32_t kAllBlends = 15;
   std::unique_ptr<VitrailVkRaster_T> made(new (std::nothrow) VitrailVkRaster_T);
   if (!made) return nullptr;
   made->context = context;
@@ -352,9 +348,9 @@ VkResult growTables(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals
                     .items = grown(totals.start.items, had.items),
                     .vertices = grown(totals.start.vertexCount, had.vertices)};
   // What is spare is not worth a refusal.
-  const std::uint64_t reach =
-      std::min(raster.context->limits.storageBufferRange, raster.context->limits.allocationSize);
-  if (next.vertices * 16 > reach) next.vertices = std::max<std::uint64_t>(totals.start.vertexCount, had.vertices);
+  if (next.vertices * kRasterPositionBytes > raster.reach()) {
+    next.vertices = std::max<std::uint64_t>(totals.start.vertexCount, had.vertices);
+  }
   return resizeRasterTables(raster, next);
 }
 

@@ -1,6 +1,7 @@
 // A raster: what its passes keep, its pipelines, and its frames.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -200,6 +201,10 @@ struct VitrailVkRaster_T {
   [[nodiscard]] std::uint32_t tilesY() const { return (extent.height + 7) / 8; }
   [[nodiscard]] std::uint32_t bands() const { return (tilesY() + bandRows - 1) / bandRows; }
   [[nodiscard]] std::size_t slotOf(std::uint64_t frame) const { return frame % facts.size(); }
+  // Bytes of a buffer that a shader can look at.
+  [[nodiscard]] std::uint64_t reach() const {
+    return std::min(context->limits.storageBufferRange, context->limits.allocationSize);
+  }
   [[nodiscard]] vitrail::RasterBounds bounds(std::uint32_t rows) const;
 };
 

@@ -155,11 +155,9 @@ VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, st
 
 VkResult resizeRasterTables(VitrailVkRaster_T& raster, const RasterTables& tables) {
   constexpr std::uint64_t kWord = sizeof(std::uint32_t);
-  constexpr std::uint64_t kPositionBytes = 16;
   const std::uint64_t most = std::max({tables.draws * sizeof(raster::VitrailRasterPlace), tables.groups * kWord,
                                        tables.vertexGroups * kWord, tables.items * kWord});
-  const std::uint64_t reach =
-      std::min(raster.context->limits.storageBufferRange, raster.context->limits.allocationSize);
+  const std::uint64_t reach = raster.reach();
   if (most > reach) {
     return raster.context->log.fail(
         VK_ERROR_OUT_OF_DEVICE_MEMORY,
@@ -167,7 +165,7 @@ VkResult resizeRasterTables(VitrailVkRaster_T& raster, const RasterTables& table
         "triangles or instances at once",
         raster.debugName.c_str(), static_cast<unsigned long long>(most), static_cast<unsigned long long>(reach));
   }
-  if (tables.vertices * kPositionBytes > reach) {
+  if (tables.vertices * kRasterPositionBytes > reach) {
     return raster.context->log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY,
                                     "%s: the positions of %llu vertices take more than the %llu bytes that shaders "
                                     "reach: make the raster without the stage positions",
@@ -179,7 +177,7 @@ VkResult resizeRasterTables(VitrailVkRaster_T& raster, const RasterTables& table
   made.make(RasterBuffer::DrawOfGroup, tables.groups * kWord);
   made.make(RasterBuffer::DrawOfVertexGroup, tables.vertexGroups * kWord);
   made.make(RasterBuffer::DrawOfItem, tables.items * kWord);
-  made.make(RasterBuffer::Positions, tables.vertices * kPositionBytes);
+  made.make(RasterBuffer::Positions, tables.vertices * kRasterPositionBytes);
   const VkResult result = made.commit();
   if (result != VK_SUCCESS) return result;
   raster.tables = tables;

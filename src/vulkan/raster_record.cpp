@@ -19,9 +19,10 @@ constexpr std::uint32_t kMostVisitsOnCpu = 1024;
 constexpr std::uint32_t kSide = 8; // of a tile
 
 struct Band {
-  std::uint32_t number = 0;
   std::uint32_t top = 0; // rows of pixels
   std::uint32_t bottom = 0;
+
+  [[nodiscard]] std::uint32_t tilesY() const { return (bottom - top + kSide - 1) / kSide; }
 };
 
 // A frame that is being recorded.
@@ -69,6 +70,10 @@ class Recording {
     if (info_.onPass != nullptr) info_.onPass(pass, commands_, info_.user);
   }
 
+  // Blocks of a row of tiles that large triangles are looked for in.
+  [[nodiscard]] std::uint32_t largeBlocks() const {
+    return (raster_.tilesX() + raster::VITRAIL_RASTER_LARGE_BLOCK - 1) / raster::VITRAIL_RASTER_LARGE_BLOCK;
+  }
   [[nodiscard]] raster::VitrailRasterFrame frameOf(const Band& band) const;
   void clear(const Band& band, bool isFirst);
   void readDraws(bool isFirst);
@@ -101,10 +106,10 @@ raster::VitrailRasterFrame Recording::frameOf(const Band& band) const {
   data.width = raster_.extent.width;
   data.height = raster_.extent.height;
   data.tilesX = raster_.tilesX();
-  data.tilesY = (band.bottom - band.top + kSide - 1) / kSide;
+  data.tilesY = band.tilesY();
   data.top = band.top;
   data.bottom = band.bottom;
-  data.largeBlocks = (data.tilesX + raster::VITRAIL_RASTER_LARGE_BLOCK - 1) / raster::VITRAIL_RASTER_LARGE_BLOCK;
+  data.largeBlocks = largeBlocks();
   data.draws = info_.drawCount;
   const RasterNeeds& room = raster_.room;
   data.recordCapacity = static_cast<std::uint32_t>(room.records);
@@ -184,20 +189,19 @@ void Recording::setUp(const Band& band) {
   dispatch(raster_.setUp, RasterBuffer::Start, offsetof(raster::VitrailRasterStart, groups));
   // Triangles were put aside -> they are taken up; records and counts go on.
   passBarrier();
-  const std::uint32_t blocks =
-      (raster_.tilesX() + raster::VITRAIL_RASTER_LARGE_BLOCK - 1) / raster::VITRAIL_RASTER_LARGE_BLOCK;
+  const std::uint32_t blocks = largeBlocks();
   // So many that none takes long: a driver ends loops that it takes for endless.
   constexpr std::uint64_t kTurns = 64;
   constexpr std::uint64_t kMostGroups = 65535; // that any device takes
   const auto shares = static_cast<std::uint32_t>(
       std::min(raster_.room.large / (raster::VITRAIL_RASTER_GROUP * kTurns) + 2, kMostGroups / blocks));
-  dispatch(raster_.setUpLarge, blocks * shares, (band.bottom - band.top + kSide - 1) / kSide);
+  dispatch(raster_.setUpLarge, blocks * shares, band.tilesY());
   // Tiles counted their records -> they are given room.
   passBarrier();
 }
 
 void Recording::bin(const Band& band) {
-  const std::uint32_t tiles = raster_.tilesX() * ((band.bottom - band.top + kSide - 1) / kSide);
+  const std::uint32_t tiles = raster_.tilesX() * band.tilesY();
   const std::uint32_t groups = (tiles + 255) / 256;
   bind(RasterSet::Own);
   dispatch(raster_.kernel(RasterKernel::Plan), std::min(groups, raster::VITRAIL_RASTER_ROW),
@@ -281,7 +285,7 @@ void Recording::drawBand(const Band& band, bool isFirst, bool isLast) {
   passed("clear");
   if (raster_.samples > 1) { // the blend writes over it, after barriers of the passes between
     bind(RasterSet::Own);
-    dispatch(raster_.kernel(RasterKernel::Mean), raster_.tilesX(), (band.bottom - band.top + kSide - 1) / kSide);
+    dispatch(raster_.kernel(RasterKernel::Mean), raster_.tilesX(), band.tilesY());
   }
   if (!empty) {
     setUp(band);
@@ -394,7 +398,7 @@ extern "C" void vitrailVkCmdRaster(VkCommandBuffer commandBuffer, VitrailVkRaste
   Recording recording(commandBuffer, *raster, *info);
   const std::uint32_t step = raster->bandRows * kSide;
   for (std::uint32_t i = info->firstBand; i < info->firstBand + count; ++i) {
-    recording.drawBand({i, i * step, std::min((i + 1) * step, raster->extent.height)}, i == 0, i + 1 == bands);
+    recording.drawBand({i * step, std::min((i + 1) * step, raster->extent.height)}, i == 0, i + 1 == bands);
   }
   raster->nextBand = info->firstBand + count == bands ? 0 : info->firstBand + count;
   raster->tablesAreMade = info->drawCount > 0;
