@@ -223,14 +223,14 @@ VkResult createGeometryPipeline(VitrailVkRaster_T& raster, const VitrailVkRaster
 }
 
 // One for each class of tiles. Tiles with few records keep fewer of a pixel's fragments in registers, so that more work
-// groups run at a time. Not of several samples, which need more registers for other things.
+// groups run at a time.
 VkResult createBlends(VitrailVkRaster_T& raster, const VitrailVkRasterStage& given) {
   constexpr std::array<std::uint32_t, raster::VITRAIL_RASTER_CLASSES> kKeep = {8, 16, 16, 32};
   RasterStage stage;
   VkResult result = keepStage(raster, given, "blend", stage);
   for (std::uint32_t i = 0; result == VK_SUCCESS && i < raster::VITRAIL_RASTER_CLASSES; ++i) {
     RasterConstants constants = constantsOf(raster);
-    constants.keep = raster.samples > 1 ? 16 : kKeep[i];
+    constants.keep = kKeep[i];
     constants.oneBatch = i < 2 ? VK_TRUE : VK_FALSE;
     constants.tileClass = i;
     result = createPipeline(raster, raster.layout(RasterSet::Blend), stage, constants, "blend", &raster.blends[i]);

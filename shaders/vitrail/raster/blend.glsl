@@ -19,7 +19,8 @@ layout(VITRAIL_RASTER_BOUND(17), std430) readonly buffer VitrailTileClassBlock {
   VitrailRasterTileClasses vitrailTileClasses;
 };
 
-shared uint vitrailKeptOrder[VITRAIL_RASTER_KEEP / 2u * VITRAIL_RASTER_PIXELS]; // numbers of kept records, two a word
+// Of the i-th fragment that a pixel has kept the number of its record in the tile, two a word.
+shared uint vitrailKeptOrder[VITRAIL_RASTER_KEEP / 2u * VITRAIL_RASTER_PIXELS];
 shared uint vitrailGoesOn[2]; // in turns
 shared uint vitrailTooShort;
 
@@ -27,7 +28,6 @@ uint vitrailFirstPair; // of the tile
 uint vitrailAlikeFirst; // of the fragments that are blended
 ivec2 vitrailInTile;
 
-// Of the i-th fragment that was kept: the number of its record in the tile.
 uint vitrailOrderAt(uint i) {
   return vitrailKeptOrder[(i >> 1) * VITRAIL_RASTER_PIXELS + vitrailThread] >> (16u * (i & 1u)) & 0xffffu;
 }
@@ -123,6 +123,51 @@ void vitrailSettle(uint ties, uint count) {
   }
 }
 
+#ifdef VITRAIL_MULTISAMPLED
+uint vitrailSamplesOf(uint number) { return vitrailCoveredSamples(vitrailRecordAt(number), vitrailThread); }
+
+// Where fragments whose keys hold the same depth cover no sample together, as the two halves of a flat quad do along
+// their diagonal, it does not matter which of them is in front: they come by their first samples, and are ties no more.
+// This saves looking up depths and sources, and shading them several times.
+void vitrailPartTies(inout uint ties, uint count) {
+  uint left = count > 1u ? ties & ((1u << (count - 1u)) - 1u) : 0u;
+  while (left != 0u) { // each thread goes to its own next one
+    uint first = uint(findLSB(left));
+    uint last = first + uint(findLSB(~(left >> first))); // of the run
+    uint run = (1u << last) - (1u << first);
+    left &= ~run;
+    uint a = vitrailOrderAt(first);
+    uint b = vitrailOrderAt(first + 1u);
+    uint samplesA = vitrailSamplesOf(a);
+    uint samplesB = vitrailSamplesOf(b);
+    uint twice = samplesA & samplesB;
+    uint all = samplesA | samplesB;
+    for (uint i = first + 2u; i <= last; ++i) {
+      uint samples = vitrailSamplesOf(vitrailOrderAt(i));
+      twice |= all & samples;
+      all |= samples;
+    }
+    if (twice != 0u) continue;
+    ties &= ~run;
+    if (findLSB(samplesA) > findLSB(samplesB)) {
+      vitrailSetOrder(first, b);
+      vitrailSetOrder(first + 1u, a);
+    }
+    for (uint i = first + 2u; i <= last; ++i) {
+      uint number = vitrailOrderAt(i);
+      uint at = i;
+      int lowest = findLSB(vitrailSamplesOf(number));
+      for (; at > first; --at) {
+        uint before = vitrailOrderAt(at - 1u);
+        if (findLSB(vitrailSamplesOf(before)) < lowest) break;
+        vitrailSetOrder(at, before);
+      }
+      vitrailSetOrder(at, number);
+    }
+  }
+}
+#endif
+
 // How many fragments from the i-th on have one depth.
 uint vitrailAlikeFrom(uint i, uint ties, uint count) {
   uint alike = 1u;
@@ -182,6 +227,9 @@ void main() {
       vitrailKeptOrder[i / 2 * VITRAIL_RASTER_PIXELS + vitrailThread] = \
           (vitrailNearestKeys[i] & numbers) | (vitrailNearestKeys[i | 1] & numbers) << 16;
     VITRAIL_EACH_KEPT(VITRAIL_STORE_KEPT)
+#ifdef VITRAIL_MULTISAMPLED
+    if (ties != 0u) vitrailPartTies(ties, kept);
+#endif
     if (ties != 0u) vitrailSettle(ties, kept);
     uint k = 0u;
 #ifndef VITRAIL_MULTISAMPLED // of several samples it came out slower

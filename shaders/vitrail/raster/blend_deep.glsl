@@ -14,7 +14,7 @@ struct VitrailPixelState {
   uint at; // the next fragment
   vec4 transmittance;
 };
-// Of each sample.
+// Of each sample, with the colour of the pixel.
 layout(VITRAIL_RASTER_BOUND(16), std430) buffer VitrailStateBlock { VitrailPixelState vitrailStates[]; };
 
 layout(push_constant) uniform VitrailSliceBlock {
@@ -45,7 +45,8 @@ void main() {
 #define VITRAIL_LOAD_STATE(i) \
   if (i < VITRAIL_RASTER_SAMPLES) { \
     VitrailPixelState state = vitrailStates[number * VITRAIL_RASTER_SAMPLES + i]; \
-    light.fronts[i] = VitrailPair(state.color, state.transmittance); \
+    light.color = state.color; \
+    light.through[i] = state.transmittance; \
     at = state.at; \
   }
   if (vitrailSlice > 0u) {
@@ -79,7 +80,7 @@ void main() {
 #define VITRAIL_STORE_STATE(i) \
     if (i < VITRAIL_RASTER_SAMPLES) \
       vitrailStates[number * VITRAIL_RASTER_SAMPLES + i] = \
-          VitrailPixelState(light.fronts[i].color, at, light.fronts[i].transmittance);
+          VitrailPixelState(light.color, at, light.through[i]);
     VITRAIL_EACH_SAMPLE(VITRAIL_STORE_STATE)
   }
 }

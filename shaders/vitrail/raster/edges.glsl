@@ -67,9 +67,14 @@ ivec3 vitrailEdgesAt(VitrailEdges e, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 place) 
                vitrailSumOfProducts(ivec2(e.right.z, e.down.z), place - p0, e.bias.z));
 }
 
-// The same of triangles whose corners are less than VITRAIL_MOST_LITTLE apart, and at places among them: products fit
-// into 32 bits.
+// The same of triangles whose corners are less than VITRAIL_MOST_LITTLE apart, and at places among them or a tile away:
+// products fit into 32 bits.
 const int VITRAIL_MOST_LITTLE = 8192;
+
+bool vitrailIsLittle(ivec2 p0, ivec2 p1, ivec2 p2) {
+  ivec2 extent = max(p0, max(p1, p2)) - min(p0, min(p1, p2));
+  return max(extent.x, extent.y) < VITRAIL_MOST_LITTLE;
+}
 
 int vitrailLittleArea(ivec2 p0, ivec2 p1, ivec2 p2) {
   ivec2 a = p1 - p0;
@@ -77,10 +82,11 @@ int vitrailLittleArea(ivec2 p0, ivec2 p1, ivec2 p2) {
   return a.x * b.y - a.y * b.x;
 }
 
+// In square subpixels.
 ivec3 vitrailLittleEdgesAt(VitrailEdges e, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 place) {
   ivec3 x = ivec3(place.x - p1.x, place.x - p2.x, place.x - p0.x);
   ivec3 y = ivec3(place.y - p1.y, place.y - p2.y, place.y - p0.y);
-  return (e.right * x + e.down * y + e.bias) >> 8;
+  return e.right * x + e.down * y + e.bias;
 }
 
 // The pixels of a tile that are covered, rows top to bottom, 8 bits each; `first` are the edges at the middle of its
@@ -111,11 +117,13 @@ uvec2 vitrailTileCoverage(VitrailEdges e, ivec3 first) {
   return covered;
 }
 
-// The same of a triangle that covers nothing beyond `size` pixels from the first one on: only these are looked at, and
-// at most three to their right.
-uvec2 vitrailPartCoverage(VitrailEdges e, ivec3 first, ivec2 size) {
+// The same of a little triangle that covers nothing beyond `size` pixels from the first one on: only these are looked
+// at, and at most three to their right.
+uvec2 vitrailLittleCoverage(VitrailEdges e, ivec3 first, ivec2 size) {
   bool isWide = size.x > 4;
-  ivec3 row = first + e.right * (isWide ? 7 : 3);
+  ivec3 right = e.right * VITRAIL_SUBPIXELS;
+  ivec3 down = e.down * VITRAIL_SUBPIXELS;
+  ivec3 row = first + right * (isWide ? 7 : 3);
   uvec2 covered = uvec2(0u);
   for (int y = 0; y < size.y; ++y) {
     ivec3 at = row;
@@ -123,12 +131,12 @@ uvec2 vitrailPartCoverage(VitrailEdges e, ivec3 first, ivec2 size) {
     if (isWide) {
       for (int x = 0; x < 4; ++x) {
         outside = outside << 1 | uint(at.x | at.y | at.z) >> 31;
-        at -= e.right;
+        at -= right;
       }
     }
     for (int x = 0; x < 4; ++x) {
       outside = outside << 1 | uint(at.x | at.y | at.z) >> 31;
-      at -= e.right;
+      at -= right;
     }
     uint bits = (outside ^ 0xffu) & (isWide ? 0xffu : 0xfu);
     if (y < 4) {
@@ -136,7 +144,7 @@ uvec2 vitrailPartCoverage(VitrailEdges e, ivec3 first, ivec2 size) {
     } else {
       covered.y |= bits << (8 * y - 32);
     }
-    row += e.down;
+    row += down;
   }
   return covered;
 }

@@ -37,8 +37,8 @@ layout(VITRAIL_RASTER_BOUND(5), std430) buffer VitrailPairBlock { uvec2 vitrailP
 layout(VITRAIL_RASTER_BOUND(6), std430) buffer VitrailLargeBlock { uvec2 vitrailLarge[]; }; // primitive and item
 // Tiles by class: each has room for all.
 layout(VITRAIL_RASTER_BOUND(7), std430) buffer VitrailTileListBlock { uint vitrailTileList[]; };
-// Of each record and sample the pixels whose sample the triangle covers, where there are several samples.
-layout(VITRAIL_RASTER_BOUND(19), std430) buffer VitrailSampleBlock { uvec2 vitrailSampleMasks[]; };
+// Of each record, where there are several samples, the pixels whose samples the triangle covers: samples.glsl.
+layout(VITRAIL_RASTER_BOUND(19), std430) buffer VitrailSampleBlock { uvec4 vitrailSampleMasks[]; };
 
 // The draws: places, and of each work group and each item the draw.
 layout(VITRAIL_RASTER_BOUND(21), std430) buffer VitrailDrawPlaceBlock { VitrailRasterPlace vitrailDrawPlaces[]; };

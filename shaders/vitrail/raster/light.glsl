@@ -27,18 +27,21 @@ vec4 vitrailColorBehind(ivec2 pixel, uint sample_) { return imageLoad(vitrailCol
 #endif
 
 #ifdef VITRAIL_MULTISAMPLED
-#define VITRAIL_EACH_SAMPLE(what) what(0) what(1) what(2) what(3) what(4) what(5) what(6) what(7)
+#define VITRAIL_EACH_SAMPLE(what) VITRAIL_EACH_OF_8_SAMPLES(what)
 #else
 #define VITRAIL_EACH_SAMPLE(what) what(0)
 #endif
 
-// What there is at each sample of a pixel: of fragments so far, and of the opaque surface.
+// What fragments have added to a pixel so far, and what of the light behind still comes through at each sample. The
+// picture is the mean of the samples, and a surface is shaded once for all that it covers, so what it adds to the mean
+// is its colour times what comes through where it shows: the colours of single samples are never needed.
 struct VitrailPixelLight {
+  vec3 color;
 #ifdef VITRAIL_MULTISAMPLED
-  VitrailPair fronts[VITRAIL_RASTER_MOST_SAMPLES];
-  float depths[VITRAIL_RASTER_MOST_SAMPLES];
+  vec4 through[VITRAIL_RASTER_MOST_SAMPLES];
+  float nearest; // opaque depth
 #else
-  VitrailPair fronts[1];
+  vec4 through[1];
 #endif
   float most; // the most light that anything behind the fragments may send
 };
@@ -71,16 +74,17 @@ VitrailFragments vitrailFragmentsOf(VitrailSurface surface) {
 
 VitrailPixelLight vitrailLightBehind(ivec2 pixel) {
   VitrailPixelLight light;
+  light.color = vec3(0.0);
   light.most = vitrailRaster.lightMost;
 #ifdef VITRAIL_MULTISAMPLED
-#define VITRAIL_SET_DEPTH(i) light.depths[i] = i < VITRAIL_RASTER_SAMPLES ? vitrailOpaqueDepth(pixel, i) : 0.0;
-  VITRAIL_EACH_SAMPLE(VITRAIL_SET_DEPTH)
+  light.nearest = vitrailOpaqueDepth(pixel, 0u);
+  for (uint i = 1u; i < VITRAIL_RASTER_SAMPLES; ++i) light.nearest = max(light.nearest, vitrailOpaqueDepth(pixel, i));
 #endif
 #define VITRAIL_SET_SAMPLE(i) \
-  light.fronts[i] = VitrailPair(vec3(0.0), vec4(1.0)); \
-  if (i < VITRAIL_RASTER_SAMPLES) { \
+  light.through[i] = vec4(1.0); \
+  if (i < VITRAIL_RASTER_SAMPLES && light.most >= 0.0) { \
     vec4 behind = vitrailColorBehind(pixel, i); \
-    light.most = light.most < 0.0 ? light.most : max(light.most, max(behind.r, max(behind.g, behind.b))); \
+    light.most = max(light.most, max(behind.r, max(behind.g, behind.b))); \
   }
   VITRAIL_EACH_SAMPLE(VITRAIL_SET_SAMPLE)
   return light;
@@ -89,62 +93,52 @@ VitrailPixelLight vitrailLightBehind(ivec2 pixel) {
 // The samples at which a record's fragment shows, a bit each. `thread`: the pixel in its tile.
 uint vitrailVisibleSamples(VitrailPixelLight light, uint record, ivec2 pixel, uint thread) {
 #ifdef VITRAIL_MULTISAMPLED
+  uint visible = vitrailCoveredSamples(record, thread);
   vec4 plane = uintBitsToFloat(vitrailRecords[2u * record + 1u]);
   float depth = fma(plane.y, float(thread & 7u), fma(plane.z, float(thread >> 3), plane.x));
   depth += vitrailDepthSlack(plane, pixel);
-  uint visible = 0u;
-#define VITRAIL_SEE_SAMPLE(i) \
-  if (i < VITRAIL_RASTER_SAMPLES) { \
-    uvec2 mask = vitrailSampleMasks[record * VITRAIL_RASTER_SAMPLES + i]; \
-    bool covers = ((thread < 32u ? mask.x : mask.y) >> (thread & 31u) & 1u) != 0u; \
-    float there = depth + dot(plane.yz, vec2(vitrailSamplePlace(i) - 8)) / 16.0; \
-    if (covers && there >= light.depths[i]) visible |= 1u << i; \
+  if (depth - 0.5 * (abs(plane.y) + abs(plane.z)) >= light.nearest) return visible; // at no sample is it behind another
+  for (uint i = 0u; i < VITRAIL_RASTER_SAMPLES; ++i) {
+    float there = depth + dot(plane.yz, vec2(vitrailSamplePlace(i) - 8)) / 16.0;
+    if (there < vitrailOpaqueDepth(pixel, i)) visible &= ~(1u << i);
   }
-  VITRAIL_EACH_SAMPLE(VITRAIL_SEE_SAMPLE)
   return visible;
 #else
   return 1u;
 #endif
 }
 
-// What of the light behind comes through. Where all surfaces let the same of all colours through, one number is kept;
-// not of several samples, where that came out slower.
-#ifdef VITRAIL_MULTISAMPLED
-#define VITRAIL_THROUGH(front) (front).transmittance
-#else
+// What of the light behind comes through. Where all surfaces let the same of all colours through, one number is kept.
 const bool VITRAIL_THROUGH_VARIES = (VITRAIL_RASTER_BLENDS & (1u << VITRAIL_ADDITIVE | 1u << VITRAIL_MULTIPLY)) != 0u;
-#define VITRAIL_THROUGH(front) (VITRAIL_THROUGH_VARIES ? (front).transmittance : (front).transmittance.aaaa)
-#endif
+#define VITRAIL_THROUGH(light, i) (VITRAIL_THROUGH_VARIES ? (light).through[i] : (light).through[i].aaaa)
+#define VITRAIL_SHARE (1.0 / float(VITRAIL_RASTER_SAMPLES)) // of a sample in its pixel
 
 void vitrailPutFragment(inout VitrailPixelLight light, vec4 color, uint blend, uint visible) {
   VitrailPair pair = vitrailPairOf(color, blend);
+  vec3 through = vec3(0.0);
 #define VITRAIL_PUT_SAMPLE(i) \
   if ((visible & (1u << i)) != 0u) { \
-    light.fronts[i].color += VITRAIL_THROUGH(light.fronts[i]).rgb * pair.color; \
-    light.fronts[i].transmittance *= pair.transmittance; \
+    through += VITRAIL_THROUGH(light, i).rgb; \
+    light.through[i] *= pair.transmittance; \
   }
   VITRAIL_EACH_SAMPLE(VITRAIL_PUT_SAMPLE)
+  light.color += VITRAIL_SHARE * through * pair.color;
 }
 
 // Whether what is farther away than some fragments may be left out: whether that changes the picture by less than
 // VITRAIL_RASTER_STOP of 1/255. What is left out is light of at most `most` together, or hides so much of what is
 // behind. On the sRGB curve it counts most in the dark. Surfaces that add light without hiding as much have no such
 // bound, nor has light that nobody knows (`most` is negative).
-bool vitrailHasEnoughAt(VitrailPair front, float most) {
-  vec4 all = VITRAIL_THROUGH(front);
-  float through = max(max(all.r, all.g), max(all.b, all.a));
-  if (VITRAIL_RASTER_BLENDS != 1u << VITRAIL_OVER || most < 0.0) return through <= 0.0;
-  float darkest = min(front.color.r, min(front.color.g, front.color.b));
-  float steepness = darkest > 0.0031308 ? 0.43958 * pow(darkest, -0.58333) : 12.92;
-  return through * most * steepness * 255.0 < VITRAIL_RASTER_STOP;
-}
-
 bool vitrailHasEnough(VitrailPixelLight light) {
-  bool enough = true;
-#define VITRAIL_ASK_SAMPLE(i) \
-  if (i < VITRAIL_RASTER_SAMPLES) enough = enough && vitrailHasEnoughAt(light.fronts[i], light.most);
-  VITRAIL_EACH_SAMPLE(VITRAIL_ASK_SAMPLE)
-  return enough;
+  vec4 all = vec4(0.0);
+#define VITRAIL_ADD_THROUGH(i) \
+  if (i < VITRAIL_RASTER_SAMPLES) all += VITRAIL_THROUGH(light, i);
+  VITRAIL_EACH_SAMPLE(VITRAIL_ADD_THROUGH)
+  float through = VITRAIL_SHARE * max(max(all.r, all.g), max(all.b, all.a));
+  if (VITRAIL_RASTER_BLENDS != 1u << VITRAIL_OVER || light.most < 0.0) return through <= 0.0;
+  float darkest = min(light.color.r, min(light.color.g, light.color.b));
+  float steepness = darkest > 0.0031308 ? 0.43958 * pow(darkest, -0.58333) : 12.92;
+  return through * light.most * steepness * 255.0 < VITRAIL_RASTER_STOP;
 }
 
 // The order at one depth: by what fragments are, as in fragment lists.
@@ -160,7 +154,8 @@ bool vitrailLessKey(uvec4 a, uvec4 b) {
   return a.z != b.z ? a.z < b.z : a.w < b.w;
 }
 
-// The i-th surface of those that have one depth, which the including shader has at hand: its record, and it, shaded.
+// The i-th surface of those that have one depth, which the including shader has at hand: its record, and it, to be
+// shaded.
 uint vitrailAlikeRecord(uint i);
 VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel);
 
@@ -210,11 +205,10 @@ void vitrailBlendOver(ivec2 pixel, VitrailPixelLight light) {
   vec4 sum = vec4(0.0);
 #define VITRAIL_ADD_SAMPLE(i) \
   if (i < VITRAIL_RASTER_SAMPLES) { \
-    VitrailPair front = light.fronts[i]; \
-    sum += vec4(front.color, 1.0 - front.transmittance.a) + VITRAIL_THROUGH(front) * vitrailColorBehind(pixel, i); \
+    sum += vec4(vec3(0.0), 1.0 - light.through[i].a) + VITRAIL_THROUGH(light, i) * vitrailColorBehind(pixel, i); \
   }
   VITRAIL_EACH_SAMPLE(VITRAIL_ADD_SAMPLE)
-  imageStore(vitrailColorImage, pixel, sum / float(VITRAIL_RASTER_SAMPLES));
+  imageStore(vitrailColorImage, pixel, vec4(light.color, 0.0) + VITRAIL_SHARE * sum);
 }
 
 #endif

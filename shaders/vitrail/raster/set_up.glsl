@@ -188,63 +188,113 @@ void vitrailMakeRecord(uint place, ivec2 tile, uint number, uvec2 covered, Vitra
   vitrailRecordPlaces[3u * place] = at;
 }
 
-// The same of a candidate, in which triangle `thread` may touch the tile of that number.
-void vitrailCoverTile(uint thread, uint number, uint place) {
-  ivec4 corners = vitrailGroupCorners[thread];
-  ivec4 rest = vitrailGroupTiles[thread];
-  uvec4 source = vitrailGroupSources[thread];
-  vec4 plane = vitrailGroupPlanes[thread];
-  ivec2 tile = rest.zw + ivec2(number % source.z, number / source.z);
-  ivec2 pixel = tile * VITRAIL_TILE_SIDE;
-  if (place >= vitrailRaster.recordCapacity) return;
-  VitrailEdges edges = vitrailEdges(corners.xy, corners.zw, rest.xy);
-  ivec2 end = ivec2(vitrailRaster.width, vitrailRaster.bottom);
-  bool isCut = any(greaterThan(pixel + VITRAIL_TILE_SIDE, end));
-  uvec2 window = isCut ? vitrailTileWindow(ivec2(0), end - pixel) : uvec2(0xffffffffu);
-  uvec2 covered = uvec2(0u);
-  for (uint i = 0u; i < VITRAIL_RASTER_SAMPLES; ++i) {
-    ivec2 at = pixel * VITRAIL_SUBPIXELS + vitrailSamplePlace(i) * (VITRAIL_SUBPIXELS / 16);
-    uvec2 samples = window & vitrailTileCoverage(edges, vitrailEdgesAt(edges, corners.xy, corners.zw, rest.xy, at));
-    if (VITRAIL_RASTER_SAMPLES > 1u) vitrailSampleMasks[place * VITRAIL_RASTER_SAMPLES + i] = samples;
-    covered |= samples;
-  }
-  uint number_ = 0u;
-  if ((covered.x | covered.y) != 0u) number_ = atomicAdd(vitrailTileRecords[vitrailTileNumber(tile)].x, 1u);
-  vitrailMakeRecord(place, tile, number_, covered,
-             VitrailSource(source.x, source.y, source.w, VitrailPlane(vec2(corners.xy), plane.xyz), plane.w));
-}
-
-// A triangle that fits into 8 x 8 pixels, and so into four vitrailRaster.
-struct VitrailSmall {
-  uvec2 covered[4]; // of those: left and right, upper and lower
-  ivec2 tile;       // the first
+// A candidate: a tile that a shared triangle may touch.
+struct VitrailCandidate {
+  ivec2 tile;
+  uint place; // of its record
   VitrailSource source;
-  uint count;       // of tiles in which it covers something; 0: there is none
+  VitrailEdges edges;
+  ivec2 p0;
+  ivec2 p1;
+  ivec2 p2;
+  bool isLittle;
+  ivec3 corner; // of a little one, the edges at the tile's corner
+  uvec2 window; // the tile's pixels that lie in the band
 };
 
-uvec2 vitrailShiftedUp(uvec2 mask, uint bits) { // to the left, by less than 64
-  if (bits == 0u) return mask;
-  if (bits >= 32u) return uvec2(0u, mask.x << (bits - 32u));
-  return uvec2(mask.x << bits, mask.y << bits | mask.x >> (32u - bits));
-}
-uvec2 vitrailShiftedDown(uvec2 mask, uint bits) {
-  if (bits == 0u) return mask;
-  if (bits >= 32u) return uvec2(mask.y >> (bits - 32u), 0u);
-  return uvec2(mask.x >> bits | mask.y << (32u - bits), mask.y >> bits);
+// The i-th of the group.
+VitrailCandidate vitrailCandidateOf(uint i, uint firstPlace) {
+  uint owner = 0u; // the first whose end is beyond i
+  for (uint step = VITRAIL_RASTER_GROUP / 2u; step > 0u; step /= 2u) {
+    if (vitrailGroupEnds[owner + step - 1u] <= i) owner += step;
+  }
+  uint number = i - (owner > 0u ? vitrailGroupEnds[owner - 1u] : 0u);
+  ivec4 corners = vitrailGroupCorners[owner];
+  ivec4 rest = vitrailGroupTiles[owner];
+  uvec4 source = vitrailGroupSources[owner];
+  vec4 plane = vitrailGroupPlanes[owner];
+  VitrailCandidate c;
+  c.tile = rest.zw + ivec2(number % source.z, number / source.z);
+  c.place = firstPlace + i;
+  c.source = VitrailSource(source.x, source.y, source.w, VitrailPlane(vec2(corners.xy), plane.xyz), plane.w);
+  c.p0 = corners.xy;
+  c.p1 = corners.zw;
+  c.p2 = rest.xy;
+  c.edges = vitrailEdges(c.p0, c.p1, c.p2);
+  c.isLittle = vitrailIsLittle(c.p0, c.p1, c.p2);
+  ivec2 pixel = c.tile * VITRAIL_TILE_SIDE;
+  c.corner = vitrailLittleEdgesAt(c.edges, c.p0, c.p1, c.p2, pixel * VITRAIL_SUBPIXELS);
+  ivec2 end = ivec2(vitrailRaster.width, vitrailRaster.bottom);
+  bool isCut = any(greaterThan(pixel + VITRAIL_TILE_SIDE, end));
+  c.window = isCut ? vitrailTileWindow(ivec2(0), end - pixel) : uvec2(0xffffffffu);
+  return c;
 }
 
-// Cuts the pixels that are covered of 8 x 8, of which `first` is the first, at the borders of vitrailRaster.
-void vitrailCutSmall(inout VitrailSmall small, uvec2 mask, ivec2 first) {
-  uvec2 in_ = uvec2(first & (VITRAIL_TILE_SIDE - 1));
+// The pixels of which it covers that sample.
+uvec2 vitrailCoverCandidate(VitrailCandidate c, uint sample_) {
+  ivec2 way = vitrailSamplePlace(sample_) * (VITRAIL_SUBPIXELS / 16);
+  ivec3 at = (c.corner + c.edges.right * way.x + c.edges.down * way.y) >> 8; // from sample to sample a step
+  if (!c.isLittle) {
+    ivec2 place = c.tile * (VITRAIL_TILE_SIDE * VITRAIL_SUBPIXELS) + way;
+    at = vitrailEdgesAt(c.edges, c.p0, c.p1, c.p2, place);
+  }
+  return c.window & vitrailTileCoverage(c.edges, at);
+}
+
+// All candidates of the group, a thread each.
+void vitrailCoverCandidates(uint count, uint firstPlace) {
+  for (uint i = gl_LocalInvocationIndex; i < count; i += VITRAIL_RASTER_GROUP) {
+    VitrailCandidate c = vitrailCandidateOf(i, firstPlace);
+    if (c.place >= vitrailRaster.recordCapacity) continue;
+    uvec2 covered = uvec2(0u);
+    uvec2 samples[VITRAIL_RASTER_MOST_SAMPLES];
+#define VITRAIL_COVER_SAMPLE(i) \
+  if (i < VITRAIL_RASTER_SAMPLES) { \
+    samples[i] = vitrailCoverCandidate(c, i); \
+    covered |= samples[i]; \
+  }
+    VITRAIL_EACH_OF_8_SAMPLES(VITRAIL_COVER_SAMPLE)
+    if (VITRAIL_RASTER_SAMPLES > 1u && (covered.x | covered.y) != 0u) vitrailKeepSamples(c.place, samples);
+    uint number = 0u;
+    if ((covered.x | covered.y) != 0u) number = atomicAdd(vitrailTileRecords[vitrailTileNumber(c.tile)].x, 1u);
+    vitrailMakeRecord(c.place, c.tile, number, covered, c.source);
+  }
+}
+
+// A triangle that fits into 8 x 8 pixels, and so into four tiles.
+struct VitrailSmall {
+  uvec2 covered; // of these pixels
+  uvec2 samples[VITRAIL_RASTER_MOST_SAMPLES]; // the same of each of several samples
+  ivec2 first;   // pixel
+  VitrailSource source;
+  uint count;    // of tiles in which it covers something; 0: there is none
+};
+
+// To higher bits, or lower ones where `bits` is negative.
+uvec2 vitrailShifted(uvec2 mask, int bits) {
+  if (bits >= 32) return uvec2(0u, mask.x << (bits - 32));
+  if (bits >= 0) return uvec2(mask.x << bits, mask.y << bits | mask.x >> 1 >> (31 - bits));
+  if (bits > -32) return uvec2(mask.x >> -bits | mask.y << 1 << (31 + bits), mask.y >> -bits);
+  return uvec2(bits > -64 ? mask.y >> (-bits - 32) : 0u, 0u);
+}
+
+// Which pixels of a tile are covered of 8 x 8, of which `first` is the first: of the tile that holds this one, the one
+// to the right (bit 0 of `part`), below (bit 1) or both.
+uvec2 vitrailCutAtTiles(uvec2 mask, ivec2 first, uint part) {
+  ivec2 in_ = first & (VITRAIL_TILE_SIDE - 1);
   uint columns = (0xffu >> in_.x) * 0x01010101u; // that are in the left tile
-  uvec2 left = (mask & columns) << in_.x;
-  uvec2 right = in_.x > 0u ? (mask & ~columns) >> (8u - in_.x) : uvec2(0u);
-  small.tile = first >> 3;
-  small.covered[0] = vitrailShiftedUp(left, 8u * in_.y);
-  small.covered[1] = vitrailShiftedUp(right, 8u * in_.y);
-  small.covered[2] = in_.y > 0u ? vitrailShiftedDown(left, 64u - 8u * in_.y) : uvec2(0u);
-  small.covered[3] = in_.y > 0u ? vitrailShiftedDown(right, 64u - 8u * in_.y) : uvec2(0u);
-  for (int i = 0; i < 4; ++i) small.count += (small.covered[i].x | small.covered[i].y) != 0u ? 1u : 0u;
+  mask &= (part & 1u) != 0u ? ~columns : columns;
+  ivec2 tile = ivec2(part & 1u, part >> 1) * VITRAIL_TILE_SIDE;
+  return vitrailShifted(mask, 8 * (in_.y - tile.y) + in_.x - tile.x); // what is in other rows falls off at either end
+}
+
+uint vitrailTilesOfSmall(uvec2 mask, ivec2 first) {
+  uint count = 0u;
+  for (uint i = 0u; i < 4u; ++i) {
+    uvec2 covered = vitrailCutAtTiles(mask, first, i);
+    count += (covered.x | covered.y) != 0u ? 1u : 0u;
+  }
+  return count;
 }
 
 // All threads together: this thread's small triangle, and the candidates of the triangles that were shared, of which
@@ -279,26 +329,27 @@ void vitrailCoverAll(VitrailSmall small, uint mine) {
     place += vitrailGroupFirst;
     // Else the frame is drawn again. A sum of places may come round.
     bool fits = place < vitrailRaster.recordCapacity && place + small.count <= vitrailRaster.recordCapacity;
+    uvec2 covered[4];
     uint numbers[4]; // asked for together: nobody waits for one after the other
-    for (int i = 0; i < 4; ++i) {
-      bool covers = (small.covered[i].x | small.covered[i].y) != 0u;
-      uint at = vitrailTileNumber(small.tile + ivec2(i & 1, i >> 1));
-      if (covers && fits) numbers[i] = atomicAdd(vitrailTileRecords[at].x, 1u);
+    for (uint i = 0u; i < 4u; ++i) {
+      covered[i] = vitrailCutAtTiles(small.covered, small.first, i);
+      uint at = vitrailTileNumber((small.first >> 3) + ivec2(i & 1u, i >> 1));
+      if ((covered[i].x | covered[i].y) != 0u && fits) numbers[i] = atomicAdd(vitrailTileRecords[at].x, 1u);
     }
-    for (int i = 0; i < 4; ++i) {
-      if ((small.covered[i].x | small.covered[i].y) == 0u || !fits) continue;
-      vitrailMakeRecord(place, small.tile + ivec2(i & 1, i >> 1), numbers[i], small.covered[i], small.source);
+    for (uint i = 0u; i < 4u; ++i) {
+      if ((covered[i].x | covered[i].y) == 0u || !fits) continue;
+      vitrailMakeRecord(place, (small.first >> 3) + ivec2(i & 1u, i >> 1), numbers[i], covered[i], small.source);
+      if (VITRAIL_RASTER_SAMPLES > 1u) {
+        uvec2 samples[VITRAIL_RASTER_MOST_SAMPLES];
+#define VITRAIL_CUT_SAMPLE(k) \
+  if (k < VITRAIL_RASTER_SAMPLES) samples[k] = vitrailCutAtTiles(small.samples[k], small.first, i);
+        VITRAIL_EACH_OF_8_SAMPLES(VITRAIL_CUT_SAMPLE)
+        vitrailKeepSamples(place, samples);
+      }
       ++place;
     }
   }
-  for (uint i = thread; i < candidates_; i += VITRAIL_RASTER_GROUP) {
-    uint owner = 0u; // the first whose end is beyond i
-    for (uint step = VITRAIL_RASTER_GROUP / 2u; step > 0u; step /= 2u) {
-      if (vitrailGroupEnds[owner + step - 1u] <= i) owner += step;
-    }
-    uint first = owner > 0u ? vitrailGroupEnds[owner - 1u] : 0u;
-    vitrailCoverTile(owner, i - first, vitrailGroupFirst + smalls + i);
-  }
+  vitrailCoverCandidates(candidates_, vitrailGroupFirst + smalls);
 }
 
 VitrailSmall vitrailNoSmall() {
@@ -346,22 +397,31 @@ uint vitrailSetUp(uint draw, uvec2 number, inout VitrailSmall small) {
     return 0u;
   }
   if (count == 0u) return 0u;
-  ivec2 extent = max(t.p0, max(t.p1, t.p2)) - min(t.p0, min(t.p1, t.p2));
-  bool isSmall = all(lessThan(last - first, ivec2(VITRAIL_TILE_SIDE))) && max(extent.x, extent.y) < VITRAIL_MOST_LITTLE;
-  if (VITRAIL_RASTER_SAMPLES == 1u && isSmall) {
+  bool isSmall = all(lessThan(last - first, ivec2(VITRAIL_TILE_SIDE))) && vitrailIsLittle(t.p0, t.p1, t.p2);
+  if (isSmall) {
     int area = vitrailLittleArea(t.p0, t.p1, t.p2);
     bool front;
     if (area == 0 || !vitrailSideOf(draw, area > 0, front)) return 0u;
     ivec2 p1 = area > 0 ? t.p1 : t.p2;
     ivec2 p2 = area > 0 ? t.p2 : t.p1;
     VitrailEdges edges = vitrailEdges(t.p0, p1, p2);
-    ivec2 middle = first * VITRAIL_SUBPIXELS + VITRAIL_SUBPIXELS / 2;
-    uvec2 mask = vitrailPartCoverage(edges, vitrailLittleEdgesAt(edges, t.p0, p1, p2, middle), last - first + 1);
     bool isCut = any(greaterThan(first + VITRAIL_TILE_SIDE, ivec2(vitrailRaster.width, vitrailRaster.bottom)));
-    if (isCut) mask &= vitrailTileWindow(ivec2(0), last - first + 1);
-    if ((mask.x | mask.y) == 0u) return 0u;
+    uvec2 window = isCut ? vitrailTileWindow(ivec2(0), last - first + 1) : uvec2(0xffffffffu);
+    ivec3 corner = vitrailLittleEdgesAt(edges, t.p0, p1, p2, first * VITRAIL_SUBPIXELS);
+    small.covered = uvec2(0u);
+#define VITRAIL_COVER_SMALL(i) \
+  if (i < VITRAIL_RASTER_SAMPLES) { \
+    ivec2 place = vitrailSamplePlace(i) * (VITRAIL_SUBPIXELS / 16); \
+    ivec3 at = corner + edges.right * place.x + edges.down * place.y; \
+    uvec2 mask = window & vitrailLittleCoverage(edges, at, last - first + 1); \
+    if (VITRAIL_RASTER_SAMPLES > 1u) small.samples[i] = mask; \
+    small.covered |= mask; \
+  }
+    VITRAIL_EACH_OF_8_SAMPLES(VITRAIL_COVER_SMALL)
+    if ((small.covered.x | small.covered.y) == 0u) return 0u;
+    small.first = first;
+    small.count = vitrailTilesOfSmall(small.covered, first);
     small.source = vitrailSourceOf(t, draw, front, float(area));
-    vitrailCutSmall(small, mask, first);
     return 0u;
   }
   VitrailSource source;
