@@ -1,14 +1,17 @@
 // `vitrail info`: what is in model files; or the devices of this machine and what each can do for Vitrail.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "../gpu/device.h"
+#include "../methods/methods.h"
 #include "../opengl/gl.h"
 #include "../render/cpu_still.h"
 #include "../render/device.h"
@@ -16,6 +19,7 @@
 #include "../scene/message.h"
 #include "commands.h"
 #include "errors.h"
+#include "method_choice.h"
 #include "progress.h"
 #include "scene_options.h"
 
@@ -61,6 +65,21 @@ std::string sizeText(std::uint64_t bytes) {
 
 void line(const char* label, const std::string& text) { fmt::print("     {:<15}{}\n", label, text); }
 
+// What draws in windows and turns where no method is named; empty: nothing was measured.
+std::string methodText(const DeviceSummary& device) {
+  const std::optional<std::filesystem::path> memory = methodMemory();
+  if (!memory) return {};
+  const std::optional<MethodCosts> costs = rememberedCosts(*memory, device.identity);
+  if (!costs) return {};
+  if (costs->tiles.empty()) return fmt::format("{}: the device does not offer {}", kListMethod, kTilesMethod);
+  std::vector<std::string> times;
+  for (std::size_t i = 0; i < costs->lists.size(); ++i) {
+    times.push_back(fmt::format("{:.2f} and {:.2f} ms", costs->tiles[i].nextMs, costs->lists[i].nextMs));
+  }
+  return fmt::format("{} in windows and turns: {} and {} were measured with {} a picture",
+                     fasterMethod(*costs, kPicturesOfAWindow), kTilesMethod, kListMethod, fmt::join(times, ", "));
+}
+
 void printDevice(const DeviceSummary& device) {
   fmt::print("  {:<3}{} ({})\n", device.index, device.name, device.kind);
   line("driver", device.driver);
@@ -83,6 +102,7 @@ void printDevice(const DeviceSummary& device) {
   line("layers", loopsEnd ? "at most about 15,000 in one pixel" : "any number in one pixel");
   line("picture", fmt::format("at most {0}x{0}", device.maxPictureSide));
   line("pass times", device.timestamps ? "yes" : "no, the queue has no timestamps");
+  if (const std::string method = methodText(device); !method.empty()) line("method", method);
 }
 
 void printProcessor() {

@@ -16,6 +16,7 @@
 #include "commands.h"
 #include "device_options.h"
 #include "errors.h"
+#include "method_choice.h"
 #include "output_file.h"
 #include "output_format.h"
 #include "progress.h"
@@ -73,10 +74,21 @@ Device openDevice(const Job& job) {
   return Device({arguments.device, arguments.validate, wish, !openGl, openGl});
 }
 
-// Where neither a method nor a device was asked for, the device has its own exact one.
+// The faster one of a GPU, for the many pictures of a turn. One picture is drawn by lists, which count what they draw,
+// and so are those whose report is asked for.
+std::string methodOfTurn(const Device& device, const Job& job) {
+  const RenderArguments& arguments = job.arguments;
+  const bool asksLists = arguments.peel || !arguments.json.empty() || arguments.method.api != Api::Vulkan;
+  if (!arguments.turntable || asksLists || device.gpu() == nullptr || !drawsAlike(job.scene)) {
+    return device.exactMethod().name;
+  }
+  return methodFor(*device.gpu(), *arguments.turntable, [&] { job.progress.show("measuring the device, this once"); });
+}
+
+// Where neither a method nor anything else of one was asked for, the device has its own exact one.
 std::unique_ptr<Renderer> makeRenderer(const Device& device, Job& job) {
   MethodOptions method = job.arguments.method;
-  if (job.arguments.wish == Wish::Fastest) method.name = device.exactMethod().name;
+  if (job.arguments.wish == Wish::Fastest) method.name = methodOfTurn(device, job);
   return device.makeRenderer(std::move(job.scene), job.arguments.opacity, method);
 }
 

@@ -239,6 +239,7 @@ DeviceSummary summarize(VkPhysicalDevice device, std::uint32_t index) {
                        ? std::string(driver.driverName)
                        : fmt::format("{} {}", driver.driverName, driver.driverInfo);
   if (summary.driver.empty()) summary.driver = "unknown";
+  summary.identity = identityOf(properties.properties);
   summary.apiVersion = apiVersion;
   summary.missing = missingIn(device, apiVersion);
   summary.maxPictureSide = properties.properties.limits.maxImageDimension2D;
@@ -473,6 +474,11 @@ void Gpu::memoryFreed(std::uint64_t bytes) { impl_->memory -= bytes; }
 std::uint64_t Gpu::memoryHeld() const { return impl_->memory; }
 
 std::uint64_t Gpu::peakMemory() const { return impl_->peak; }
+
+std::string identityOf(const VkPhysicalDeviceProperties& properties) {
+  return fmt::format("{}, driver {:x}, {:02x}", static_cast<const char*>(properties.deviceName),
+                     properties.driverVersion, fmt::join(properties.pipelineCacheUUID, ""));
+}
 
 bool isUsableGpu(const DeviceSummary& device) { return device.missing.empty() && device.kind.ends_with("GPU"); }
 

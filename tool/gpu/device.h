@@ -20,8 +20,9 @@ inline constexpr const char* kVulkanApi = "Vulkan 1.3"; // what it draws with
 struct DeviceSummary {
   std::uint32_t index = 0; // what --device takes
   std::string name;
-  std::string kind;   // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
-  std::string driver; // name and version, as the driver words them
+  std::string kind;     // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
+  std::string driver;   // name and version, as the driver words them
+  std::string identity; // identityOf()
   std::uint32_t apiVersion = 0;
   std::string missing;                  // empty: the tool can render on it; else what it lacks, in words
   std::uint32_t maxPictureSide = 0;     // pixels (maxImageDimension2D)
@@ -31,6 +32,10 @@ struct DeviceSummary {
   GpuFeatures features;
   bool timestamps = false; // false: passes are not timed
 };
+
+// What measurements of a device are remembered by: its name and its driver, in words. Not by where it is plugged in;
+// and nothing is known of a device whose driver has changed.
+std::string identityOf(const VkPhysicalDeviceProperties& properties);
 
 // A GPU, not a CPU driver, that the tool can render on.
 bool isUsableGpu(const DeviceSummary& device);

@@ -31,7 +31,7 @@ constexpr std::array kMethods{
                             kTakesPeel,
                  .lists = true,
                  .orderIndependent = true},
-    MethodTraits{.name = "tiles",
+    MethodTraits{.name = kTilesMethod,
                  .help = "a rasteriser in compute shaders, a tile at a time",
                  .make = makeTiles,
                  .options = kTakesSamples | kTakesMemoryBudget,

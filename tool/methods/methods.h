@@ -84,6 +84,8 @@ std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions&
 // The exact methods of choice: on a Vulkan device, and on the processor.
 inline constexpr std::string_view kListMethod = "linked-list";
 inline constexpr std::string_view kCpuMethod = "cpu";
+// Where it is faster than lists, which commands/method_choice.h measures.
+inline constexpr std::string_view kTilesMethod = "tiles";
 
 // Counts the fragments of each pixel and draws no picture; not listed.
 inline constexpr std::string_view kLayerCount = "layer-count";

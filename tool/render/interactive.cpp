@@ -11,7 +11,7 @@
 namespace vitrail::tool {
 
 bool InteractiveRenderer::draws(const MethodOptions& method) {
-  return method.api == Api::Vulkan && (method.name == kListMethod || method.name == "tiles");
+  return method.api == Api::Vulkan && (method.name == kListMethod || method.name == kTilesMethod);
 }
 
 InteractiveRenderer::InteractiveRenderer(Gpu& gpu, const Scene& scene, std::optional<float> opacity,

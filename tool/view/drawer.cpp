@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "../commands/errors.h"
+#include "../commands/method_choice.h"
 #include "../commands/progress.h"
 #include "../commands/scene_options.h"
 #include "../methods/methods.h"
@@ -188,6 +189,7 @@ void Drawer::load(const RenderArguments& arguments) {
   letGo();
   SceneFacts facts{nameOfScene(arguments), loaded.objects, {}, worldBounds(loaded), loaded.origin, loaded.background};
   for (const Material& material : loaded.materials) facts.materials.push_back(material.name);
+  facts.drawsAlike = drawsAlike(loaded);
   facts_ = std::make_shared<const SceneFacts>(std::move(facts));
   scene_ = std::move(loaded);
   allDraws_ = scene_->draws;

@@ -57,6 +57,7 @@ struct SceneFacts {
   Bounds bounds; // of all of it, whatever is hidden
   glm::dvec3 origin{0.0};
   std::optional<Background> background;
+  bool drawsAlike = true; // drawsAlike() (commands/method_choice.h)
 };
 
 // The surfaces under a pixel of the picture of some arguments.

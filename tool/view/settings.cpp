@@ -88,7 +88,9 @@ void choosePeel(RenderArguments& arguments, std::uint32_t count) {
     arguments.method.nodeCapacity = 0;
     arguments.method.msaaResolve = VITRAIL_MSAA_RESOLVE_PER_PIXEL;
   }
-  if (count > 0 && !canPeel(arguments.method)) chooseMethod(arguments, std::string(kCpuMethod));
+  if (count > 0 && !canPeel(arguments.method)) {
+    chooseMethod(arguments, std::string(arguments.method.name == kTilesMethod ? kListMethod : kCpuMethod));
+  }
   arguments.peel.reset();
   if (count > 0) arguments.peel = count;
 }

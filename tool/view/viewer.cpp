@@ -21,8 +21,10 @@
 #include <imgui_impl_glfw.h>
 
 #include "../commands/device_options.h"
+#include "../commands/method_choice.h"
 #include "../commands/output_file.h"
 #include "../commands/output_format.h"
+#include "../commands/progress.h"
 #include "../methods/methods.h"
 #include "../scene/message.h"
 #include "command_line.h"
@@ -104,7 +106,7 @@ class Viewer {
         window_(titleOf(arguments.picture), {arguments.picture.width, arguments.picture.height}),
         widgets_(window_) {
     open(now_);
-    if (now_.wish == Wish::Fastest) now_.method = device_->exactMethod();
+    if (now_.wish == Wish::Fastest) chooseExactMethod();
     if (device_->gpu() == nullptr && device_->gl() == nullptr) now_.device = std::string(kProcessor);
     initial_ = now_;
     showing_ = now_;
@@ -123,6 +125,18 @@ class Viewer {
   }
 
  private:
+  // Where nothing of a method was asked for: the faster one of a GPU.
+  void chooseExactMethod() {
+    const MethodOptions exact = device_->exactMethod();
+    now_.method.name = exact.name;
+    now_.method.api = exact.api;
+    if (device_->gpu() == nullptr || exact.api != Api::Vulkan || now_.peel) return;
+    const Progress progress(true);
+    now_.method.name =
+        methodFor(*device_->gpu(), kPicturesOfAWindow, [&] { progress.show("measuring the device, this once"); });
+    isMethodChosen_ = now_.method.name != exact.name;
+  }
+
   // Opens what draws and what shows.
   void open(const RenderArguments& arguments) {
     device_.emplace(openDevice(arguments, window_));
@@ -274,6 +288,13 @@ class Viewer {
     if (isOther) {
       window_.setTitle(titleOf(showing_));
       initial_ = showing_;
+      // Nobody asked for the method: another draws this scene as it is.
+      if (isMethodChosen_ && !scene_->drawsAlike && now_.method == showing_.method) {
+        isMethodChosen_ = false;
+        chooseMethod(now_, std::string(kListMethod));
+        initial_.method = now_.method;
+        changed_ = true;
+      }
       log_.happened("opened", nameOfScene(showing_));
       times_.clear();
       picked_.reset();
@@ -757,8 +778,9 @@ class Viewer {
   CutHandle cutHandle_;
   std::optional<Drawn> drawn_;
   std::optional<Wanted> asked_;
-  bool isAsked_ = false;    // and not drawn yet
-  bool isReopened_ = false; // the next picture is of what was shown before the device was lost
+  bool isAsked_ = false;        // and not drawn yet
+  bool isMethodChosen_ = false; // nobody named the method that draws, and it is not that of lists
+  bool isReopened_ = false;     // the next picture is of what was shown before the device was lost
   std::uint64_t asks_ = 0;
   bool isResting_ = false;
   std::deque<PassTimes> times_;
