@@ -128,16 +128,16 @@ VITRAIL_API VkResult vitrailVkCreateRaster(VitrailVkContext context, const Vitra
 VITRAIL_API void vitrailVkDestroyRaster(VitrailVkRaster raster);
 
 /* Prepares the raster for recording `frame` (as VitrailVkRasterInfo has it): reads the statistics of the newest frame
- * that has finished, and where that had too little room makes more, up to the budget, beyond which frames are drawn in
- * bands of rows. Memory that frames in flight use is freed when they have finished. The first time that frames need it,
- * it makes the pipelines of deep tiles, which takes as long as the driver's compiler does. Waits for nothing else.
- * Between the bands of a frame it does nothing.
+ * that has finished, and where that had too little room makes more, up to the budget and to what the device has left,
+ * beyond which frames are drawn in bands of rows (of the latter the log has a warning). Memory that frames in flight
+ * use is freed when they have finished. The first time that frames need it, it makes the pipelines of deep tiles, which
+ * takes as long as the driver's compiler does. Waits for nothing else. Between the bands of a frame it does nothing.
  * Errors: VK_ERROR_OUT_OF_DEVICE_MEMORY where a frame has no room even in bands of one row of tiles, or its positions
  * have none (the log says what to do); the raster stays as it was. */
 VITRAIL_API VkResult vitrailVkUpdateRaster(VitrailVkRaster raster, uint64_t frame);
 
-/* Gives the raster another extent from the next frame on. A frame of which bands are still to be recorded has ended
- * with it. Errors: as vitrailVkCreateRaster. */
+/* Gives the raster another extent from the next frame on, in bands where the device has no memory for all of it. A
+ * frame of which bands are still to be recorded has ended with it. Errors: as vitrailVkCreateRaster. */
 VITRAIL_API VkResult vitrailVkResizeRaster(VitrailVkRaster raster, VkExtent2D extent);
 
 /* Bytes of device memory: for fragments and tiles (which the budget bounds), for draws and positions, and what frames

@@ -23,6 +23,12 @@ RasterNeeds RasterNeeds::most(const RasterNeeds& other) const {
   return combined(*this, other, [](std::uint64_t a, std::uint64_t b) { return std::max(a, b); });
 }
 
+RasterNeeds RasterNeeds::part(std::uint32_t parts) const {
+  RasterNeeds part = combined(*this, {}, [parts](std::uint64_t a, std::uint64_t) { return (a + parts - 1) / parts; });
+  part.large = large;
+  return part;
+}
+
 double rasterExcess(const RasterNeeds& needs, const RasterBounds& bounds) {
   const auto reach = static_cast<double>(bounds.reach);
   double most = 0.0;

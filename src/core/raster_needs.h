@@ -20,6 +20,9 @@ struct RasterNeeds {
            fragments <= room.fragments && chunks <= room.chunks;
   }
   [[nodiscard]] RasterNeeds most(const RasterNeeds& other) const;
+  // What a band of so many times fewer rows needs if it is like the others, and at least. Large triangles may reach
+  // into all of them.
+  [[nodiscard]] RasterNeeds part(std::uint32_t parts) const;
 };
 
 // What bounds it.

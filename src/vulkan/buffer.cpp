@@ -22,14 +22,15 @@ double mebibytes(VkDeviceSize bytes) { return static_cast<double>(bytes) / (1024
 
 VkResult Buffer::create(const VitrailVkContext_T& context, VkDeviceSize bytes, VkBufferUsageFlags usage,
                         VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred, const char* prefix,
-                        const char* what) {
+                        const char* what, const Log* log) {
+  const Log& errors = log != nullptr ? *log : context.log;
   size = bytes;
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   info.size = bytes;
   info.usage = usage;
   VkResult result = context.vk.CreateBuffer(context.device, &info, context.allocator, &buffer);
-  if (result != VK_SUCCESS) return context.log.fail(result, "%s: no buffer of %.1f MiB", what, mebibytes(bytes));
+  if (result != VK_SUCCESS) return errors.fail(result, "%s: no buffer of %.1f MiB", what, mebibytes(bytes));
   char text[128];
   std::snprintf(text, sizeof(text), "%s %s", prefix, what);
   context.name(VK_OBJECT_TYPE_BUFFER, buffer, text);
@@ -38,7 +39,7 @@ VkResult Buffer::create(const VitrailVkContext_T& context, VkDeviceSize bytes, V
   context.vk.GetBufferMemoryRequirements(context.device, buffer, &needs);
   std::uint32_t type = findType(context.memory, needs.memoryTypeBits, required | preferred);
   if (type == kNoType) type = findType(context.memory, needs.memoryTypeBits, required);
-  if (type == kNoType) return context.log.fail(VK_ERROR_FEATURE_NOT_PRESENT, "%s: no memory type suits it", what);
+  if (type == kNoType) return errors.fail(VK_ERROR_FEATURE_NOT_PRESENT, "%s: no memory type suits it", what);
 
   VkMemoryAllocateInfo allocate{};
   allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
@@ -50,7 +51,7 @@ VkResult Buffer::create(const VitrailVkContext_T& context, VkDeviceSize bytes, V
   if ((usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0) allocate.pNext = &byAddress;
   result = context.vk.AllocateMemory(context.device, &allocate, context.allocator, &memory);
   if (result != VK_SUCCESS) {
-    return context.log.fail(result, "%s: the device has no %.1f MiB of memory left", what, mebibytes(needs.size));
+    return errors.fail(result, "%s: the device has no %.1f MiB of memory left", what, mebibytes(needs.size));
   }
   allocated = needs.size;
   context.name(VK_OBJECT_TYPE_DEVICE_MEMORY, memory, text);
@@ -58,7 +59,7 @@ VkResult Buffer::create(const VitrailVkContext_T& context, VkDeviceSize bytes, V
   if (result == VK_SUCCESS && (required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0) {
     result = context.vk.MapMemory(context.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped);
   }
-  if (result != VK_SUCCESS) return context.log.fail(result, "%s: its memory could not be bound", what);
+  if (result != VK_SUCCESS) return errors.fail(result, "%s: its memory could not be bound", what);
   return VK_SUCCESS;
 }
 

@@ -35,6 +35,8 @@ static_assert(VITRAIL_VK_RASTER_CULL_BACK == raster::VITRAIL_RASTER_CULL_BACK);
 constexpr std::uint32_t kAllBlends = 15;   // 1 << VitrailBlend each
 constexpr std::uint32_t kMostSide = 16384; // pixels: coordinates within the guard band
 
+constexpr Log kQuiet; // of what is tried
+
 constexpr RasterNeeds kLeast{.records = 1, .large = 1, .deep = 1, .blocks = 1, .fragments = 1, .chunks = 1};
 
 // ---- Checks
@@ -201,6 +203,11 @@ std::unique_ptr<VitrailVkRaster_T> makeRaster(VitrailVkContext context, const Vi
   return made;
 }
 
+void warnOfBands(const VitrailVkRaster_T& raster) {
+  raster.context->log.warn("%s: the device has no memory for all that a frame needs: frames are drawn in %u bands",
+                           raster.debugName.c_str(), raster.bands());
+}
+
 // Room for the tiles of an extent: for all where the budget has it, else for bands. `had`: what there is, or is enough.
 VkResult makeRoom(VitrailVkRaster_T& raster, const RasterNeeds& guess, const RasterNeeds& had) {
   std::uint32_t rows = raster.tilesY();
@@ -215,7 +222,15 @@ VkResult makeRoom(VitrailVkRaster_T& raster, const RasterNeeds& guess, const Ras
     }
     rows = fewerRasterRows(rows, 1.0);
   }
-  return resizeRasterRoom(raster, room, rows);
+  const bool isNew = raster.bandRows == 0;
+  VkResult result = resizeRasterRoom(raster, room, rows, isNew || rows == 1 ? raster.context->log : kQuiet);
+  while (result != VK_SUCCESS && !isNew && rows > 1) { // in what there is, as growWithoutMemory()
+    rows /= 2;
+    if (rows > 1 && rasterExcess(raster.room, raster.bounds(rows)) > 1.0) continue;
+    result = resizeRasterRoom(raster, raster.room, rows, rows == 1 ? raster.context->log : kQuiet, true);
+    if (result == VK_SUCCESS) warnOfBands(raster);
+  }
+  return result;
 }
 
 // Most models' triangles are each in a tile or two; what frames need is known after the first.
@@ -257,7 +272,9 @@ VkResult build(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc) {
   if (result == VK_SUCCESS) result = createRasterBuffers(raster);
   raster.guess = guessOf(desc.hints.triangles);
   if (result == VK_SUCCESS) result = makeRoom(raster, raster.guess, {});
-  if (result == VK_SUCCESS) result = resizeRasterTables(raster, tablesOf(desc.hints, raster.keepsPositions));
+  if (result == VK_SUCCESS) {
+    result = resizeRasterTables(raster, tablesOf(desc.hints, raster.keepsPositions), raster.context->log);
+  }
   if (result == VK_SUCCESS) result = createRasterPipelines(raster, desc);
   if (result == VK_SUCCESS) result = createRasterSets(raster);
   return result;
@@ -338,20 +355,41 @@ VkResult growTables(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals
         "of them more than 2^30: draw fewer at once",
         raster.debugName.c_str());
   }
-  const auto grown = [](std::uint64_t wanted, std::uint64_t had) {
-    return wanted > had ? withRasterSpare(wanted) : had;
+  const auto resize = [&](bool hasSpare, const Log& log) {
+    const auto grown = [&](std::uint64_t wanted, std::uint64_t had) {
+      if (wanted <= had) return had;
+      return hasSpare ? withRasterSpare(wanted) : wanted;
+    };
+    const RasterTables& had = raster.tables;
+    return resizeRasterTables(raster,
+                              {.draws = grown(facts.draws, had.draws),
+                               .groups = grown(totals.start.groups.count, had.groups),
+                               .vertexGroups = grown(totals.start.vertices.count, had.vertexGroups),
+                               .items = grown(totals.start.items, had.items),
+                               .vertices = grown(totals.start.vertexCount, had.vertices)},
+                              log);
   };
-  const RasterTables& had = raster.tables;
-  RasterTables next{.draws = grown(facts.draws, had.draws),
-                    .groups = grown(totals.start.groups.count, had.groups),
-                    .vertexGroups = grown(totals.start.vertices.count, had.vertexGroups),
-                    .items = grown(totals.start.items, had.items),
-                    .vertices = grown(totals.start.vertexCount, had.vertices)};
-  // What is spare is not worth a refusal.
-  if (next.vertices * kRasterPositionBytes > raster.reach()) {
-    next.vertices = std::max<std::uint64_t>(totals.start.vertexCount, had.vertices);
+  if (resize(true, kQuiet) == VK_SUCCESS) return VK_SUCCESS;
+  return resize(false, raster.context->log); // what is spare is not worth a refusal
+}
+
+// Where the device has no memory for that: what is needed and none to spare, or else more bands, in what there is or in
+// less than was wanted. How much those need is a guess, which the next frame corrects.
+VkResult growWithoutMemory(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
+  const std::uint32_t rows = raster.bandRows;
+  for (std::uint32_t parts = 1;; parts *= 2) {
+    const std::uint32_t fewer = std::max(1U, rows / parts);
+    const RasterBounds bounds = raster.bounds(fewer);
+    RasterNeeds room = needs.part(parts).most(raster.room);
+    if (rasterExcess(room, bounds) > 1.0) room = needs.part(parts).most(kLeast); // as planRasterRoom()
+    if (rasterExcess(room, bounds) > 1.0) {
+      if (fewer > 1) continue;
+      room = raster.room;
+    }
+    const VkResult result = resizeRasterRoom(raster, room, fewer, fewer > 1 ? kQuiet : raster.context->log, true);
+    if (result == VK_SUCCESS && fewer < rows) warnOfBands(raster);
+    if (result == VK_SUCCESS || fewer == 1) return result;
   }
-  return resizeRasterTables(raster, next);
 }
 
 VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
@@ -370,7 +408,8 @@ VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
     rows = fewerRasterRows(rows, excess);
     next = raster.room;
   }
-  return resizeRasterRoom(raster, next, rows);
+  if (resizeRasterRoom(raster, next, rows, kQuiet) == VK_SUCCESS) return VK_SUCCESS;
+  return growWithoutMemory(raster, needs);
 }
 
 // Less memory, or fewer bands, where frames have needed little for long.
@@ -384,7 +423,8 @@ VkResult shrink(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
   if (planRasterRoom(most, {}, raster.bounds(rows), next) > 1.0) return VK_SUCCESS;
   if (splits) next = raster.room; // more rows need more
   if (rasterExcess(next, raster.bounds(rows)) > 1.0) return VK_SUCCESS;
-  return resizeRasterRoom(raster, next, rows);
+  resizeRasterRoom(raster, next, rows, kQuiet); // or it stays as it is
+  return VK_SUCCESS;
 }
 
 // Makes what frames like this one need.

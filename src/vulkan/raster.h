@@ -215,9 +215,11 @@ VkResult createRasterPipelines(VitrailVkRaster_T& raster, const VitrailVkRasterD
 VkResult createDeepPipelines(VitrailVkRaster_T& raster);
 void destroyRasterPipelines(VitrailVkRaster_T& raster);
 
-// Makes room. Memory that frames in flight use is retired. Log their errors, on which nothing changes.
-VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, std::uint32_t bandRows);
-VkResult resizeRasterTables(VitrailVkRaster_T& raster, const RasterTables& tables);
+// Makes room. Memory that frames in flight use is retired. Log their errors, on which nothing changes. `keepsTiles`:
+// their memory stays where it is there, even if bands need much less of it.
+VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, std::uint32_t bandRows, const Log& log,
+                          bool keepsTiles = false);
+VkResult resizeRasterTables(VitrailVkRaster_T& raster, const RasterTables& tables, const Log& log);
 VkResult createRasterBuffers(VitrailVkRaster_T& raster);
 void freeRetired(VitrailVkRaster_T& raster, std::uint64_t place);
 

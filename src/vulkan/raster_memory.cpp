@@ -1,6 +1,7 @@
 // The memory of a raster: its buffers, how they follow what frames need, and the sets that name them.
 #include <algorithm>
 #include <initializer_list>
+#include <limits>
 #include <utility>
 
 #include "raster.h"
@@ -72,7 +73,7 @@ VkBufferUsageFlags usageOf(RasterBuffer which) {
 // Buffers that take the place of those that a raster has.
 class Replacement {
  public:
-  explicit Replacement(VitrailVkRaster_T& raster) : raster_(raster) {}
+  Replacement(VitrailVkRaster_T& raster, const Log& log) : raster_(raster), log_(log) {}
   ~Replacement() {
     for (auto& [which, buffer] : made_) buffer.destroy(*raster_.context);
   }
@@ -86,7 +87,7 @@ class Replacement {
     if (result_ != VK_SUCCESS || (has >= bytes && has <= bytes * times)) return;
     Buffer buffer;
     result_ = buffer.create(*raster_.context, bytes, usageOf(which), 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
-                            raster_.debugName.c_str(), kKinds[static_cast<std::size_t>(which)].name);
+                            raster_.debugName.c_str(), kKinds[static_cast<std::size_t>(which)].name, &log_);
     made_.emplace_back(which, buffer); // also one without memory, which is not put in place
   }
 
@@ -110,6 +111,7 @@ class Replacement {
 
  private:
   VitrailVkRaster_T& raster_;
+  const Log& log_;
   VkResult result_ = VK_SUCCESS;
   std::vector<std::pair<RasterBuffer, Buffer>> made_;
 };
@@ -117,21 +119,23 @@ class Replacement {
 } // namespace
 
 VkResult createRasterBuffers(VitrailVkRaster_T& raster) {
-  Replacement made(raster);
+  Replacement made(raster, raster.context->log);
   made.make(RasterBuffer::Frame, sizeof(raster::VitrailRasterFrame));
   made.make(RasterBuffer::Counts, kRasterCountBytes);
   made.make(RasterBuffer::Start, sizeof(raster::VitrailRasterStart));
   return made.commit();
 }
 
-VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, std::uint32_t bandRows) {
+VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, std::uint32_t bandRows, const Log& log,
+                          bool keepsTiles) {
   const std::uint64_t tiles = std::uint64_t{raster.tilesX()} * bandRows;
-  Replacement made(raster);
+  Replacement made(raster, log);
   // Extents come and go: what is small is kept, where the budget has room for it.
   constexpr std::uint32_t kLarger = 4;
   RasterBounds larger = raster.bounds(bandRows);
   larger.tiles *= kLarger;
-  const std::uint64_t times = rasterExcess(room, larger) <= 1.0 ? kLarger : 1;
+  std::uint64_t times = rasterExcess(room, larger) <= 1.0 ? kLarger : 1;
+  if (keepsTiles) times = std::numeric_limits<std::uint32_t>::max();
   made.make(RasterBuffer::TileRecords, tiles * kRasterTileBytes, times);
   made.make(RasterBuffer::TileList, tiles * kRasterTileListBytes, times);
   made.make(RasterBuffer::Records, room.records * kRasterRecordBytes);
@@ -153,26 +157,26 @@ VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, st
   return VK_SUCCESS;
 }
 
-VkResult resizeRasterTables(VitrailVkRaster_T& raster, const RasterTables& tables) {
+VkResult resizeRasterTables(VitrailVkRaster_T& raster, const RasterTables& tables, const Log& log) {
   constexpr std::uint64_t kWord = sizeof(std::uint32_t);
   const std::uint64_t most = std::max({tables.draws * sizeof(raster::VitrailRasterPlace), tables.groups * kWord,
                                        tables.vertexGroups * kWord, tables.items * kWord});
   const std::uint64_t reach = raster.reach();
   if (most > reach) {
-    return raster.context->log.fail(
-        VK_ERROR_OUT_OF_DEVICE_MEMORY,
-        "%s: a frame's draws need a table of %llu bytes, and shaders reach %llu: draw fewer "
-        "triangles or instances at once",
-        raster.debugName.c_str(), static_cast<unsigned long long>(most), static_cast<unsigned long long>(reach));
+    return log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY,
+                    "%s: a frame's draws need a table of %llu bytes, and shaders reach %llu: draw fewer "
+                    "triangles or instances at once",
+                    raster.debugName.c_str(), static_cast<unsigned long long>(most),
+                    static_cast<unsigned long long>(reach));
   }
   if (tables.vertices * kRasterPositionBytes > reach) {
-    return raster.context->log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY,
-                                    "%s: the positions of %llu vertices take more than the %llu bytes that shaders "
-                                    "reach: make the raster without the stage positions",
-                                    raster.debugName.c_str(), static_cast<unsigned long long>(tables.vertices),
-                                    static_cast<unsigned long long>(reach));
+    return log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY,
+                    "%s: the positions of %llu vertices take more than the %llu bytes that shaders "
+                    "reach: make the raster without the stage positions",
+                    raster.debugName.c_str(), static_cast<unsigned long long>(tables.vertices),
+                    static_cast<unsigned long long>(reach));
   }
-  Replacement made(raster);
+  Replacement made(raster, log);
   made.make(RasterBuffer::DrawPlaces, tables.draws * sizeof(raster::VitrailRasterPlace));
   made.make(RasterBuffer::DrawOfGroup, tables.groups * kWord);
   made.make(RasterBuffer::DrawOfVertexGroup, tables.vertexGroups * kWord);

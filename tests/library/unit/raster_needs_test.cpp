@@ -28,6 +28,17 @@ TEST(RasterNeeds, FitWhereAllOfThemDo) {
   }
 }
 
+TEST(RasterNeeds, PartsAreRoundedUp) {
+  const RasterNeeds needs{.records = 10, .large = 10, .deep = 1, .blocks = 9, .fragments = 8, .chunks = 0};
+  const RasterNeeds part = needs.part(4);
+  EXPECT_EQ(part.records, 3U);
+  EXPECT_EQ(part.large, 10U); // in each
+  EXPECT_EQ(part.deep, 1U);
+  EXPECT_EQ(part.blocks, 3U);
+  EXPECT_EQ(part.fragments, 2U);
+  EXPECT_EQ(part.chunks, 0U);
+}
+
 TEST(RasterNeeds, RoomHasSomeToSpareWhereTheBudgetHas) {
   RasterNeeds next;
   EXPECT_LE(planRasterRoom(withRecords(8000), kLeast, kWide, next), 1.0);
