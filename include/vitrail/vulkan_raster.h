@@ -189,7 +189,7 @@ typedef struct VitrailVkRasterInfo {
    * Default 0: nobody knows, and only what is hidden altogether is left out. */
   float mostLight;
   float pointSize;              /* pixels; default 1 */
-  uint32_t clipPlaneCount;      /* at most the VITRAIL_CLIP_PLANES of the host's shader, at most 8 */
+  uint32_t clipPlaneCount;      /* at most the VITRAIL_CLIP_PLANES of the host's shader */
   const float (*clipPlanes)[4]; /* of clip space: what has dot(plane, position) >= 0 is kept */
   /* The images, as VitrailVkViews has them: the colour that is drawn over, or, of several samples, into, in
    * VK_IMAGE_LAYOUT_GENERAL with VK_IMAGE_USAGE_STORAGE_BIT; the opaque depth (depth aspect, of `samples` samples), in
@@ -223,7 +223,10 @@ typedef struct VitrailVkRasterStats {
   uint64_t frame;
   /* 1: the picture is right: all that was to be drawn had room, and no driver cut a pass short. */
   VkBool32 exact;
-  VkBool32 misused; /* 1: a call was wrong and recorded nothing; the log says which. The rest is 0 */
+  /* 1: a call was wrong and recorded nothing, and the rest is 0; or draws were wrong and left out: they have indices
+   * beyond the buffer or, where positions are kept, that are not below vertexCount, or a blend that is none of
+   * blendModes. The log says which; of draws when the statistics are first read, here or by vitrailVkUpdateRaster. */
+  VkBool32 misused;
   /* How far the picture may be from that of all surfaces, in steps of 8-bit colour (1/255 on the sRGB curve), before it
    * is rounded to colorFormat: what is hidden and left out; 0 where nobody knows mostLight. */
   float errorBound;

@@ -28,11 +28,13 @@
 //   VITRAIL_RASTER_FRAGMENTS     1 (the default), or 2: in place of vitrailShade() the host has vitrailShadeTwice(),
 //                                of which the second step counts where the raster has more than one of blendModes
 //
-// Specialization constants 1710 to 1719 are the library's. The stages need SPIR-V 1.3 and subgroup shuffles.
+// Specialization constants from 1710 on are the library's, which reads in the last what the stage was compiled for. The
+// stages need SPIR-V 1.3 and subgroup shuffles.
 #ifndef VITRAIL_RASTER_GLSL
 #define VITRAIL_RASTER_GLSL
 
 #include "layout.h" // the names of blend modes
+#include "raster/layout.h"
 
 #define VITRAIL_RASTER_STAGE_POSITIONS 0
 #define VITRAIL_RASTER_STAGE_SET_UP 1
@@ -40,6 +42,9 @@
 #define VITRAIL_RASTER_STAGE_BLEND 3
 #define VITRAIL_RASTER_STAGE_BLEND_DEEP 4
 
+#ifndef VITRAIL_SET
+#error VITRAIL_SET is not defined: the number of the raster's descriptor set, behind those of VitrailVkRasterDesc
+#endif
 #ifndef VITRAIL_RASTER_STAGE
 #error VITRAIL_RASTER_STAGE is not defined: 0 to 4, one module for each stage of VitrailVkRasterDesc
 #endif
@@ -52,6 +57,24 @@
 #if VITRAIL_RASTER_FRAGMENTS != 1 && VITRAIL_RASTER_FRAGMENTS != 2
 #error VITRAIL_RASTER_FRAGMENTS is neither 1 nor 2
 #endif
+#ifndef VITRAIL_CLIP_PLANES
+#define VITRAIL_CLIP_PLANES 0
+#endif
+#if VITRAIL_CLIP_PLANES < 0 || VITRAIL_CLIP_PLANES > 8
+#error VITRAIL_CLIP_PLANES is none of 0 to 8
+#endif
+#ifdef VITRAIL_MULTISAMPLED
+#define VITRAIL_RASTER_SEVERAL 1
+#else
+#define VITRAIL_RASTER_SEVERAL 0
+#endif
+
+// main() names it, below, so that nothing takes it out of the module.
+layout(constant_id = 1720) const uint VITRAIL_RASTER_COMPILED =
+    uint(VITRAIL_RASTER_STAGE) << VITRAIL_RASTER_COMPILED_STAGE | uint(VITRAIL_SET) << VITRAIL_RASTER_COMPILED_SET |
+    uint(VITRAIL_CLIP_PLANES) << VITRAIL_RASTER_COMPILED_PLANES |
+    uint(VITRAIL_RASTER_FRAGMENTS) << VITRAIL_RASTER_COMPILED_FRAGMENTS |
+    uint(VITRAIL_RASTER_SEVERAL) << VITRAIL_RASTER_COMPILED_SAMPLES;
 
 const uint VITRAIL_NOT_KEPT = 0xffffffffu;
 
@@ -99,6 +122,7 @@ vec4 vitrailShade(VitrailSurface surface); // with the draw's blend mode
 VitrailFragments vitrailShadeTwice(VitrailSurface surface);
 #endif
 
+#define main vitrailStage
 #if VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_POSITIONS
 #include "raster/positions.glsl"
 #elif VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_SET_UP
@@ -111,5 +135,10 @@ VitrailFragments vitrailShadeTwice(VitrailSurface surface);
 #else
 #include "raster/blend_deep.glsl"
 #endif
+#undef main
+
+void main() {
+  if (VITRAIL_RASTER_COMPILED != 0u) vitrailStage(); // it never is 0: it has VITRAIL_RASTER_FRAGMENTS
+}
 
 #endif

@@ -6,8 +6,10 @@
 #include <cstddef>
 #include <memory>
 #include <new>
+#include <optional>
 
 #include "check.h"
+#include "core/spirv_constant.h"
 #include "core/structures.h"
 #include "core/target_common.h"
 
@@ -41,6 +43,19 @@ constexpr RasterNeeds kLeast{.records = 1, .large = 1, .deep = 1, .blocks = 1, .
 
 // ---- Checks
 
+// What a stage was compiled for; none: by something else than vitrail/raster.glsl.
+std::optional<RasterCompiled> compiledOf(const VitrailVkRasterStage& stage) {
+  const std::optional<std::uint32_t> word =
+      spirvConstant({stage.code, stage.size / sizeof(std::uint32_t)}, raster::VITRAIL_RASTER_COMPILED_ID);
+  if (!word) return std::nullopt;
+  const auto bits = [&](std::uint32_t first, std::uint32_t count) { return *word >> first & ((1U << count) - 1U); };
+  return RasterCompiled{.stage = bits(raster::VITRAIL_RASTER_COMPILED_STAGE, 3),
+                        .set = bits(raster::VITRAIL_RASTER_COMPILED_SET, 4),
+                        .planes = bits(raster::VITRAIL_RASTER_COMPILED_PLANES, 4),
+                        .fragments = bits(raster::VITRAIL_RASTER_COMPILED_FRAGMENTS, 2),
+                        .several = bits(raster::VITRAIL_RASTER_COMPILED_SAMPLES, 1) != 0};
+}
+
 VkResult checkStage(const Log& log, const VitrailVkRasterStage& stage, const char* name) {
   if (stage.code == nullptr || stage.size < 20 || stage.size % 4 != 0) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED, "VitrailVkRasterDesc::%s: no SPIR-V (%s)", name,
@@ -57,13 +72,58 @@ VkResult checkStage(const Log& log, const VitrailVkRasterStage& stage, const cha
   return VK_SUCCESS;
 }
 
+// Whether a stage was compiled for what it is used for.
+VkResult checkCompiled(const Log& log, const VitrailVkRasterDesc& desc, const VitrailVkRasterStage& stage,
+                       const char* name, std::uint32_t number) {
+  const std::optional<RasterCompiled> compiled = compiledOf(stage);
+  if (!compiled) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                    "VitrailVkRasterDesc::%s: not compiled from this version's vitrail/raster.glsl", name);
+  }
+  if (compiled->stage != number) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                    "VitrailVkRasterDesc::%s: compiled with a VITRAIL_RASTER_STAGE of %u, and it is %u", name,
+                    compiled->stage, number);
+  }
+  if (compiled->set != desc.setLayoutCount) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                    "VitrailVkRasterDesc::%s: compiled with a VITRAIL_SET of %u, and setLayoutCount is %u", name,
+                    compiled->set, desc.setLayoutCount);
+  }
+  const bool blends = number >= 3; // the others do not ask
+  if (blends && compiled->several != (desc.samples > 1)) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                    "VitrailVkRasterDesc::%s: compiled %s VITRAIL_MULTISAMPLED, and samples is %u", name,
+                    compiled->several ? "with" : "without", std::max(1U, static_cast<std::uint32_t>(desc.samples)));
+  }
+  return VK_SUCCESS;
+}
+
 VkResult checkStages(const Log& log, const VitrailVkRasterDesc& desc) {
-  VkResult result = desc.positions.code != nullptr ? checkStage(log, desc.positions, "positions") : VK_SUCCESS;
-  if (result == VK_SUCCESS) result = checkStage(log, desc.setUp, "setUp");
-  if (result == VK_SUCCESS) result = checkStage(log, desc.setUpLarge, "setUpLarge");
-  if (result == VK_SUCCESS) result = checkStage(log, desc.blend, "blend");
-  if (result == VK_SUCCESS) result = checkStage(log, desc.blendDeep, "blendDeep");
-  return result;
+  VkResult result = VK_SUCCESS;
+  std::uint32_t number = 0;
+  const auto check = [&](const VitrailVkRasterStage& stage, const char* name, bool optional = false) {
+    if (result == VK_SUCCESS && !(optional && stage.code == nullptr)) {
+      result = checkStage(log, stage, name);
+      if (result == VK_SUCCESS) result = checkCompiled(log, desc, stage, name, number);
+    }
+    ++number;
+  };
+  check(desc.positions, "positions", true);
+  check(desc.setUp, "setUp");
+  check(desc.setUpLarge, "setUpLarge");
+  check(desc.blend, "blend");
+  check(desc.blendDeep, "blendDeep");
+  if (result != VK_SUCCESS) return result;
+  if (compiledOf(desc.setUp)->planes != compiledOf(desc.setUpLarge)->planes) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                    "setUp and setUpLarge were compiled with unlike VITRAIL_CLIP_PLANES");
+  }
+  if (compiledOf(desc.blend)->fragments != compiledOf(desc.blendDeep)->fragments) {
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED,
+                    "blend and blendDeep were compiled with unlike VITRAIL_RASTER_FRAGMENTS");
+  }
+  return VK_SUCCESS;
 }
 
 VkResult checkExtent(const Log& log, const VkExtent2D& extent) {
@@ -194,6 +254,8 @@ std::unique_ptr<VitrailVkRaster_T> makeRaster(VitrailVkContext context, const Vi
   made->indexBytes = desc.indexType == VK_INDEX_TYPE_UINT16 ? 2 : desc.indexType == VK_INDEX_TYPE_UINT32 ? 4 : 0;
   made->keepsPositions = desc.positions.code != nullptr;
   made->blendModes = desc.blendModes != 0 ? desc.blendModes : kAllBlends;
+  made->clipPlanes = compiledOf(desc.setUp)->planes; // checkStages() has seen that they say it
+  made->fragments = compiledOf(desc.blend)->fragments;
   made->solids = desc.solids != VK_FALSE;
   made->hostSets = desc.setLayoutCount;
   // What the device has is shared with the host's images and models.
@@ -323,13 +385,36 @@ bool hadRoom(const raster::VitrailRasterTotals& totals, const RasterFacts& facts
   return totals.start.fits != 0 && hasDeep && needsOf(totals).fitInto(facts.room);
 }
 
+RasterWrong wrongOf(const raster::VitrailRasterTotals& totals, const RasterFacts& facts) {
+  if (facts.empty || facts.misused) return {};
+  return {.vertex = totals.wrongVertex, .indices = totals.start.wrongIndices, .blend = totals.start.wrongBlend};
+}
+
+// Says which draws are wrong, of each kind once, until there are none.
+void tellWrong(VitrailVkRaster_T& raster, const RasterWrong& wrong, std::uint64_t frame) {
+  const auto tell = [&](std::uint32_t number, std::uint32_t& told, const char* what) {
+    if (number != 0 && told == 0) {
+      raster.context->log.error("%s: frame %llu: draw %u %s", raster.debugName.c_str(),
+                                static_cast<unsigned long long>(frame), number - 1, what);
+    }
+    told = number;
+  };
+  tell(wrong.vertex, raster.toldWrong.vertex,
+       "has an index that is not below its vertexCount: such triangles are left out");
+  tell(wrong.indices, raster.toldWrong.indices, "has more indices from firstIndex on than the buffer: it is left out");
+  tell(wrong.blend, raster.toldWrong.blend,
+       "has a blend that is none of VitrailVkRasterDesc::blendModes: it is left out");
+}
+
 void decode(const raster::VitrailRasterTotals& totals, const RasterFacts& facts, VitrailVkRasterStats& stats) {
   clearKeepingNext(stats);
   stats.frame = facts.frame;
   stats.bands = facts.bands;
-  stats.misused = facts.misused ? VK_TRUE : VK_FALSE;
+  const bool wrong = wrongOf(totals, facts).any();
+  stats.misused = facts.misused || wrong ? VK_TRUE : VK_FALSE;
   if (facts.misused) return; // nothing of it is known
-  const bool whole = facts.empty || (totals.bands == facts.bands && totals.cutPixels == 0 && hadRoom(totals, facts));
+  const bool whole =
+      facts.empty || (totals.bands == facts.bands && totals.cutPixels == 0 && !wrong && hadRoom(totals, facts));
   stats.exact = whole ? VK_TRUE : VK_FALSE;
   if (facts.empty) return;
   stats.errorBound = facts.bounded ? raster::VITRAIL_RASTER_STOP : 0.0F;
@@ -525,6 +610,7 @@ extern "C" VkResult vitrailVkUpdateRaster(VitrailVkRaster raster, uint64_t frame
   });
   const RasterFacts& facts = raster->facts[raster->slotOf(newest)];
   if (!read || facts.tag <= raster->newestNews) return VK_SUCCESS;
+  tellWrong(*raster, wrongOf(totals, facts), facts.frame);
   if (!facts.empty && !facts.misused) {
     const VkResult result = follow(*raster, totals, facts);
     if (result != VK_SUCCESS) return result;
@@ -564,6 +650,8 @@ extern "C" VkResult vitrailVkReadRasterStats(VitrailVkRaster raster, uint64_t fr
                                           })
                            : readSlot(*raster, frame, totals);
   if (!read) return VK_NOT_READY;
-  decode(totals, raster->facts[raster->slotOf(found)], *stats);
+  const RasterFacts& facts = raster->facts[raster->slotOf(found)];
+  decode(totals, facts, *stats);
+  tellWrong(*raster, wrongOf(totals, facts), facts.frame);
   return VK_SUCCESS;
 }

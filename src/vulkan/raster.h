@@ -55,6 +55,15 @@ constexpr std::uint64_t kRasterCountBytes = 768;
 // devices bind not many to a shader.
 constexpr std::uint32_t kRasterBindings = 31;
 constexpr std::uint32_t kFirstRasterConstant = 1710; // of frame.glsl: what is below is the host's
+
+// What a stage of the host's shader was compiled for (raster.glsl).
+struct RasterCompiled {
+  std::uint32_t stage = 0;
+  std::uint32_t set = 0;
+  std::uint32_t planes = 0;
+  std::uint32_t fragments = 1;
+  bool several = false; // samples
+};
 enum class RasterSet : std::uint8_t {
   Own,      // of the library's kernels: all
   Geometry, // of positions and setting up
@@ -120,6 +129,15 @@ struct RasterFacts {
   bool any = false;
 };
 
+// Draws that the GPU has found to be wrong: one more than the number of one of them, of each kind, or 0.
+struct RasterWrong {
+  std::uint32_t vertex = 0;
+  std::uint32_t indices = 0;
+  std::uint32_t blend = 0;
+
+  [[nodiscard]] bool any() const { return vertex != 0 || indices != 0 || blend != 0; }
+};
+
 struct RetiredBuffer {
   Buffer buffer;
   FrameUse use;
@@ -139,6 +157,8 @@ struct VitrailVkRaster_T {
   bool shuffles = false;
   std::uint64_t offsetAlignment = 1; // of storage buffers
   std::uint32_t blendModes = 0;
+  std::uint32_t clipPlanes = 0; // at most, in a frame
+  std::uint32_t fragments = 1;  // of a surface
   bool solids = false;
   std::uint32_t hostSets = 0;
   std::uint64_t budget = 0;
@@ -178,7 +198,8 @@ struct VitrailVkRaster_T {
   std::vector<vitrail::RasterFacts> facts;
   vitrail::FrameNumbers frames;
   std::uint64_t newestTag = 0;
-  std::uint32_t nextBand = 0; // of the frame that is being recorded; 0: it is whole
+  vitrail::RasterWrong toldWrong; // of the last frame whose statistics were read: the log has said so
+  std::uint32_t nextBand = 0;     // of the frame that is being recorded; 0: it is whole
 
   [[nodiscard]] vitrail::Buffer& buffer(vitrail::RasterBuffer which) {
     return buffers[static_cast<std::size_t>(which)];

@@ -129,6 +129,7 @@ raster::VitrailRasterFrame Recording::frameOf(const Band& band) const {
   data.vertexGroupCapacity = static_cast<std::uint32_t>(tables.vertexGroups);
   data.itemCapacity = static_cast<std::uint32_t>(tables.items);
   data.vertexCapacity = static_cast<std::uint32_t>(tables.vertices);
+  data.drawBlends = raster_.fragments > 1 ? ~0U : raster_.blendModes; // of two fragments nobody looks at the draw's
   data.hasOrders = info_.orders != VK_NULL_HANDLE ? 1 : 0;
   data.countsDraws = info_.countBuffer != VK_NULL_HANDLE ? 1 : 0;
   data.depthStep = raster_.depthStep;
@@ -320,6 +321,11 @@ bool isWhole(const VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info) {
     return fails("sets is null, and the raster was made with setLayouts");
   if (info.clipPlaneCount > kMostPlanes || (info.clipPlaneCount > 0 && info.clipPlanes == nullptr)) {
     return fails("clipPlanes has at most 8 planes");
+  }
+  if (info.clipPlaneCount > raster.clipPlanes) {
+    log.error("vitrailVkCmdRaster: clipPlaneCount %u, and setUp was compiled with a VITRAIL_CLIP_PLANES of %u",
+              info.clipPlaneCount, raster.clipPlanes);
+    return false;
   }
   for (const VkDeviceSize offset : {info.drawOffset, info.indexOffset, info.orderOffset, info.countOffset}) {
     if (offset % raster.offsetAlignment == 0) continue;

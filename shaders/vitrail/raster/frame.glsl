@@ -111,6 +111,13 @@ uint vitrailIndex(uint draw, uint at) {
   return vitrailIndices[at];
 }
 
+// Whether the draw has that vertex. Where positions are kept there is none for another, and the frame says so.
+bool vitrailHasVertex(uint draw, uint index) {
+  if (!VITRAIL_RASTER_POSITIONS || index < vitrailDrawPlaces[draw].lookup.y) return true;
+  atomicMax(vitrailRasterControl.wrongVertex, draw + 1u);
+  return false;
+}
+
 // Of an item the number of its instance.
 uint vitrailInstance(uint draw, uint item) {
   return vitrailDrawPlaces[draw].lookup.w + item;

@@ -33,6 +33,15 @@ const uint VITRAIL_RASTER_MOST_KEPT = 32u;   // fragments of a pixel in register
 const uint VITRAIL_RASTER_TABLE = 256u;      // threads of the work groups that make the tables of a frame
 const float VITRAIL_RASTER_STOP = 0.35f;     // of 1/255: what may be left out of a pixel that hardly shows it
 
+// What a stage was compiled for: where its numbers begin in the word that the library reads in its SPIR-V, the default
+// of a specialization constant (raster.glsl).
+const uint VITRAIL_RASTER_COMPILED_ID = 1720u;
+const uint VITRAIL_RASTER_COMPILED_STAGE = 0u;      // 3 bits
+const uint VITRAIL_RASTER_COMPILED_SET = 3u;        // 4 bits
+const uint VITRAIL_RASTER_COMPILED_PLANES = 7u;     // 4 bits
+const uint VITRAIL_RASTER_COMPILED_FRAGMENTS = 11u; // 2 bits
+const uint VITRAIL_RASTER_COMPILED_SAMPLES = 13u;   // 1 bit
+
 // VitrailVkRasterDraw::flags (vulkan_raster.h).
 const uint VITRAIL_RASTER_LINES = 1u; // else triangles
 const uint VITRAIL_RASTER_POINTS = 2u;
@@ -94,7 +103,7 @@ struct VitrailRasterFrame {
   uint itemCapacity;
   uint vertexCapacity;
   uint hasOrders;
-  uint framePadding0;
+  uint drawBlends;  // a bit for each blend mode that draws may have
   uint countsDraws; // the GPU has
   float depthStep;  // of the opaque depths
   uint drawCapacity;
@@ -119,6 +128,9 @@ struct VitrailRasterStart {
   uint vertexCount;
   uint tooMany; // 1: more than numbers of 32 bits can count
   uint fits;    // 1: there was room for all of it
+  // Draws that are wrong, and left out: one more than the number of the last, of each kind. 0: there is none.
+  uint wrongIndices; // they end beyond the index buffer
+  uint wrongBlend;   // it is none of drawBlends
 };
 
 // Tiles by how many records they have. All zero at first. Apart from what is counted while they are blended.
@@ -139,6 +151,7 @@ struct VitrailRasterControl {
   uint cutPixels;               // that the driver did not let a pass finish
   uint recordsHigh;             // how often `records` has come round
   uint fragmentsHigh;           // the same of `fragments`
+  uint wrongVertex;             // one more than the last draw that has an index of no vertex of it
 };
 
 // What a frame wanted: of its bands the most, but cut pixels together. All zero at first.
@@ -154,7 +167,7 @@ struct VitrailRasterTotals {
   uint mostFragments;
   uint cutPixels;
   uint bands; // that were drawn
-  uint totalsPadding;
+  uint wrongVertex;
   VitrailRasterStart start;
 };
 
@@ -162,10 +175,10 @@ struct VitrailRasterTotals {
 static_assert(sizeof(VitrailRasterDraw) == 48);
 static_assert(sizeof(VitrailRasterPlace) == 64);
 static_assert(sizeof(VitrailRasterFrame) == 240);
-static_assert(sizeof(VitrailRasterStart) == 64);
+static_assert(sizeof(VitrailRasterStart) == 72);
 static_assert(sizeof(VitrailRasterTileClasses) == 64);
-static_assert(sizeof(VitrailRasterControl) == 80);
-static_assert(sizeof(VitrailRasterTotals) == 112);
+static_assert(sizeof(VitrailRasterControl) == 84);
+static_assert(sizeof(VitrailRasterTotals) == 120);
 } // namespace vitrail::raster
 #endif
 

@@ -373,14 +373,18 @@ uint vitrailSetUp(uint draw, uvec2 number, inout VitrailSmall small) {
   VitrailTriangle t;
   if (corners == 3u) { // without arrays, which are slow
     uint first = vitrailFirstIndex(draw, corners, number.x);
-    vec4 a = vitrailClipPosition(draw, number.y, vitrailIndex(draw, first));
-    vec4 b = vitrailClipPosition(draw, number.y, vitrailIndex(draw, first + 1u));
-    vec4 c = vitrailClipPosition(draw, number.y, vitrailIndex(draw, first + 2u));
+    uvec3 indices = uvec3(vitrailIndex(draw, first), vitrailIndex(draw, first + 1u), vitrailIndex(draw, first + 2u));
+    if (!vitrailHasVertex(draw, max(indices.x, max(indices.y, indices.z)))) return 0u;
+    vec4 a = vitrailClipPosition(draw, number.y, indices.x);
+    vec4 b = vitrailClipPosition(draw, number.y, indices.y);
+    vec4 c = vitrailClipPosition(draw, number.y, indices.z);
     isWhole = !vitrailNeedsClipping(viewport, a) && !vitrailNeedsClipping(viewport, b) &&
               !vitrailNeedsClipping(viewport, c);
     if (!isWhole && vitrailIsOutside(a, b, c)) return 0u;
     t = vitrailTriangleOf(viewport, a, b, c, number);
   } else {
+    uint first = vitrailFirstIndex(draw, corners, number.x);
+    if (!vitrailHasVertex(draw, max(vitrailIndex(draw, first), vitrailIndex(draw, first + corners - 1u)))) return 0u;
     VitrailPolygon p = vitrailPolygonOf(draw, corners, number);
     isWhole = !vitrailPolygonNeedsClipping(viewport, p);
     t = vitrailHalfOf(viewport, p.corners[0], p.corners[corners - 1u], corners, number);

@@ -23,6 +23,7 @@ void main() {
   totals.blocks = max(totals.blocks, vitrailRasterControl.blocks.count);
   totals.chunks = max(totals.chunks, vitrailRasterControl.chunks.count);
   totals.mostFragments = max(totals.mostFragments, vitrailRasterControl.mostFragments);
+  totals.wrongVertex = max(totals.wrongVertex, vitrailRasterControl.wrongVertex);
   totals.cutPixels += vitrailRasterControl.cutPixels;
   totals.bands += 1u;
   totals.start = vitrailRasterStart;

@@ -13,12 +13,26 @@ layout(VITRAIL_RASTER_BOUND(29), std430) readonly buffer CountBlock { uint drawC
 
 shared uvec4 sums[VITRAIL_RASTER_TABLE];
 shared vec4 wholes[VITRAIL_RASTER_TABLE];
+shared uint wrongIndices; // as in VitrailRasterStart
+shared uint wrongBlend;
 
 // The product, or where it is more than may be the most.
 uint bounded(uint a, uint b) {
   uint high, low;
   umulExtended(a, b, high, low);
   return high != 0u ? 0xffffffffu : low;
+}
+
+// Whether the index buffer has all indices of a draw, without those that are left over of its last triangle or line.
+bool hasIndices(VitrailRasterDraw draw, uint corners) {
+  if (VITRAIL_RASTER_INDEX_BYTES == 0u) return true;
+  uint has = uint(vitrailIndices.length()) * (4u / VITRAIL_RASTER_INDEX_BYTES);
+  return draw.firstIndex <= has && draw.count / corners * corners <= has - draw.firstIndex;
+}
+
+bool hasBlend(VitrailRasterDraw draw) {
+  if (vitrailRaster.drawBlends == 0xffffffffu) return true; // nobody looks at it
+  return draw.blend < 32u && (vitrailRaster.drawBlends >> draw.blend & 1u) != 0u;
 }
 
 VitrailRasterDispatch dispatchOf(uint groups, uint wanted) {
@@ -32,6 +46,8 @@ void main() {
   uint count = vitrailRaster.countsDraws != 0u ? min(drawCount, vitrailRaster.draws) : vitrailRaster.draws;
   uvec4 before = uvec4(0u); // work groups of triangles, items, work groups of vertices, vertices
   vec4 whole = vec4(0.0);   // the same, as far as floats hold it: numbers that come round are seen
+  if (thread == 0u) wrongIndices = wrongBlend = 0u;
+  barrier();
   for (uint first = 0u; first < count; first += VITRAIL_RASTER_TABLE) {
     uvec4 mine = uvec4(0u);
     VitrailRasterPlace place;
@@ -44,6 +60,14 @@ void main() {
       uint vertices = VITRAIL_RASTER_POSITIONS ? bounded(draw.vertices, draw.instances) : 0u;
       if (triangles > most || vertices > most || (corners == 1u && draw.count > most)) {
         whole = vec4(4294967296.0); // said below
+        triangles = vertices = place.size.x = place.size.y = 0u;
+      }
+      if (triangles > 0u && !hasIndices(draw, corners)) {
+        atomicMax(wrongIndices, first + thread + 1u);
+        triangles = vertices = place.size.x = place.size.y = 0u;
+      }
+      if (triangles > 0u && !hasBlend(draw)) {
+        atomicMax(wrongBlend, first + thread + 1u);
         triangles = vertices = place.size.x = place.size.y = 0u;
       }
       mine = uvec4((triangles + VITRAIL_RASTER_GROUP - 1u) / VITRAIL_RASTER_GROUP, triangles > 0u ? draw.instances : 0u,
@@ -92,4 +116,6 @@ void main() {
   vitrailRasterStart.vertexCount = before.w;
   vitrailRasterStart.tooMany = tooMany ? 1u : 0u;
   vitrailRasterStart.fits = fits ? 1u : 0u;
+  vitrailRasterStart.wrongIndices = wrongIndices;
+  vitrailRasterStart.wrongBlend = wrongBlend;
 }

@@ -11,8 +11,10 @@
 #include "shaders/raster_test_2_several.h"
 #include "shaders/raster_test_3_one.h"
 #include "shaders/raster_test_3_several.h"
+#include "shaders/raster_test_3_two.h"
 #include "shaders/raster_test_4_one.h"
 #include "shaders/raster_test_4_several.h"
+#include "shaders/raster_test_4_two.h"
 
 namespace vitrail::tests::vulkan {
 
@@ -76,6 +78,10 @@ VitrailVkRasterDesc RasterHost::descOf(const RasterHostDesc& desc, VkDescriptorS
   raster.setUpLarge = several ? stage(shaders::raster_test_2_several) : stage(shaders::raster_test_2_one);
   raster.blend = several ? stage(shaders::raster_test_3_several) : stage(shaders::raster_test_3_one);
   raster.blendDeep = several ? stage(shaders::raster_test_4_several) : stage(shaders::raster_test_4_one);
+  if (desc.shadesTwice) {
+    raster.blend = stage(shaders::raster_test_3_two);
+    raster.blendDeep = stage(shaders::raster_test_4_two);
+  }
   raster.indexType = desc.indexType;
   raster.blendModes = desc.blendModes;
   raster.solids = desc.solids ? VK_TRUE : VK_FALSE;

@@ -24,6 +24,7 @@ struct RasterHostDesc {
   VkIndexType indexType = VK_INDEX_TYPE_UINT16;
   bool keepsPositions = true;
   std::uint32_t blendModes = 0;
+  bool shadesTwice = false; // with one sample
   bool solids = false;
   VkDeviceSize memoryBudget = 0;
   VitrailVkRasterHints hints{};

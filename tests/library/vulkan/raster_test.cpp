@@ -218,13 +218,13 @@ TEST_F(RasterTest, BlendModes) {
   host.setScene(glow);
   host.draw();
   expectPicture(host, rectangles, glow);
+  // Where the host says that there is one mode.
   rectangles = someRectangles(24);
-  // Where the host says that there is one mode, it is that of all.
   for (Rectangle& r : rectangles) r.blend = VITRAIL_BLEND_ADDITIVE;
   RasterHostDesc one;
   one.blendModes = 1U << VITRAIL_BLEND_ADDITIVE;
   RasterHost additive(one);
-  additive.setScene(scene);
+  additive.setScene(sceneOf(rectangles, Form::Indices));
   additive.draw();
   expectPicture(additive, rectangles, scene);
 }
@@ -1064,6 +1064,140 @@ TEST_F(RasterTest, SmallerExtentsKeepToTheBudget) {
   EXPECT_LE(host.raster().memory().tileBytes, desc.memoryBudget + 4096U);
 }
 
+// ---- Draws that are wrong
+
+// Draws once and expects that the frame says so, the log once and with that word, and that the others are drawn.
+void expectWrong(RasterHost& host, const RasterScene& scene, const std::string& word) {
+  SCOPED_TRACE(word);
+  host.setScene(scene);
+  host.drawOnce();
+  EXPECT_EQ(host.stats().misused, VK_TRUE);
+  EXPECT_EQ(host.stats().exact, VK_FALSE);
+  EXPECT_EQ(host.stats().draws, scene.draws.size());
+  expectOneLine(word);
+  ASSERT_EQ(host.raster().update(), VK_SUCCESS);
+  host.info().sameDraws = VK_TRUE; // which are still wrong
+  host.drawOnce();
+  host.info().sameDraws = VK_FALSE;
+  EXPECT_EQ(host.stats().misused, VK_TRUE);
+}
+
+TEST_F(RasterTest, DrawsWithIndicesOfNoVertices) {
+  const std::vector<Rectangle> rectangles = someRectangles(6);
+  const std::vector<Rectangle> others(rectangles.begin() + 1, rectangles.end());
+  for (const Form form : {Form::VertexOffsets, Form::NoIndices}) {
+    const RasterScene scene = sceneOf(rectangles, form);
+    RasterScene wrong = scene;
+    wrong.draws[0].vertexCount = 1; // which both of its triangles pass
+    RasterHostDesc desc;
+    if (form == Form::NoIndices) desc.indexType = VK_INDEX_TYPE_NONE_KHR;
+    RasterHost host(desc);
+    host.setScene(scene);
+    host.draw();
+    expectWrong(host, wrong, "draw 0 has an index that is not below its vertexCount");
+    expectPicture(host, others, scene);
+    host.setScene(scene);
+    host.drawOnce();
+    EXPECT_EQ(host.stats().exact, VK_TRUE);
+    EXPECT_EQ(host.stats().misused, VK_FALSE);
+    expectWrong(host, wrong, "draw 0 has an index that is not below its vertexCount"); // said again
+    desc.keepsPositions = false;                                                       // then nothing depends on it
+    RasterHost asks(desc);
+    asks.setScene(wrong);
+    asks.draw();
+    EXPECT_EQ(asks.stats().misused, VK_FALSE);
+    expectPicture(asks, rectangles, scene);
+  }
+  // The last index alone, of a line and of a point.
+  RasterHostDesc desc;
+  desc.solids = true;
+  RasterHost host(desc);
+  RasterScene scene = showing(0);
+  scene.indices = {0, 1, 2, 3};
+  scene.draws[0].count = 4;
+  for (const std::uint32_t flags : {VITRAIL_VK_RASTER_LINES, VITRAIL_VK_RASTER_POINTS}) {
+    scene.draws[0].flags = flags;
+    scene.draws[0].vertexCount = 4;
+    host.setScene(scene);
+    host.draw();
+    EXPECT_EQ(host.stats().misused, VK_FALSE);
+    scene.draws[0].vertexCount = 3;
+    expectWrong(host, scene, "vertexCount");
+  }
+}
+
+TEST_F(RasterTest, DrawsWithIndicesBeyondTheBuffer) {
+  const std::vector<Rectangle> rectangles = someRectangles(6);
+  const std::vector<Rectangle> others(rectangles.begin() + 1, rectangles.end());
+  constexpr std::uint32_t kAll = 0xffffffffU;
+  for (const VkIndexType type : {VK_INDEX_TYPE_UINT16, VK_INDEX_TYPE_UINT32}) {
+    RasterHostDesc desc;
+    desc.indexType = type;
+    RasterHost host(desc);
+    const RasterScene scene = sceneOf(rectangles, Form::FirstIndices);
+    host.setScene(scene);
+    host.draw();
+    for (const auto& [firstIndex, count] : {std::pair{31U, 6U}, {36U, 3U}, {0U, 39U}, {kAll, 3U}, {kAll - 2, 6U}}) {
+      RasterScene wrong = scene;
+      wrong.draws[0].firstIndex = firstIndex;
+      wrong.draws[0].count = count;
+      expectWrong(host, wrong, "draw 0 has more indices from firstIndex on than the buffer");
+      expectPicture(host, others, scene);
+      host.setScene(scene);
+      host.draw();
+    }
+    // Those that are left over are not looked at, nor those of draws of which nothing is drawn.
+    RasterScene right = scene;
+    right.draws.back().count = 8; // the last of the buffer
+    right.draws.push_back(right.draws[0]);
+    right.draws.back().firstIndex = kAll;
+    right.draws.back().instanceCount = 0;
+    host.setScene(right);
+    host.draw();
+    EXPECT_EQ(host.stats().misused, VK_FALSE);
+    expectPicture(host, rectangles, scene);
+  }
+  // Of 16-bit indices whole words: the last one of a buffer that ends within a word is not there.
+  RasterHost host({});
+  RasterScene scene = showing(0);
+  scene.draws[0].count = 3;
+  host.setScene(scene);
+  host.draw();
+  const Buffer odd(backend().device(), 6, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, Memory::Host);
+  host.info().indices = odd.get();
+  host.drawOnce();
+  EXPECT_EQ(host.stats().misused, VK_TRUE);
+  expectOneLine("than the buffer");
+}
+
+TEST_F(RasterTest, DrawsOfOtherBlendModes) {
+  RasterHostDesc desc;
+  desc.blendModes = 1U << VITRAIL_BLEND_OVER | 1U << VITRAIL_BLEND_MULTIPLY;
+  std::vector<Rectangle> rectangles = someRectangles(6);
+  const std::vector<Rectangle> others(rectangles.begin() + 1, rectangles.end());
+  RasterHost host(desc);
+  const RasterScene scene = sceneOf(rectangles, Form::Indices);
+  host.setScene(scene);
+  host.draw();
+  for (const std::uint32_t blend : {static_cast<std::uint32_t>(VITRAIL_BLEND_ADDITIVE), 4U, 32U, 0xffffffffU}) {
+    RasterScene wrong = scene;
+    wrong.draws[0].blend = blend;
+    expectWrong(host, wrong, "draw 0 has a blend that is none of VitrailVkRasterDesc::blendModes");
+    expectPicture(host, others, scene);
+    host.setScene(scene);
+    host.draw();
+  }
+  // Of a shader of two fragments nobody looks at it.
+  desc.shadesTwice = true;
+  RasterHost twice(desc);
+  RasterScene right = scene;
+  right.draws[0].blend = 77;
+  twice.setScene(right);
+  twice.draw();
+  EXPECT_EQ(twice.stats().misused, VK_FALSE);
+  expectPicture(twice, rectangles, scene);
+}
+
 // ---- What is refused
 
 TEST_F(RasterTest, WrongFields) {
@@ -1104,6 +1238,22 @@ TEST_F(RasterTest, WrongFields) {
   expectRefused(kWrong, "setUpLarge", [](Desc& desc) { desc.setUpLarge.code = nullptr; });
   expectRefused(kWrong, "blend:", [](Desc& desc) { desc.blend.size = 3; });
   expectRefused(kWrong, "blendDeep", [](Desc& desc) { desc.blendDeep.size = 0; });
+  // Stages that were compiled for something else.
+  expectRefused(kWrong, "blend: compiled with a VITRAIL_RASTER_STAGE of 1",
+                [](Desc& desc) { desc.blend = desc.setUp; });
+  expectRefused(kWrong, "positions: compiled with a VITRAIL_RASTER_STAGE of 2",
+                [](Desc& desc) { desc.positions = desc.setUpLarge; });
+  expectRefused(kWrong, "VITRAIL_SET of 1, and setLayoutCount is 0", [](Desc& desc) { desc.setLayoutCount = 0; });
+  expectRefused(kWrong, "without VITRAIL_MULTISAMPLED", [](Desc& desc) { desc.samples = VK_SAMPLE_COUNT_4_BIT; });
+  RasterHostDesc twice;
+  twice.shadesTwice = true;
+  expectRefused(kWrong, "unlike VITRAIL_RASTER_FRAGMENTS",
+                [&](Desc& desc) { desc.blend = RasterHost::descOf(twice, host.layout()).blend; });
+  const std::vector<std::uint32_t> other(right.setUp.code, right.setUp.code + 5);
+  expectRefused(kWrong, "setUp: not compiled from", [&](Desc& desc) {
+    desc.setUp.code = other.data();
+    desc.setUp.size = 20;
+  });
 }
 
 // A call that lacks something draws nothing, says so once, and its frame says so.
@@ -1132,6 +1282,11 @@ TEST_F(RasterTest, CallsThatLackSomething) {
   expectRefused("indices", [](Info& info) { info.indices = VK_NULL_HANDLE; });
   expectRefused("sets", [](Info& info) { info.sets = nullptr; });
   expectRefused("clipPlanes", [](Info& info) { info.clipPlaneCount = 1; });
+  const float planes[2][4] = {}; // which the stages were compiled for one of
+  expectRefused("VITRAIL_CLIP_PLANES of 1", [&](Info& info) {
+    info.clipPlaneCount = 2;
+    info.clipPlanes = planes;
+  });
   expectRefused("offset", [](Info& info) { info.drawOffset = 2; });
   expectRefused("bands", [](Info& info) { info.firstBand = 1; });
   expectRefused("bands", [](Info& info) { info.bandCount = 99; });

@@ -51,4 +51,9 @@ function(embed_raster_test_shaders)
                    NAMESPACE vitrail INCLUDES ${PROJECT_SOURCE_DIR}/shaders DEFINES ${defines})
     endforeach()
   endforeach()
+  foreach(stage 3 4) # of two fragments a surface
+    embed_shader(TARGETS ${ARGN} NAME raster_test_${stage}_two SOURCE ${VITRAIL_VULKAN_TEST_SHADERS}/raster.glsl
+                 NAMESPACE vitrail INCLUDES ${PROJECT_SOURCE_DIR}/shaders
+                 DEFINES VITRAIL_RASTER_STAGE=${stage} VITRAIL_COLOR_FORMAT=rgba32f VITRAIL_RASTER_FRAGMENTS=2)
+  endforeach()
 endfunction()

@@ -296,6 +296,7 @@ void Tiles::draw(Frame& frame) {
 
 bool Tiles::finish() {
   check(raster_.readStats(frame_, stats_), "vitrailVkReadRasterStats");
+  if (stats_.misused == VK_TRUE) throw GpuError(reason_); // more room would not mend it
   if (stats_.exact == VK_TRUE || stats_.cutPixels > 0) return true;
   follow();
   return false;

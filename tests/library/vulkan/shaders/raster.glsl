@@ -12,6 +12,20 @@ layout(set = 0, binding = 2, std430) readonly buffer ShiftBlock { vec4 shifts[];
 
 vec4 vitrailPosition(VitrailVertex vertex) { return vertices[vertex.vertex] + shifts[vertex.instance]; }
 
+#if VITRAIL_RASTER_FRAGMENTS == 2
+
+VitrailFragments vitrailShadeTwice(VitrailSurface surface) { // of which there is one
+  VitrailFragments fragments;
+  fragments.colors[0] = colors[surface.word & 0xffffu];
+  fragments.blends[0] = VITRAIL_OVER;
+  fragments.colors[1] = vec4(0.0);
+  fragments.blends[1] = VITRAIL_OVER;
+  fragments.count = 1u;
+  return fragments;
+}
+
+#else
+
 vec4 vitrailShade(VitrailSurface surface) {
   vec4 color = colors[surface.word & 0xffffu];
   uint shows = surface.word >> 16;
@@ -27,3 +41,5 @@ vec4 vitrailShade(VitrailSurface surface) {
   if (shows == 6u && (surface.pixel.x & 1) != 0) color.a = 0.0; // a mask
   return color;
 }
+
+#endif
