@@ -606,12 +606,13 @@ extern "C" VkResult vitrailVkUpdateRaster(VitrailVkRaster raster, uint64_t frame
   std::uint64_t newest = number;
   const bool read = readNewestOf(number, raster->facts.size(), [&](std::uint64_t one) {
     newest = one;
-    return readSlot(*raster, one, totals);
+    // One that recorded nothing tells of no needs, and the one before it may.
+    return !raster->facts[raster->slotOf(one)].misused && readSlot(*raster, one, totals);
   });
   const RasterFacts& facts = raster->facts[raster->slotOf(newest)];
   if (!read || facts.tag <= raster->newestNews) return VK_SUCCESS;
   tellWrong(*raster, wrongOf(totals, facts), facts.frame);
-  if (!facts.empty && !facts.misused) {
+  if (!facts.empty) {
     const VkResult result = follow(*raster, totals, facts);
     if (result != VK_SUCCESS) return result;
   }

@@ -126,6 +126,7 @@ struct RasterFacts {
   bool empty = false;   // nothing was to be drawn
   bool bounded = false; // what is hidden was left out
   bool misused = false;
+  bool recorded = false; // all bands
   bool any = false;
 };
 

@@ -367,6 +367,15 @@ void beginFrame(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info, bool
   facts.misused = misused;
 }
 
+// Whether a call is of the newest frame: one of its later bands. Where no frame is open, one that comes too late or has
+// no first band is of the frame that it names, and another's statistics stay what they are.
+bool isOfNewest(const VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info) {
+  if (info.firstBand == 0 || !raster.frames.any()) return false;
+  const std::uint64_t newest = raster.frames.newest();
+  if (raster.nextBand != 0) return true;
+  return info.frame != 0 ? info.frame == newest : !raster.facts[raster.slotOf(newest)].recorded;
+}
+
 } // namespace
 
 } // namespace vitrail
@@ -380,7 +389,7 @@ extern "C" void vitrailVkCmdRaster(VkCommandBuffer commandBuffer, VitrailVkRaste
     return;
   }
   const bool whole = isWhole(*raster, *info);
-  if (info->firstBand == 0) beginFrame(*raster, *info, !whole);
+  if (!isOfNewest(*raster, *info)) beginFrame(*raster, *info, !whole);
   RasterFacts& facts = raster->facts[raster->slotOf(raster->frames.newest())];
   const std::uint32_t bands = raster->bands();
   const std::uint32_t count = info->bandCount != 0 ? info->bandCount : bands - std::min(bands, info->firstBand);
@@ -406,7 +415,8 @@ extern "C" void vitrailVkCmdRaster(VkCommandBuffer commandBuffer, VitrailVkRaste
   for (std::uint32_t i = info->firstBand; i < info->firstBand + count; ++i) {
     recording.drawBand({i * step, std::min((i + 1) * step, raster->extent.height)}, i == 0, i + 1 == bands);
   }
-  raster->nextBand = info->firstBand + count == bands ? 0 : info->firstBand + count;
+  facts.recorded = info->firstBand + count == bands;
+  raster->nextBand = facts.recorded ? 0 : info->firstBand + count;
   raster->tablesAreMade = info->drawCount > 0;
   raster->tableDraws = info->drawCount;
 }
