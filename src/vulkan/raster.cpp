@@ -526,6 +526,8 @@ VkResult follow(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals& to
     }
   }
   if (result != VK_SUCCESS) return result;
+  // Draws are those of any extent. What their triangles need in another one says little.
+  if (facts.extent.width != raster.extent.width || facts.extent.height != raster.extent.height) return VK_SUCCESS;
   if (needs.fitInto(raster.room)) return shrink(raster, needs);
   raster.low.forget();
   // A band of more rows than they are now needed more.

@@ -117,6 +117,7 @@ struct RasterSlot {
 struct RasterFacts {
   std::uint64_t frame = 0;
   std::uint64_t tag = 0; // of no other frame, also where numbers come twice
+  VkExtent2D extent{};
   RasterNeeds room;
   std::uint32_t bands = 0;
   std::uint32_t draws = 0;

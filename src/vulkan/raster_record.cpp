@@ -356,6 +356,7 @@ void beginFrame(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info, bool
   facts.tag = ++raster.newestTag;
   facts.any = true;
   facts.frame = raster.frames.newest();
+  facts.extent = raster.extent;
   facts.room = raster.room;
   facts.bands = raster.bands();
   facts.draws = info.drawCount;

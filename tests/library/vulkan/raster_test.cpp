@@ -702,6 +702,33 @@ TEST_F(RasterTest, AnotherExtent) {
   expectOneLine("extent");
 }
 
+// What a frame of another extent has needed is not made: its draws are, which are those of any extent.
+TEST_F(RasterTest, FramesOfAnotherExtentAreNotFollowed) {
+  RasterHostDesc desc;
+  desc.width = desc.height = 64;
+  desc.indexType = VK_INDEX_TYPE_UINT32;
+  RasterHost host(desc);
+  const RasterScene scene = sceneOf(someRectangles(1000, 64), Form::VertexOffsets, false, 64);
+  host.setScene(scene);
+  host.drawOnce(); // asks for tables
+  ASSERT_EQ(host.raster().resize({16, 16}), VK_SUCCESS);
+  const VitrailVkRasterMemory before = host.raster().memory();
+  ASSERT_EQ(host.raster().update(), VK_SUCCESS);
+  EXPECT_GT(host.raster().memory().drawBytes, before.drawBytes);
+  ASSERT_EQ(host.raster().resize({64, 64}), VK_SUCCESS);
+  host.drawOnce(); // needs much room
+  EXPECT_EQ(host.stats().exact, VK_FALSE);
+  EXPECT_GT(host.stats().records, 4096U);
+  ASSERT_EQ(host.raster().resize({16, 16}), VK_SUCCESS);
+  const VkDeviceSize small = host.raster().memory().tileBytes;
+  ASSERT_EQ(host.raster().update(), VK_SUCCESS);
+  EXPECT_EQ(host.raster().memory().tileBytes, small);
+  // And one that needs what a large one had no room for is followed.
+  ASSERT_EQ(host.raster().resize({64, 64}), VK_SUCCESS);
+  host.draw();
+  EXPECT_GT(host.raster().memory().tileBytes, small);
+}
+
 // ---- What hosts may put in
 
 // Triangles whose corners are no places cover nothing, and change nothing of others.
