@@ -29,6 +29,12 @@ RasterNeeds RasterNeeds::part(std::uint32_t parts) const {
   return part;
 }
 
+RasterNeeds RasterNeeds::joined() const {
+  RasterNeeds joined = combined(*this, {}, [](std::uint64_t a, std::uint64_t) { return 2 * a + a / 4; });
+  joined.large += records / 32; // one that is large in the whole and in no half has records in more than 64 tiles
+  return joined;
+}
+
 double rasterExcess(const RasterNeeds& needs, const RasterBounds& bounds) {
   const auto reach = static_cast<double>(bounds.reach);
   double most = 0.0;
@@ -71,10 +77,20 @@ std::uint32_t fewerRasterRows(std::uint32_t rows, double excess) {
   return std::max(1U, static_cast<std::uint32_t>(rows / parts));
 }
 
-bool RasterLow::note(const RasterNeeds& needs, const RasterNeeds& room, RasterNeeds& most) {
-  constexpr std::uint32_t kFrames = 120;
+bool isLowRasterNeed(const RasterNeeds& needs, const RasterNeeds& room) {
   // Records and fragments are what is large.
-  if (needs.records >= room.records / 4 || (room.fragments > 1 && needs.fragments >= room.fragments / 4)) {
+  return needs.records < room.records / 4 && (room.fragments <= 1 || needs.fragments < room.fragments / 4);
+}
+
+bool planJoinedBands(const RasterNeeds& most, const RasterNeeds& had, const RasterBounds& bounds, RasterNeeds& next) {
+  const RasterNeeds joined = most.joined();
+  const RasterNeeds twice = combined(joined, joined, [](std::uint64_t a, std::uint64_t b) { return a + b; });
+  return rasterExcess(twice, bounds) <= 1.0 && planRasterRoom(joined, had, bounds, next) <= 1.0;
+}
+
+bool RasterLow::note(const RasterNeeds& needs, bool isLow, RasterNeeds& most) {
+  constexpr std::uint32_t kFrames = 120;
+  if (!isLow) {
     forget();
     return false;
   }

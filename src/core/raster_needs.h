@@ -23,6 +23,10 @@ struct RasterNeeds {
   // What a band of so many times fewer rows needs if it is like the others, and at least. Large triangles may reach
   // into all of them.
   [[nodiscard]] RasterNeeds part(std::uint32_t parts) const;
+  // What a band of twice as many rows needs at most, where this is the most that any band needs: twice as much, and
+  // what is not alike in both. A triangle may be large in the band, which no half of it is in the others; and one of
+  // which little lies in each may there be tried in more tiles than it covers.
+  [[nodiscard]] RasterNeeds joined() const;
 };
 
 // What bounds it.
@@ -62,11 +66,19 @@ constexpr std::uint64_t withRasterSpare(std::uint64_t wanted) { return wanted + 
 // The rows of tiles of a band after one of `rows` was so many times too much: fewer, at least 1.
 std::uint32_t fewerRasterRows(std::uint32_t rows, double excess);
 
-// Whether memory should follow frames down: where 120 frames in a row needed less than a quarter of it.
+// Whether frames need less than a quarter of the memory.
+bool isLowRasterNeed(const RasterNeeds& needs, const RasterNeeds& room);
+
+// The room for bands of twice as many rows, of so many tiles, after bands that needed so much. False: twice what they
+// may need is more than the bounds have, so that more than that would soon be too much again. All that bounds a band
+// counts.
+bool planJoinedBands(const RasterNeeds& most, const RasterNeeds& had, const RasterBounds& bounds, RasterNeeds& next);
+
+// Whether memory or bands should follow frames down: where that was so for 120 frames in a row.
 class RasterLow {
  public:
-  // Whether that is so after a frame with these needs. `most`: the most that those frames needed.
-  bool note(const RasterNeeds& needs, const RasterNeeds& room, RasterNeeds& most);
+  // Whether they should after a frame with these needs. `most`: the most that those frames needed.
+  bool note(const RasterNeeds& needs, bool isLow, RasterNeeds& most);
   void forget() { *this = {}; }
 
  private:

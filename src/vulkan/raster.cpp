@@ -497,19 +497,19 @@ VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
   return growWithoutMemory(raster, needs);
 }
 
-// Less memory, or fewer bands, where frames have needed little for long.
-VkResult shrink(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
+// Less memory, or fewer bands, where frames have needed little for long. What cannot be made then stays as it is.
+void shrink(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
+  const bool splits = raster.bandRows < raster.tilesY();
   RasterNeeds most;
-  if (!raster.low.note(needs, raster.room, most)) return VK_SUCCESS;
-  most = most.most(raster.guess); // what the host knew beforehand it still knows
+  if (!raster.low.note(needs, splits || isLowRasterNeed(needs, raster.room), most)) return;
   const std::uint32_t rows = std::min(raster.tilesY(), raster.bandRows * 2);
   RasterNeeds next;
-  const bool splits = raster.bandRows < raster.tilesY();
-  if (planRasterRoom(most, {}, raster.bounds(rows), next) > 1.0) return VK_SUCCESS;
-  if (splits) next = raster.room; // more rows need more
-  if (rasterExcess(next, raster.bounds(rows)) > 1.0) return VK_SUCCESS;
-  resizeRasterRoom(raster, next, rows, kQuiet); // or it stays as it is
-  return VK_SUCCESS;
+  if (splits) {
+    if (planJoinedBands(most, raster.room, raster.bounds(rows), next)) resizeRasterRoom(raster, next, rows, kQuiet);
+    return;
+  }
+  most = most.most(raster.guess); // what the host knew beforehand it still knows
+  if (planRasterRoom(most, {}, raster.bounds(rows), next) <= 1.0) resizeRasterRoom(raster, next, rows, kQuiet);
 }
 
 // Makes what frames like this one need.
@@ -528,7 +528,10 @@ VkResult follow(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals& to
   if (result != VK_SUCCESS) return result;
   // Draws are those of any extent. What their triangles need in another one says little.
   if (facts.extent.width != raster.extent.width || facts.extent.height != raster.extent.height) return VK_SUCCESS;
-  if (needs.fitInto(raster.room)) return shrink(raster, needs);
+  if (needs.fitInto(raster.room)) {
+    shrink(raster, needs);
+    return VK_SUCCESS;
+  }
   raster.low.forget();
   // A band of more rows than they are now needed more.
   if (facts.bands < raster.bands()) return VK_SUCCESS;

@@ -82,12 +82,46 @@ TEST(RasterNeeds, MemoryFollowsDownAfterLong) {
   RasterLow low;
   RasterNeeds most;
   const RasterNeeds room = withRecords(1000);
-  for (int i = 0; i < 119; ++i) EXPECT_FALSE(low.note(withRecords(i == 50 ? 200 : 100), room, most));
-  EXPECT_FALSE(low.note(withRecords(250), room, most)); // not a quarter less
-  for (int i = 0; i < 119; ++i) EXPECT_FALSE(low.note(withRecords(i == 50 ? 200 : 100), room, most));
-  EXPECT_TRUE(low.note(withRecords(100), room, most));
+  const auto note = [&](std::uint64_t records) {
+    const RasterNeeds needs = withRecords(records);
+    return low.note(needs, isLowRasterNeed(needs, room), most);
+  };
+  for (int i = 0; i < 119; ++i) EXPECT_FALSE(note(i == 50 ? 200 : 100));
+  EXPECT_FALSE(note(250)); // not a quarter less
+  for (int i = 0; i < 119; ++i) EXPECT_FALSE(note(i == 50 ? 200 : 100));
+  EXPECT_TRUE(note(100));
   EXPECT_EQ(most.records, 200U);
-  EXPECT_FALSE(low.note(withRecords(100), room, most)); // and from the start
+  EXPECT_FALSE(note(100)); // and from the start
+  RasterNeeds deep = room;
+  deep.fragments = 1000;
+  RasterNeeds needs = withRecords(100);
+  EXPECT_TRUE(isLowRasterNeed(needs, deep));
+  needs.fragments = 250;
+  EXPECT_FALSE(isLowRasterNeed(needs, deep));
+}
+
+// Bands are joined where all that they need fits twice, whatever bounds them.
+TEST(RasterNeeds, BandsAreJoinedWhereAllThatTheyNeedFits) {
+  const RasterNeeds band{.records = 6400, .large = 100, .deep = 100, .blocks = 100, .fragments = 3200, .chunks = 100};
+  const RasterNeeds joined = band.joined();
+  EXPECT_EQ(joined.records, 14'400U);
+  EXPECT_EQ(joined.large, 425U); // a triangle over 50 tiles in each half is large in the whole
+  EXPECT_EQ(joined.deep, 225U);
+  for (std::uint64_t RasterNeeds::*need : {&RasterNeeds::records, &RasterNeeds::large, &RasterNeeds::deep,
+                                           &RasterNeeds::blocks, &RasterNeeds::fragments, &RasterNeeds::chunks}) {
+    RasterNeeds most = kLeast;
+    most.*need = 100'000;
+    RasterNeeds next;
+    RasterBounds bounds = kWide;
+    RasterNeeds twice = most.joined();
+    bounds.budget = 1;
+    const double bytes = rasterExcess(twice, bounds); // of one byte
+    bounds.budget = static_cast<std::uint64_t>(2.0 * bytes) + 100;
+    ASSERT_TRUE(planJoinedBands(most, kLeast, bounds, next));
+    EXPECT_TRUE(most.joined().fitInto(next));
+    bounds.budget = static_cast<std::uint64_t>(1.9 * bytes) - 100 * 24;
+    EXPECT_FALSE(planJoinedBands(most, kLeast, bounds, next));
+  }
 }
 
 } // namespace

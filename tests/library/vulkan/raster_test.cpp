@@ -883,6 +883,69 @@ TEST_F(RasterTest, RoomFromTheStartStays) {
   expectPicture(host, rectangles, scene);
 }
 
+// ---- Bands of frames that stay alike
+
+constexpr std::uint32_t kTilesSide = 128; // pixels of the picture
+constexpr std::uint32_t kTies = 10;       // more than registers hold of tiles with few records
+
+// In each of so many tiles triangles at one depth, over one pixel or all of them, which makes it a deep one.
+RasterScene deepTilesOf(std::uint32_t tiles, float pixels) {
+  RasterScene scene;
+  const float step = 2.0F / static_cast<float>(kTilesSide);
+  for (std::uint32_t tile = 0; tile < tiles; ++tile) {
+    const float x = place(tile % (kTilesSide / 8) * 8, kTilesSide);
+    const float y = place(tile / (kTilesSide / 8) * 8, kTilesSide);
+    for (std::uint32_t i = 0; i < kTies; ++i) {
+      scene.vertices.insert(
+          scene.vertices.end(),
+          {{x, y, 0.5F, 1.0F}, {x + 2.0F * pixels * step, y, 0.5F, 1.0F}, {x, y + 2.0F * pixels * step, 0.5F, 1.0F}});
+    }
+  }
+  scene.indices.resize(scene.vertices.size());
+  std::iota(scene.indices.begin(), scene.indices.end(), 0U);
+  VitrailVkRasterDraw draw{};
+  draw.count = draw.vertexCount = static_cast<std::uint32_t>(scene.vertices.size());
+  draw.instanceCount = 1;
+  scene.draws = {draw};
+  scene.colors = {{0.5F, 0.25F, 1.0F, 0.125F}};
+  return scene;
+}
+
+// Deep tiles bound the bands, records and fragments have room for fewer: who tries fewer bands sees that, and a picture
+// that stays as it is stays exact.
+TEST_F(RasterTest, BandsThatDeepTilesBoundStay) {
+  RasterHostDesc desc;
+  desc.width = desc.height = kTilesSide;
+  desc.indexType = VK_INDEX_TYPE_UINT32;
+  desc.hints.triangles = 2600; // room for twice as many records
+  desc.memoryBudget = 900'000; // of which 256 deep tiles take 790,528
+  RasterHost host(desc);
+  host.setScene(deepTilesOf(22, 4.0F)); // many fragments, in few tiles
+  host.draw();
+  const RasterScene scene = deepTilesOf(256, 1.0F);
+  host.setScene(scene);
+  const std::vector<float> expected = host.draw();
+  const std::uint32_t bands = host.raster().bands();
+  EXPECT_GT(bands, 1U);
+  EXPECT_GT(host.stats().deepTiles, 0U);
+  for (int i = 0; i < 130; ++i) {
+    ASSERT_EQ(host.raster().update(), VK_SUCCESS);
+    host.drawOnce();
+    ASSERT_EQ(host.stats().exact, VK_TRUE) << i;
+  }
+  EXPECT_TRUE(host.picture() == expected);
+  EXPECT_EQ(host.raster().bands(), bands);
+  // Fewer, where all has room, and none of the frames between is inexact.
+  host.setScene(deepTilesOf(8, 1.0F));
+  for (int i = 0; i < 130 * 5; ++i) {
+    ASSERT_EQ(host.raster().update(), VK_SUCCESS);
+    if (host.raster().bands() == 1) break;
+    host.drawOnce();
+    ASSERT_EQ(host.stats().exact, VK_TRUE) << i;
+  }
+  EXPECT_EQ(host.raster().bands(), 1U);
+}
+
 // ---- Frames that are dropped, begun again, or left open
 
 // The frame before one that was dropped may still be drawn: its memory stays.
