@@ -1,4 +1,4 @@
-# Makes all of src/kernels/kernels.table, which says what its columns mean.
+# Makes all of src/kernels/kernels.table and of src/kernels/raster/kernels.table, which say what their columns mean.
 
 # The values of a cell of an axis: `-` stays one, which stands for any.
 function(kernel_axis cell each result)
@@ -150,4 +150,64 @@ function(embed_kernels target table api)
   endforeach()
   write_kernel_list(${api}_includes "${includes}")
   write_kernel_list(${api}_variants "${variants}")
+endfunction()
+
+# embed_raster_kernels(target table): gives the target, of this folder, every kernel of the rasteriser in compute shaders,
+# and makes in generated/kernels
+#   raster_names.inc      VITRAIL_RASTER_KERNEL(Enumerator, "name", made) a kernel
+#   raster_includes.inc   the headers with the words of all variants
+#   raster_variants.inc   VITRAIL_RASTER_VARIANT(Enumerator, color, samples, symbol) a variant, each axis a value or `any`
+function(embed_raster_kernels target table)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${table})
+  get_filename_component(folder ${table} DIRECTORY)
+  file(STRINGS ${table} rows REGEX "^[^#]")
+  set(known)
+  foreach(line ${rows})
+    string(REGEX REPLACE "[ \t]+" ";" row "${line}")
+    list(GET row 0 name)
+    list(GET row 1 entry)
+    list(GET row 2 made)
+    list(GET row 3 color)
+    list(GET row 4 samples)
+    list(GET row 5 defines)
+    kernel_enumerator(${name} enumerator)
+    if(NOT name IN_LIST known)
+      list(APPEND known ${name})
+      string(REPLACE _ " " words ${name})
+      string(APPEND names "VITRAIL_RASTER_KERNEL(${enumerator}, \"${words}\", ${made})\n")
+    endif()
+    string(REGEX REPLACE "^-$" "" defines ${defines})
+    string(REPLACE , ";" defines "${defines}")
+    kernel_axis(${color} "rgba16f;rgba32f" colors)
+    kernel_axis(${samples} "one;several" counts)
+    foreach(c ${colors})
+      foreach(s ${counts})
+        set(symbol raster_${name})
+        set(variant ${defines})
+        if(NOT c STREQUAL -)
+          string(APPEND symbol _${c})
+          list(APPEND variant VITRAIL_COLOR_FORMAT=${c})
+        endif()
+        if(NOT s STREQUAL -)
+          string(APPEND symbol _${s})
+        endif()
+        if(s STREQUAL several)
+          list(APPEND variant VITRAIL_MULTISAMPLED)
+        endif()
+        embed_shader(
+          TARGETS ${target}
+          NAME ${symbol}
+          SOURCE ${folder}/${entry}
+          NAMESPACE vitrail
+          INCLUDES ${PROJECT_SOURCE_DIR}/shaders
+          DEFINES ${variant})
+        string(REPLACE - any axes "${c}, ${s}")
+        string(APPEND includes "#include \"shaders/${symbol}.h\"\n")
+        string(APPEND variants "VITRAIL_RASTER_VARIANT(${enumerator}, ${axes}, ${symbol})\n")
+      endforeach()
+    endforeach()
+  endforeach()
+  write_kernel_list(raster_names "${names}")
+  write_kernel_list(raster_includes "${includes}")
+  write_kernel_list(raster_variants "${variants}")
 endfunction()

@@ -83,19 +83,11 @@ struct RasterTables {
   std::uint64_t vertices = 1;
 };
 
-// The library's own kernels.
+// The library's own kernels, of src/kernels/raster/kernels.table.
 enum class RasterKernel : std::uint8_t {
-  Prepare,
-  Tables,
-  Plan,
-  Scatter,
-  Mean,
-  Note,
-  DeepCount, // from here on of deep tiles
-  DeepPlace,
-  DeepFill,
-  DeepSort,
-  DeepMerge,
+#define VITRAIL_RASTER_KERNEL(name, words, made) name,
+#include "kernels/raster_names.inc"
+#undef VITRAIL_RASTER_KERNEL
   Count
 };
 constexpr std::size_t kRasterKernels = static_cast<std::size_t>(RasterKernel::Count);

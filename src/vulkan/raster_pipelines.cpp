@@ -3,20 +3,8 @@
 #include <cstring>
 #include <span>
 
+#include "kernels/raster_includes.inc"
 #include "raster.h"
-#include "shaders/raster_deep_count.h"
-#include "shaders/raster_deep_fill.h"
-#include "shaders/raster_deep_fill_several.h"
-#include "shaders/raster_deep_merge.h"
-#include "shaders/raster_deep_place.h"
-#include "shaders/raster_deep_sort.h"
-#include "shaders/raster_mean_rgba16f.h"
-#include "shaders/raster_mean_rgba32f.h"
-#include "shaders/raster_note.h"
-#include "shaders/raster_plan.h"
-#include "shaders/raster_prepare.h"
-#include "shaders/raster_scatter.h"
-#include "shaders/raster_tables.h"
 
 namespace vitrail {
 
@@ -110,55 +98,58 @@ VkResult createPipeline(const VitrailVkRaster_T& raster, VkPipelineLayout layout
   return VK_SUCCESS;
 }
 
+// A kernel of the table, and one variant of it: an axis of `any` serves all.
+enum class KernelMade : std::uint8_t { first, deep };
+struct KernelRow {
+  const char* name;
+  KernelMade made;
+};
+constexpr std::array kKernelRows = {
+#define VITRAIL_RASTER_KERNEL(name, words, made) KernelRow{words, KernelMade::made},
+#include "kernels/raster_names.inc"
+#undef VITRAIL_RASTER_KERNEL
+};
+static_assert(kKernelRows.size() == kRasterKernels);
+
+enum class KernelColor : std::uint8_t { any, rgba16f, rgba32f };
+enum class KernelSamples : std::uint8_t { any, one, several };
+struct KernelVariant {
+  RasterKernel kernel;
+  KernelColor color;
+  KernelSamples samples;
+  std::span<const std::uint32_t> code;
+};
+constexpr std::array kKernelVariants = {
+#define VITRAIL_RASTER_VARIANT(name, color, samples, symbol) \
+  KernelVariant{RasterKernel::name, KernelColor::color, KernelSamples::samples, shaders::symbol},
+#include "kernels/raster_variants.inc"
+#undef VITRAIL_RASTER_VARIANT
+};
+
+// Empty: a raster like this one does without.
 std::span<const std::uint32_t> kernelCode(const VitrailVkRaster_T& raster, RasterKernel kernel) {
-  switch (kernel) {
-    case RasterKernel::Prepare:
-      return shaders::raster_prepare;
-    case RasterKernel::Tables:
-      return shaders::raster_tables;
-    case RasterKernel::Plan:
-      return shaders::raster_plan;
-    case RasterKernel::Scatter:
-      return shaders::raster_scatter;
-    case RasterKernel::Mean:
-      if (raster.colorFormat == VK_FORMAT_R32G32B32A32_SFLOAT) return shaders::raster_mean_rgba32f;
-      return shaders::raster_mean_rgba16f;
-    case RasterKernel::Note:
-      return shaders::raster_note;
-    case RasterKernel::DeepCount:
-      return shaders::raster_deep_count;
-    case RasterKernel::DeepPlace:
-      return shaders::raster_deep_place;
-    case RasterKernel::DeepFill:
-      if (raster.samples > 1) return shaders::raster_deep_fill_several;
-      return shaders::raster_deep_fill;
-    case RasterKernel::DeepSort:
-      return shaders::raster_deep_sort;
-    case RasterKernel::DeepMerge:
-      return shaders::raster_deep_merge;
-    case RasterKernel::Count:
-      break;
+  const bool wide = raster.colorFormat == VK_FORMAT_R32G32B32A32_SFLOAT;
+  const KernelColor color = wide ? KernelColor::rgba32f : KernelColor::rgba16f;
+  const KernelSamples samples = raster.samples > 1 ? KernelSamples::several : KernelSamples::one;
+  for (const KernelVariant& variant : kKernelVariants) {
+    const bool suits = (variant.color == KernelColor::any || variant.color == color) &&
+                       (variant.samples == KernelSamples::any || variant.samples == samples);
+    if (variant.kernel == kernel && suits) return variant.code;
   }
   return {};
 }
 
-const char* kernelName(RasterKernel kernel) {
-  constexpr std::array<const char*, kRasterKernels> kNames = {"prepare",   "tables",    "plan",       "scatter",
-                                                              "mean",      "note",      "deep count", "deep place",
-                                                              "deep fill", "deep sort", "deep merge"};
-  return kNames[static_cast<std::size_t>(kernel)];
-}
-
-VkResult createKernels(VitrailVkRaster_T& raster, RasterKernel first, RasterKernel end) {
-  for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); ++i) {
-    const auto kernel = static_cast<RasterKernel>(i);
-    if (kernel == RasterKernel::Mean && raster.samples == 1) continue;
+VkResult createKernels(VitrailVkRaster_T& raster, KernelMade made) {
+  for (std::size_t i = 0; i < kRasterKernels; ++i) {
+    const auto& [name, madeThen] = kKernelRows.at(i);
+    const std::span<const std::uint32_t> code = kernelCode(raster, static_cast<RasterKernel>(i));
+    if (madeThen != made || code.empty()) continue;
     if (raster.kernels[i] != VK_NULL_HANDLE) continue; // of a call that made some, and failed then
     RasterStage stage;
-    VkResult result = createModule(raster, kernelCode(raster, kernel), kernelName(kernel), &stage.module);
+    VkResult result = createModule(raster, code, name, &stage.module);
     if (result == VK_SUCCESS) {
-      result = createPipeline(raster, raster.layout(RasterSet::Own), stage, constantsOf(raster), kernelName(kernel),
-                              &raster.kernels[i]);
+      result =
+          createPipeline(raster, raster.layout(RasterSet::Own), stage, constantsOf(raster), name, &raster.kernels[i]);
     }
     destroyStage(*raster.context, stage);
     if (result != VK_SUCCESS) return result;
@@ -251,13 +242,13 @@ VkResult createRasterPipelines(VitrailVkRaster_T& raster, const VitrailVkRasterD
     result = createGeometryPipeline(raster, desc.setUpLarge, "set up large", &raster.setUpLarge);
   if (result == VK_SUCCESS) result = createBlends(raster, desc.blend);
   if (result == VK_SUCCESS) result = keepStage(raster, desc.blendDeep, "blend deep", raster.deepStage);
-  if (result == VK_SUCCESS) result = createKernels(raster, RasterKernel::Prepare, RasterKernel::DeepCount);
+  if (result == VK_SUCCESS) result = createKernels(raster, KernelMade::first);
   return result;
 }
 
 VkResult createDeepPipelines(VitrailVkRaster_T& raster) {
   if (raster.blendDeep != VK_NULL_HANDLE) return VK_SUCCESS;
-  const VkResult result = createKernels(raster, RasterKernel::DeepCount, RasterKernel::Count);
+  const VkResult result = createKernels(raster, KernelMade::deep);
   if (result != VK_SUCCESS) return result;
   return createPipeline(raster, raster.layout(RasterSet::Blend), raster.deepStage, constantsOf(raster), "blend deep",
                         &raster.blendDeep);
