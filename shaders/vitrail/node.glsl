@@ -41,13 +41,16 @@ vec3 vitrailLinearToSrgb(vec3 linear) {
   return mix(curve, 12.92 * linear, lessThanEqual(linear, vec3(0.0031308)));
 }
 
-// Products, not quotients: of these compilers make products or not, and the picture shall not hang on that. 1 stays 1.
+// A fragment has to become the same numbers wherever it is composed or summed, by any API's compiler. So everything
+// from a node's bits to its pair (below) is `precise`: no compiler may fuse or reorder what the other one does not. And
+// it has products, not quotients: of these compilers make products or not. 1 stays 1.
 const float VITRAIL_BY_1_055 = 0.947867334;
 const float VITRAIL_BY_12_92 = 0.0773993805;
 
 vec3 vitrailSrgbToLinear(vec3 srgb) {
-  vec3 curve = pow((max(srgb, vec3(0.04045)) + 0.055) * VITRAIL_BY_1_055, vec3(2.4));
-  return mix(curve, srgb * VITRAIL_BY_12_92, lessThanEqual(srgb, vec3(0.04045)));
+  precise vec3 curve = pow((max(srgb, vec3(0.04045)) + 0.055) * VITRAIL_BY_1_055, vec3(2.4));
+  precise vec3 line = srgb * VITRAIL_BY_12_92;
+  return mix(curve, line, lessThanEqual(srgb, vec3(0.04045)));
 }
 
 // Here and below min() and max() are given what may be a NaN. Which operand they return then GLSL leaves open; GPUs and
@@ -215,21 +218,25 @@ uint vitrailDepthOrder(float depth, VitrailLayout nodes) {
 // Colour and alpha, the colour as it is stored: linear in the hdr format, else on the sRGB curve.
 // Alpha is kept as its root: faint surfaces have fine steps.
 vec4 vitrailHdrColor(uvec4 key) {
-  float root = float(key.z >> 16) * (1.0 / 65535.0);
-  return vec4(unpackHalf2x16(key.y), unpackHalf2x16(key.z & 0xffffu).x, root * root);
+  precise float root = float(key.z >> 16) * (1.0 / 65535.0);
+  precise float alpha = root * root;
+  return vec4(unpackHalf2x16(key.y), unpackHalf2x16(key.z & 0xffffu).x, alpha);
 }
 
 vec4 vitrailCompactCurve(uvec4 key, VitrailLayout nodes) {
   if (nodes.samples == 1u) {
     const uvec4 steps = uvec4(31u, 63u, 31u, 63u);
     const vec4 step = vec4(1.0 / 31.0, 1.0 / 63.0, 1.0 / 31.0, 1.0 / 63.0);
-    return vec4(uvec4(key.y, key.y >> 5, key.y >> 11, key.y >> 16) & steps) * step;
+    precise vec4 color = vec4(uvec4(key.y, key.y >> 5, key.y >> 11, key.y >> 16) & steps) * step;
+    return color;
   }
-  return vec4(uvec4(key.y, key.y >> 5, key.y >> 10, key.y >> 19) & 31u) * (1.0 / 31.0);
+  precise vec4 color = vec4(uvec4(key.y, key.y >> 5, key.y >> 10, key.y >> 19) & 31u) * (1.0 / 31.0);
+  return color;
 }
 
 vec4 vitrailStandardCurve(uvec4 key) {
-  return vec4(uvec4(key.y, key.y >> 8, key.y >> 16, key.y >> 24) & 255u) * (1.0 / 255.0);
+  precise vec4 color = vec4(uvec4(key.y, key.y >> 8, key.y >> 16, key.y >> 24) & 255u) * (1.0 / 255.0);
+  return color;
 }
 
 vec4 vitrailKeyCurve(uvec4 key, VitrailLayout nodes) {
@@ -267,9 +274,12 @@ struct VitrailPair {
 VitrailPair vitrailPairOf(vec4 c, uint blend) {
   bool multiplies = blend == VITRAIL_MULTIPLY;
   VitrailPair pair;
-  pair.color = c.rgb * mix(mix(c.a, 0.0, multiplies), 1.0, blend == VITRAIL_PREMULTIPLIED);
-  pair.transmittance = vec4(mix(1.0, 1.0 - c.a, blend <= VITRAIL_PREMULTIPLIED));
-  pair.transmittance.rgb = mix(pair.transmittance.rgb, mix(vec3(1.0), c.rgb, c.a), bvec3(multiplies));
+  precise vec3 color = c.rgb * mix(mix(c.a, 0.0, multiplies), 1.0, blend == VITRAIL_PREMULTIPLIED);
+  precise float behind = 1.0 - c.a;
+  precise vec3 filtered = behind + c.a * c.rgb; // mix() leaves it open in which order
+  pair.color = color;
+  pair.transmittance = vec4(mix(1.0, behind, blend <= VITRAIL_PREMULTIPLIED));
+  pair.transmittance.rgb = mix(pair.transmittance.rgb, filtered, bvec3(multiplies));
   return pair;
 }
 

@@ -238,20 +238,22 @@ uint vitrailKeyDepth(uint4 key, VitrailLayout nodes) {
 // Colour and alpha, the colour as it is stored: linear in the hdr format, else on the sRGB curve.
 // Alpha is kept as its root: faint surfaces have fine steps.
 float4 vitrailHdrColor(uint4 key) {
-  float root = float(key.z >> 16) * (1.0 / 65535.0);
-  return float4(f16tof32(key.y & 0xffffu), f16tof32(key.y >> 16), f16tof32(key.z & 0xffffu), root * root);
+  precise float root = float(key.z >> 16) * (1.0 / 65535.0);
+  precise float alpha = root * root;
+  return float4(f16tof32(key.y & 0xffffu), f16tof32(key.y >> 16), f16tof32(key.z & 0xffffu), alpha);
 }
 
 float4 vitrailCompactCurve(uint4 key, VitrailLayout nodes) {
   uint4 one = uint4(key.y, key.y >> 5, key.y >> 11, key.y >> 16) & uint4(31u, 63u, 31u, 63u);
   uint4 several = uint4(key.y, key.y >> 5, key.y >> 10, key.y >> 19) & 31u;
-  float4 color = float4(several) * (1.0 / 31.0);
+  precise float4 color = float4(several) * (1.0 / 31.0);
   if (nodes.samples == 1u) color = float4(one) * float4(1.0 / 31.0, 1.0 / 63.0, 1.0 / 31.0, 1.0 / 63.0);
   return color;
 }
 
 float4 vitrailStandardCurve(uint4 key) {
-  return float4(uint4(key.y, key.y >> 8, key.y >> 16, key.y >> 24) & 255u) * (1.0 / 255.0);
+  precise float4 color = float4(uint4(key.y, key.y >> 8, key.y >> 16, key.y >> 24) & 255u) * (1.0 / 255.0);
+  return color;
 }
 
 float4 vitrailKeyCurve(uint4 key, VitrailLayout nodes) {
@@ -300,10 +302,14 @@ struct VitrailPair {
 
 VitrailPair vitrailPairOf(float4 c, uint blend) {
   VitrailPair pair;
-  pair.color = c.rgb * (blend == VITRAIL_PREMULTIPLIED ? 1.0 : blend == VITRAIL_MULTIPLY ? 0.0 : c.a);
-  float behind = blend <= VITRAIL_PREMULTIPLIED ? 1.0 - c.a : 1.0;
-  pair.transmittance = float4(behind, behind, behind, behind);
-  if (blend == VITRAIL_MULTIPLY) pair.transmittance.rgb = lerp(float3(1.0, 1.0, 1.0), c.rgb, c.a);
+  precise float3 color = c.rgb * (blend == VITRAIL_PREMULTIPLIED ? 1.0 : blend == VITRAIL_MULTIPLY ? 0.0 : c.a);
+  pair.color = color;
+  precise float behind = 1.0 - c.a;
+  float all = blend <= VITRAIL_PREMULTIPLIED ? behind : 1.0;
+  pair.transmittance = float4(all, all, all, all);
+  precise float3 product = c.a * c.rgb;
+  precise float3 filtered = behind + product; // not lerp(), whose order is open
+  if (blend == VITRAIL_MULTIPLY) pair.transmittance.rgb = filtered;
   return pair;
 }
 

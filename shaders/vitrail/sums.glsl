@@ -11,31 +11,6 @@
 
 #include "node.glsl"
 
-// A fragment is summed where it is collected or where it is resolved, as it happens, and both must give the same
-// integers. So everything from the node's bits to the integers is `precise`: no compiler may fuse what the other one
-// does not.
-vec3 vitrailPreciseLinear(vec3 srgb) {
-  precise vec3 base = (max(srgb, vec3(0.04045)) + 0.055) / 1.055;
-  precise vec3 curve = pow(base, vec3(2.4));
-  precise vec3 line = srgb / 12.92;
-  return mix(curve, line, lessThanEqual(srgb, vec3(0.04045)));
-}
-
-VitrailPair vitrailPrecisePair(uvec4 key, VitrailLayout nodes) {
-  precise vec4 c = vitrailKeyCurve(key, nodes);
-  if (nodes.format != VITRAIL_FORMAT_HDR) c.rgb = vitrailPreciseLinear(c.rgb);
-  uint blend = vitrailKeyBlend(key, nodes);
-  bool multiplies = blend == VITRAIL_MULTIPLY;
-  precise vec3 color = c.rgb * mix(mix(c.a, 0.0, multiplies), 1.0, blend == VITRAIL_PREMULTIPLIED);
-  precise float behind = 1.0 - c.a;
-  precise vec3 filtered = behind + c.a * c.rgb;
-  VitrailPair pair;
-  pair.color = color;
-  pair.transmittance = vec4(mix(1.0, behind, blend <= VITRAIL_PREMULTIPLIED));
-  pair.transmittance.rgb = mix(pair.transmittance.rgb, filtered, bvec3(multiplies));
-  return pair;
-}
-
 struct VitrailSums {
   uvec3 color;  // premultiplied, in 1/65536
   uint opacity; // 1 - transmittance, in 1/65536
@@ -51,9 +26,11 @@ vec4 vitrailDensity(vec4 transmittance) {
   return clamp(density, 0.0, 24.0);
 }
 
-// The sums of one fragment. `weight` is the part of the pixel that it covers.
+// The sums of one fragment. `weight` is the part of the pixel that it covers. A fragment is summed where it is
+// collected or where it is resolved, as it happens, and both must give the same integers: `precise`, as everything from
+// the node's bits on.
 VitrailSums vitrailSumsOf(uvec4 key, VitrailLayout nodes, float weight) {
-  VitrailPair pair = vitrailPrecisePair(key, nodes);
+  VitrailPair pair = vitrailPairOf(key, nodes);
   VitrailSums sums = VITRAIL_NO_SUMS;
   precise vec3 color = min(pair.color, 16.0) * weight * 65536.0 + 0.5;
   precise float opacity = (1.0 - pair.transmittance.a) * weight * 65536.0 + 0.5;

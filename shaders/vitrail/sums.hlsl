@@ -5,33 +5,6 @@
 
 #include "node.hlsl"
 
-// A fragment is summed where it is collected or where it is resolved, as it happens, and both must give the same
-// integers. So everything from the node's bits to the integers is `precise`: no compiler may fuse what the other one
-// does not.
-float3 vitrailPreciseLinear(float3 srgb) {
-  precise float3 base = (max(srgb, 0.04045) + 0.055) / 1.055;
-  precise float3 curve = pow(base, 2.4);
-  precise float3 low = srgb / 12.92;
-  return vitrailMixBelow(curve, low, srgb, 0.04045);
-}
-
-VitrailPair vitrailPrecisePair(uint4 key, VitrailLayout nodes) {
-  precise float4 c = vitrailKeyCurve(key, nodes);
-  if (!VITRAIL_IS_FORMAT(nodes, VITRAIL_FORMAT_HDR)) c.rgb = vitrailPreciseLinear(c.rgb);
-  uint blend = vitrailKeyBlend(key, nodes);
-  bool multiplies = blend == VITRAIL_MULTIPLY;
-  precise float3 color = c.rgb * (blend == VITRAIL_PREMULTIPLIED ? 1.0 : multiplies ? 0.0 : c.a);
-  precise float behind = 1.0 - c.a;
-  precise float3 product = c.a * c.rgb;
-  precise float3 filtered = behind + product;
-  float all = blend <= VITRAIL_PREMULTIPLIED ? behind : 1.0;
-  VitrailPair pair;
-  pair.color = color;
-  pair.transmittance = float4(all, all, all, all);
-  if (multiplies) pair.transmittance.rgb = filtered;
-  return pair;
-}
-
 struct VitrailSums {
   uint3 color;   // premultiplied, in 1/65536
   uint opacity;  // 1 - transmittance, in 1/65536
@@ -45,9 +18,11 @@ float4 vitrailDensity(float4 transmittance) {
   return clamp(density, 0.0, 24.0);
 }
 
-// The sums of one fragment. `weight` is the part of the pixel that it covers.
+// The sums of one fragment. `weight` is the part of the pixel that it covers. A fragment is summed where it is
+// collected or where it is resolved, as it happens, and both must give the same integers: `precise`, as everything from
+// the node's bits on.
 VitrailSums vitrailSumsOf(uint4 key, VitrailLayout nodes, float weight) {
-  VitrailPair pair = vitrailPrecisePair(key, nodes);
+  VitrailPair pair = vitrailPairOf(vitrailKeyColor(key, nodes), vitrailKeyBlend(key, nodes));
   precise float3 color = min(pair.color, 16.0) * weight * 65536.0 + 0.5;
   precise float opacity = (1.0 - pair.transmittance.a) * weight * 65536.0 + 0.5;
   float4 density = vitrailDensity(pair.transmittance);

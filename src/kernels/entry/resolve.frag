@@ -38,7 +38,7 @@ bool isGrey(VitrailPair pair) { return pair.transmittance.rgb == vec3(pair.trans
 
 void writeResult(VitrailSink r) {
 #if defined(VITRAIL_MULTISAMPLED)
-  vec4 sum = vec4(0.0);
+  precise vec4 sum = vec4(0.0);
 #define VITRAIL_ADD_SAMPLE(s) if (s < kSamples) sum += over(r.pairs[s], texelFetch(opaqueImage, shownPixel, s));
   VITRAIL_EACH_SAMPLE(VITRAIL_ADD_SAMPLE)
   outColor = sum / float(kSamples);

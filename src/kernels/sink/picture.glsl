@@ -26,7 +26,7 @@ void beginPixel(uvec2 pixel) {
 
 void writePixel(uvec2 pixel, VitrailSink r) {
 #ifdef VITRAIL_MULTISAMPLED
-  vec4 sum = vec4(0.0);
+  precise vec4 sum = vec4(0.0);
 #define VITRAIL_ADD_SAMPLE(s) if (s < kSamples) sum += over(r.pairs[s], texelFetch(opaqueImage, ivec2(pixel), s));
   VITRAIL_EACH_SAMPLE(VITRAIL_ADD_SAMPLE)
   imageStore(colorImage, ivec2(pixel), sum / float(kSamples));

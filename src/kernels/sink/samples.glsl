@@ -53,10 +53,13 @@ uint vitrailVisible(uvec4 key) { return 1u; }
 #endif
 #endif
 
-// What is seen of the opaque colour d, premultiplied, through a list: C + T * d.
+// What is seen of the opaque colour d, premultiplied, through a list: C + T * d. `precise`, as the sums over samples
+// are: compilers know several orders, which round differently.
 vec4 over(VitrailPair pair, vec4 d) {
+  precise vec3 color = pair.color + pair.transmittance.rgb * d.rgb;
   // d.a + (1 - d.a) * (1 - T), without the rounding that would move an opaque 1
-  return vec4(pair.color + pair.transmittance.rgb * d.rgb, 1.0 - pair.transmittance.a * (1.0 - d.a));
+  precise float alpha = 1.0 - pair.transmittance.a * (1.0 - d.a);
+  return vec4(color, alpha);
 }
 
 #endif

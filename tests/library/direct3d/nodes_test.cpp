@@ -1,6 +1,6 @@
 // Nodes that HLSL makes (shaders/vitrail/node.hlsl and so on) equal those that GLSL makes of the same fragments, byte
-// for byte: both run on one device, by Direct3D and by Vulkan, HLSL (as glslang compiles it) by Vulkan, too. And the
-// sums of fragments without a node equal those of the kernels for Direct3D, which are GLSL that SPIRV-Cross has
+// for byte: both run on one device, by Direct3D and by Vulkan, HLSL (as glslang compiles it) by Vulkan, too. So do the
+// sums of fragments without a node, which also equal those of the kernels for Direct3D: GLSL that SPIRV-Cross has
 // translated.
 #include <gtest/gtest.h>
 
@@ -156,7 +156,9 @@ TEST_P(NodesOfBothLanguages, AreTheSameBytes) {
       EXPECT_EQ(countDiffering(input, hlsl, glsl, false), 0U) << "nodes";
       const std::vector<std::byte> onVulkan = runByVulkan(shaders::pack_hlsl, input.words(), bytes, groups);
       EXPECT_EQ(countDiffering(input, onVulkan, glsl, false), 0U) << "nodes of HLSL on Vulkan";
-      EXPECT_EQ(countDiffering(input, hlsl, kernel, true), 0U) << "sums";
+      EXPECT_EQ(countDiffering(input, hlsl, kernel, true), 0U) << "sums of the kernels";
+      EXPECT_EQ(countDiffering(input, hlsl, glsl, true), 0U) << "sums";
+      EXPECT_EQ(countDiffering(input, onVulkan, glsl, true), 0U) << "sums of HLSL on Vulkan";
       std::set<std::uint32_t> nodes; // are not all one
       for (std::size_t i = 0; i < input.fragments.size(); ++i) nodes.insert(packedAt(hlsl, i)[0]);
       EXPECT_GT(nodes.size(), 10000U);

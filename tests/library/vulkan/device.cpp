@@ -115,11 +115,17 @@ void Device::makeInstance() {
   validation.pNext = &messenger; // for what is said while the instance is made and destroyed
   validation.enabledValidationFeatureCount = 1;
   validation.pEnabledValidationFeatures = &kSynchronization;
+#ifdef VITRAIL_TEST_NO_VULKAN_LAYERS // Wine's Vulkan has none
+  constexpr std::array kExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+  constexpr std::uint32_t kLayers = 0;
+#else
   constexpr std::array kExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+  constexpr std::uint32_t kLayers = 1;
+#endif
   auto info = zeroed<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
   info.pNext = &validation;
   info.pApplicationInfo = &application;
-  info.enabledLayerCount = 1;
+  info.enabledLayerCount = kLayers;
   info.ppEnabledLayerNames = &kLayer;
   info.enabledExtensionCount = kExtensions.size();
   info.ppEnabledExtensionNames = kExtensions.data();

@@ -1,4 +1,4 @@
-// Pictures of Direct3D 12 are those of Vulkan: the same points, drawn by both on one device.
+// Pictures of Direct3D are those of Vulkan: the same points, drawn by both on one device.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,9 +11,11 @@
 namespace vitrail::tests {
 namespace {
 
-Backend& backendOf(const std::string& name) {
-  const auto found = std::ranges::find_if(backends(), [&](const Backend* one) { return one->name() == name; });
-  if (found == backends().end()) throw HostError("there is no backend " + name);
+// The program has two backends.
+Backend& backendOf(bool vulkan) {
+  const auto found =
+      std::ranges::find_if(backends(), [&](const Backend* one) { return (one->name() == "vulkan") == vulkan; });
+  if (found == backends().end()) throw HostError("a backend is missing");
   return **found;
 }
 
@@ -43,9 +45,22 @@ Apart compare(const PointResult& a, const PointResult& b) {
   return apart;
 }
 
-TEST(PicturesBesideVulkan, AreTheSame) {
-  Backend& direct3d = backendOf("d3d12");
-  Backend& vulkan = backendOf("vulkan");
+// What frames differ in besides: of `part` fragments in a hundred there is room for, the others are summed.
+struct Frame {
+  std::string name;
+  std::uint32_t maxLayers = 0;
+  std::size_t part = 100;
+};
+
+class PicturesBesideVulkan : public ::testing::TestWithParam<Frame> {};
+INSTANTIATE_TEST_SUITE_P(, PicturesBesideVulkan,
+                         ::testing::Values(Frame{"Whole"}, Frame{"Capped", 5}, Frame{"Overflowed", 0, 60}),
+                         [](const auto& one) { return one.param.name; });
+
+TEST_P(PicturesBesideVulkan, AreTheSameBits) {
+  const Frame& frame = GetParam();
+  Backend& direct3d = backendOf(false);
+  Backend& vulkan = backendOf(true);
   for (const std::uint32_t samples : {1U, 4U}) {
     for (const VitrailNodeFormat format : {VITRAIL_NODE_STANDARD, VITRAIL_NODE_COMPACT, VITRAIL_NODE_HDR}) {
       if (format == VITRAIL_NODE_COMPACT && samples > 1) continue; // has no room for them
@@ -53,25 +68,33 @@ TEST(PicturesBesideVulkan, AreTheSame) {
         SCOPED_TRACE(way.name + ", " + std::to_string(samples) + " samples, format " + std::to_string(format));
         HostDesc desc;
         desc.width = 16;
-        desc.height = 8;
+        desc.height = 16;
         desc.samples = samples;
         desc.nodes = format;
-        desc.behind = {0.25F, 0.5F, 1.0F, 1.0F};
+        desc.maxLayers = frame.maxLayers;
+        desc.behind = {0.25F, 0.5F, 1.0F, 0.75F};
         apply(way, desc);
         std::vector<std::uint32_t> lengths;
-        for (std::uint32_t i = 0; i < 127; ++i) lengths.push_back(i % 40);
-        lengths.push_back(300);
+        for (std::uint32_t i = 0; i < desc.width * desc.height; ++i) lengths.push_back(i % 100 == 99 ? 300 : i % 40);
         PointVariety variety;
         variety.blendModes = true;
         variety.coverage = samples > 1;
         if (format == VITRAIL_NODE_HDR) variety.brightest = 4.0F;
         const std::vector<Point> points = randomLists(desc, lengths, 5, variety);
-        desc.capacity = static_cast<std::uint32_t>(points.size());
+        desc.capacity = static_cast<std::uint32_t>(points.size() * frame.part / 100);
         const PointResult ours = direct3d.makeHost(desc)->draw(points);
         const Apart apart = compare(ours, vulkan.makeHost(desc)->draw(points));
-        EXPECT_EQ(ours.stats.complete, 1U);
+        EXPECT_EQ(ours.stats.complete, frame.part < 100 || frame.maxLayers != 0 ? 0U : 1U);
         EXPECT_EQ(apart.encoded, 0U);
-        EXPECT_EQ(apart.bits, 0U) << "up to " << apart.most;
+        // libvkd3d 1.2 drops `precise`, and Mesa then reorders the sum of samples that have one transmittance
+        // (docs/notes/direct3d.md).
+        const bool reordered =
+            direct3d.name() == "d3d12" && samples > 1 && frame.part < 100 && way.resolve == VITRAIL_RESOLVE_COMPUTE;
+        if (reordered) {
+          EXPECT_LT(apart.most, 4e-6F);
+        } else {
+          EXPECT_EQ(apart.bits, 0U) << "of " << 4 * ours.pixels.size() << ", up to " << apart.most;
+        }
       }
     }
   }
