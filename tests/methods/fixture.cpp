@@ -9,6 +9,7 @@
 #include "../../tool/methods/methods.h"
 #include "../../tool/render/cpu_still.h"
 #include "../../tool/render/gl_still.h"
+#include "../library/vulkan/kept_pipelines.h"
 
 namespace vitrail::tool::test {
 
@@ -28,6 +29,8 @@ class GpuEnvironment : public ::testing::Environment {
  public:
   void TearDown() override {
     sharedGl().reset();
+    if (!sharedGpu()) return;
+    for (const std::string& mistake : tests::destroyKeptPipelines(sharedGpu()->device())) ADD_FAILURE() << mistake;
     sharedGpu().reset();
   }
 };
@@ -42,6 +45,7 @@ Gpu& GpuTest::gpu() {
     GpuOptions options;
     options.validate = true;
     gpu = std::make_unique<Gpu>(options);
+    tests::keepPipelines();
   }
   return *gpu;
 }
