@@ -12,7 +12,7 @@
 
 #include <volk.h>
 
-namespace vitrail::tests {
+namespace vitrail::tool::test {
 
 // Puts itself before volk's functions, and before those that hosts get by vkGetInstanceProcAddr. After
 // volkLoadInstance(), for one device at a time.
@@ -22,4 +22,4 @@ void keepPipelines();
 // destroyed, or somebody twice.
 std::vector<std::string> destroyKeptPipelines(VkDevice device);
 
-} // namespace vitrail::tests
+} // namespace vitrail::tool::test

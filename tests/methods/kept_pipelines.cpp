@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <unordered_map>
 
-namespace vitrail::tests {
+namespace vitrail::tool::test {
 
 namespace {
 
@@ -419,4 +419,4 @@ std::vector<std::string> destroyKeptPipelines(VkDevice device) {
   return mistakes;
 }
 
-} // namespace vitrail::tests
+} // namespace vitrail::tool::test
