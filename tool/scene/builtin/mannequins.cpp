@@ -102,14 +102,14 @@ Body addBody(Scene& scene) {
 }
 
 // Joint angles in degrees. Positive pitches swing a limb forward, lifts swing it outward.
-struct Pose {
+struct Posture {
   float lean, twist, headTurn, headNod;
   std::array<float, 2> shoulderPitch, shoulderLift, elbow, hipPitch, knee;
 };
 
 // Standing or striding, with arms anywhere between hanging and raised. Both feet stay near the floor.
-Pose randomPose(Random& random) {
-  Pose pose{};
+Posture randomPose(Random& random) {
+  Posture pose{};
   pose.lean = random.range(-4.0F, 6.0F);
   pose.twist = random.range(-18.0F, 18.0F);
   pose.headTurn = random.range(-40.0F, 40.0F);
@@ -132,7 +132,7 @@ class Figure {
   Figure(Scene& scene, const Body& body, std::uint32_t material) : scene_(scene), body_(body), material_(material) {}
 
   // floor: a frame with the floor's height between the feet; the figure faces its +Z.
-  void add(const glm::mat4& floor, const Pose& pose) {
+  void add(const glm::mat4& floor, const Posture& pose) {
     const glm::mat4 pelvis = moved(floor, 0.0F, hipHeight(pose), 0.0F);
     place(body_.hips, scaled(moved(pelvis, 0.0F, 0.12F, 0.0F), 1.0F, 1.0F, 0.75F));
     ball(moved(pelvis, 0.0F, 0.155F, 0.0F), 0.055F);
@@ -152,7 +152,7 @@ class Figure {
   void ball(const glm::mat4& frame, float radius) { place(body_.ball, scaled(frame, radius, radius, radius)); }
 
   // The hips sink with the stride, so that the lower foot stands on the floor.
-  static float hipHeight(const Pose& pose) {
+  static float hipHeight(const Posture& pose) {
     float reach = 0.0F;
     for (std::size_t side = 0; side < 2; ++side) {
       const float hip = glm::radians(pose.hipPitch[side]);
@@ -162,7 +162,7 @@ class Figure {
     return reach + ankleHeight;
   }
 
-  void addArm(const glm::mat4& waist, const Pose& pose, std::size_t side) {
+  void addArm(const glm::mat4& waist, const Posture& pose, std::size_t side) {
     const float outward = side == 0 ? 1.0F : -1.0F;
     glm::mat4 frame = moved(waist, outward * 0.215F, 0.33F, 0.0F);
     ball(frame, 0.05F);
@@ -177,7 +177,7 @@ class Figure {
     place(body_.hand, scaled(moved(frame, 0.0F, -0.02F, 0.0F), 0.7F, 1.0F, 1.3F));
   }
 
-  void addLeg(const glm::mat4& pelvis, const Pose& pose, std::size_t side) {
+  void addLeg(const glm::mat4& pelvis, const Posture& pose, std::size_t side) {
     const float outward = side == 0 ? 1.0F : -1.0F;
     glm::mat4 frame = moved(pelvis, outward * 0.092F, 0.0F, 0.0F);
     ball(moved(frame, 0.0F, -0.005F, 0.0F), 0.05F);
