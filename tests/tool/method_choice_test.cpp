@@ -89,13 +89,13 @@ std::string summaryOfTurn(const MethodCosts& costs, int pictures, const Words& m
 
 TEST(MethodChoice, OfTurns) {
   const auto isByTiles = [](const std::string& summary) { return summary.find(" tiles") != std::string::npos; };
-  EXPECT_TRUE(isByTiles(summaryOfTurn(kTilesAreSoonFaster, 8, {})));
-  EXPECT_FALSE(isByTiles(summaryOfTurn(kListsAreFaster, 8, {})));
-  EXPECT_FALSE(isByTiles(summaryOfTurn(kTilesAreSoonFaster, 2, {})));
+  EXPECT_TRUE(isByTiles(summaryOfTurn(kTilesAreSoonFaster, 100, {})));
+  EXPECT_FALSE(isByTiles(summaryOfTurn(kListsAreFaster, 100, {})));
+  EXPECT_FALSE(isByTiles(summaryOfTurn(kTilesAreSoonFaster, 99, {})));
   // Where lists are asked for, or their numbers.
   for (const Words& words : {Words{"--method", "linked-list"}, Words{"--peel", "1"}, Words{"--nodes", "standard"},
                              Words{"--json", "a.json"}}) {
-    EXPECT_FALSE(isByTiles(summaryOfTurn(kTilesAreSoonFaster, 8, words))) << words[0];
+    EXPECT_FALSE(isByTiles(summaryOfTurn(kTilesAreSoonFaster, 100, words))) << words[0];
   }
 }
 

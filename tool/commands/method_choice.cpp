@@ -27,8 +27,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<std::pair<std::string_view, std::uint32_t>, 2> kMeasured = {{{"spheres", 64}, {"planes", 8}}};
 constexpr int kWarmUps = 2;
 constexpr int kMeasurements = 7;
-// Fewer are not worth a measurement, which is as long as dozens of pictures.
-constexpr std::uint64_t kFewPictures = 100;
 constexpr std::size_t kMostRemembered = 16; // devices
 
 constexpr const char* kVersion = VITRAIL_TOOL_VERSION;
@@ -166,12 +164,11 @@ std::string fasterMethod(const MethodCosts& costs, std::uint64_t pictures) {
 
 std::string methodFor(Gpu& gpu, std::uint64_t pictures, const std::function<void()>& onMeasure) {
   const std::optional<std::filesystem::path> memory = methodMemory();
-  if (!memory) return std::string(kListMethod);
+  if (!memory || pictures < kManyPictures) return std::string(kListMethod);
   const std::string identity = identityOf(gpu.properties());
   std::optional<MethodCosts> costs = rememberedCosts(*memory, identity);
   if (!costs) {
-    const bool isCpu = gpu.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-    if (isCpu || pictures < kFewPictures) return std::string(kListMethod);
+    if (gpu.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) return std::string(kListMethod);
     onMeasure();
     costs = measureMethods(gpu);
     rememberCosts(*memory, identity, *costs);

@@ -43,12 +43,15 @@ MethodCosts measureMethods(Gpu& gpu);
 // Which of the two takes less for so many pictures of one scene: tiles where it does in each that was measured.
 std::string fasterMethod(const MethodCosts& costs, std::uint64_t pictures);
 
+// Fewer are drawn by lists, whatever is remembered: they are not worth a measurement, and what they look like to the bit
+// does not hang on whether there was one.
+inline constexpr std::uint64_t kManyPictures = 100;
 // As many pictures as a window draws: what is made once does not count.
 inline constexpr std::uint64_t kPicturesOfAWindow = 100'000;
 
-// The method for so many pictures of any scene. It is measured where nothing is remembered, unless so few are drawn
-// that this takes longer than it saves; then, on drivers for CPUs, and where nothing can be remembered, it is fragment
-// lists. `onMeasure` is called before. Throws GpuError.
+// The method for so many pictures of any scene. It is measured where nothing is remembered, and `onMeasure` is called
+// before. Of few pictures, on drivers for CPUs, and where nothing can be remembered, it is fragment lists. Throws
+// GpuError.
 std::string methodFor(Gpu& gpu, std::uint64_t pictures, const std::function<void()>& onMeasure);
 
 // Whether tiles draws that scene as fragment lists do.
