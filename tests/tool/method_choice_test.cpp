@@ -93,8 +93,7 @@ TEST(MethodChoice, OfTurns) {
   EXPECT_FALSE(isByTiles(summaryOfTurn(kListsAreFaster, 100, {})));
   EXPECT_FALSE(isByTiles(summaryOfTurn(kTilesAreSoonFaster, 99, {})));
   // Where lists are asked for, or their numbers.
-  for (const Words& words : {Words{"--method", "linked-list"}, Words{"--peel", "1"}, Words{"--nodes", "standard"},
-                             Words{"--json", "a.json"}}) {
+  for (const Words& words : {Words{"--peel", "1"}, Words{"--json", "a.json"}}) {
     EXPECT_FALSE(isByTiles(summaryOfTurn(kTilesAreSoonFaster, 100, words))) << words[0];
   }
 }

@@ -43,8 +43,8 @@ MethodCosts measureMethods(Gpu& gpu);
 // Which of the two takes less for so many pictures of one scene: tiles where it does in each that was measured.
 std::string fasterMethod(const MethodCosts& costs, std::uint64_t pictures);
 
-// Fewer are drawn by lists, whatever is remembered: they are not worth a measurement, and what they look like to the bit
-// does not hang on whether there was one.
+// Fewer are drawn by lists, whatever is remembered: they are not worth a measurement, and what they look like to the
+// bit does not hang on whether there was one.
 inline constexpr std::uint64_t kManyPictures = 100;
 // As many pictures as a window draws: what is made once does not count.
 inline constexpr std::uint64_t kPicturesOfAWindow = 100'000;
