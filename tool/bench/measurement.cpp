@@ -35,25 +35,33 @@ FrameShape shapeOf(const FrameReport& report, VitrailNodeFormat nodes) {
 
 bool sameSamples(const Measurement& a, const Measurement& b) { return a.options.samples == b.options.samples; }
 
-// The fragments of a frame: its own count, or for a method that counts none, that of one with as many samples.
-std::optional<double> fragmentsOf(const Measurement& measured, const std::vector<Measurement>& all) {
-  if (measured.report.counted) return static_cast<double>(measured.report.fragmentsRequested);
+// What counted the fragments of a frame: the frame itself, or for a method that counts none, that of one with as many
+// samples. Null: nothing did.
+const FrameReport* countedOf(const Measurement& measured, const std::vector<Measurement>& all) {
+  if (measured.report.counted) return &measured.report;
   const auto counting = std::ranges::find_if(
       all, [&](const Measurement& each) { return each.report.counted && sameSamples(each, measured); });
-  if (counting == all.end()) return {};
-  return static_cast<double>(counting->report.fragmentsRequested);
+  return counting != all.end() ? &counting->report : nullptr;
 }
 
-// Methods whose fragments lie in nodes of lists: traffic.h tells of no others.
-bool hasLists(const Measurement& measured) { return traitsOf(measured.options.name).lists; }
+// The bytes that a frame must move, of the methods that traffic.h tells of.
+std::optional<std::uint64_t> leastBytesOf(const Measurement& measured, const FrameReport* counted) {
+  const MethodTraits& traits = traitsOf(measured.options.name);
+  if (traits.lists && measured.report.counted) { // insertion has no choice: its nodes are these
+    const VitrailNodeFormat nodes = traits.takes(kTakesNodes) ? measured.options.nodes : VITRAIL_NODE_STANDARD;
+    return leastBytes(shapeOf(measured.report, nodes));
+  }
+  if (!measured.report.raster) return {};
+  FrameShape frame = shapeOf(measured.report, VITRAIL_NODE_STANDARD);
+  if (counted != nullptr) frame.coveredPixels = shapeOf(*counted, VITRAIL_NODE_STANDARD).coveredPixels;
+  return leastRasterBytes(frame, *measured.report.raster);
+}
 
-void addFloor(Measurement& measured, double bytesPerSecond) {
-  if (!hasLists(measured) || !measured.report.counted || bytesPerSecond <= 0.0) return;
-  const bool choice = traitsOf(measured.options.name).takes(kTakesNodes); // insertion has none: its nodes are these
-  const VitrailNodeFormat nodes = choice ? measured.options.nodes : VITRAIL_NODE_STANDARD;
-  const std::uint64_t bytes = leastBytes(shapeOf(measured.report, nodes));
-  measured.floorBytes = bytes;
-  measured.floorMs = static_cast<double>(bytes) / bytesPerSecond * 1e3;
+void addFloor(Measurement& measured, const FrameReport* counted, double bytesPerSecond) {
+  if (bytesPerSecond <= 0.0) return;
+  measured.floorBytes = leastBytesOf(measured, counted);
+  if (!measured.floorBytes) return;
+  measured.floorMs = static_cast<double>(*measured.floorBytes) / bytesPerSecond * 1e3;
   if (measured.costMs.median > 0.0) measured.bandwidthShare = *measured.floorMs / measured.costMs.median;
 }
 
@@ -90,11 +98,11 @@ void compare(std::vector<Measurement>& measurements, double bytesPerSecond) {
       measured.costRatio = ratioOfMedians(measured.costMs, baseline->costMs);
       measured.frameRatio = ratioOfMedians(measured.frameMs, baseline->frameMs);
     }
-    const std::optional<double> fragments = fragmentsOf(measured, measurements);
-    if (fragments && measured.costMs.median > 0.0) {
-      measured.fragmentsPerSecond = *fragments / (measured.costMs.median * 1e-3);
+    const FrameReport* counted = countedOf(measured, measurements);
+    if (counted != nullptr && measured.costMs.median > 0.0) {
+      measured.fragmentsPerSecond = static_cast<double>(counted->fragmentsRequested) / (measured.costMs.median * 1e-3);
     }
-    addFloor(measured, bytesPerSecond);
+    addFloor(measured, counted, bytesPerSecond);
   }
 }
 

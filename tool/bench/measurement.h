@@ -30,8 +30,8 @@ struct Measurement {
   // Transparent fragments over the median cost; of the baseline, which counts none, those of another method. None where
   // nothing counted them.
   std::optional<double> fragmentsPerSecond;
-  // Of methods with fragment lists: the bytes that the frame must move (traffic.h), how long that takes at the measured
-  // bandwidth, and the share of the cost that this is.
+  // Of methods with fragment lists, and of tiles where a picture was drawn as a whole: the bytes that the frame must
+  // move (traffic.h), how long that takes at the measured bandwidth, and the share of the cost that this is.
   std::optional<std::uint64_t> floorBytes;
   std::optional<double> floorMs;
   std::optional<double> bandwidthShare;

@@ -1,7 +1,10 @@
-// The bytes that a frame of per-pixel linked lists cannot do without moving: the floor under its time.
+// The bytes that a frame cannot do without moving: the floor under its time. Of methods with per-pixel linked lists,
+// and of the rasteriser in compute shaders.
 #pragma once
 
 #include <cstdint>
+
+#include "../methods/frame_stats.h"
 
 namespace vitrail::tool {
 
@@ -23,5 +26,14 @@ struct FrameShape {
 //            samples of every pixel read, one colour a pixel written
 // Geometry, textures, the depth test, sorting outside registers and counters come on top and are not counted.
 std::uint64_t leastBytes(const FrameShape& frame);
+
+// The same of a frame that was rasterised by tiles (shaders/vitrail/raster/), whose fragments are never stored:
+//   vertices   44 bytes: read (three floats), the place written and read
+//   triangles  12 bytes: the indices
+//   records    104 bytes, of several samples 16 more for each: written with its tile (44), put in order by tile (20),
+//              read (40)
+//   colour     as above, and 4 bytes a sample of opaque depth where a pixel is covered
+// `coveredPixels` may be 0, where nothing has counted them.
+std::uint64_t leastRasterBytes(const FrameShape& frame, const RasterCounts& counts);
 
 } // namespace vitrail::tool

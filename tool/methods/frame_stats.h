@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,13 @@ struct DrawnTile {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint64_t fragments = 0;
+};
+
+// What a method counts that rasterises by itself, tile by tile.
+struct RasterCounts {
+  std::uint64_t triangles = 0; // that were drawn
+  std::uint64_t vertices = 0;  // whose places were worked out once
+  std::uint64_t records = 0;   // triangles in tiles
 };
 
 struct FrameStats {
@@ -40,6 +48,7 @@ struct FrameStats {
   std::uint64_t nodesBytes = 0;
   std::uint64_t headsBytes = 0;
   std::uint64_t totalBytes = 0;             // all that the method keeps on the device for its target
+  std::optional<RasterCounts> raster{};     // of methods that have them, of pictures that were drawn as a whole
   std::vector<std::uint32_t> pixelLayers{}; // of layer-count alone: the fragments of each pixel, rows top to bottom
 };
 

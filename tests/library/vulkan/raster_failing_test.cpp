@@ -210,7 +210,7 @@ TEST_F(RasterFailingTest, GrowthAndTheFirstDeepTiles) {
 }
 
 // Triangles of all sizes at depths of their own, of a picture with eight rows of tiles.
-constexpr std::uint32_t kSide = 64;
+constexpr std::uint32_t kBandedSide = 64;
 RasterScene manyTriangles(std::uint32_t count) {
   std::mt19937 random(11);
   const auto unit = [&] { return static_cast<float>(random() % 1024) / 1024.0F; };
@@ -233,7 +233,7 @@ RasterScene manyTriangles(std::uint32_t count) {
 RasterHostDesc hostOf(const Context& context) {
   RasterHostDesc desc;
   desc.context = &context;
-  desc.width = desc.height = kSide;
+  desc.width = desc.height = kBandedSide;
   desc.indexType = VK_INDEX_TYPE_UINT32;
   return desc;
 }
@@ -272,16 +272,16 @@ TEST_F(RasterFailingTest, ExtentsWithoutMemoryAreDrawnInBands) {
   const std::vector<float> expected = host.draw();
   const VkDeviceSize tileBytes = host.raster().memory().tileBytes;
   mostBytes = 0;
-  EXPECT_EQ(host.raster().resize({4 * kSide, 4 * kSide}), VK_SUCCESS);
+  EXPECT_EQ(host.raster().resize({4 * kBandedSide, 4 * kBandedSide}), VK_SUCCESS);
   EXPECT_GT(host.raster().bands(), 1U);
   EXPECT_EQ(host.raster().memory().tileBytes, tileBytes);
   const std::vector<LogLine> log = backend().takeLog();
   ASSERT_EQ(log.size(), 1U);
   EXPECT_EQ(log[0].severity, VITRAIL_LOG_WARNING);
   // One whose rows are too long for what there is: the raster stays as it was.
-  EXPECT_EQ(host.raster().resize({16384, 2 * kSide}), VK_ERROR_OUT_OF_DEVICE_MEMORY);
+  EXPECT_EQ(host.raster().resize({16384, 2 * kBandedSide}), VK_ERROR_OUT_OF_DEVICE_MEMORY);
   expectOnlyError();
-  EXPECT_EQ(host.raster().resize({kSide, kSide}), VK_SUCCESS);
+  EXPECT_EQ(host.raster().resize({kBandedSide, kBandedSide}), VK_SUCCESS);
   EXPECT_TRUE(host.draw() == expected);
 }
 

@@ -316,6 +316,7 @@ FrameStats Tiles::statsFor(const VitrailVkRasterStats& drawn) const {
   stats.complete = drawn.exact == VK_TRUE;
   stats.errorBound = 0.5 + drawn.errorBound + 0.05;
   stats.tiles = std::max(drawn.bands, 1U);
+  if (drawn.bands == 1) stats.raster = RasterCounts{geometry_.hints().triangles, drawn.vertices, drawn.records};
   stats.nodesBytes = memory.tileBytes; // what the budget is for
   stats.totalBytes = memory.totalBytes + geometry_.bytes();
   return stats;
