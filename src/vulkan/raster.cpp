@@ -90,8 +90,8 @@ VkResult checkCompiled(const Log& log, const VitrailVkRasterDesc& desc, const Vi
                     "VitrailVkRasterDesc::%s: compiled with a VITRAIL_SET of %u, and setLayoutCount is %u", name,
                     compiled->set, desc.setLayoutCount);
   }
-  const bool blends = number >= 3; // the others do not ask
-  if (blends && compiled->several != (desc.samples > 1)) {
+  const bool asksSamples = number >= 1; // positions have none
+  if (asksSamples && compiled->several != (desc.samples > 1)) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED,
                     "VitrailVkRasterDesc::%s: compiled %s VITRAIL_MULTISAMPLED, and samples is %u", name,
                     compiled->several ? "with" : "without", std::max(1U, static_cast<std::uint32_t>(desc.samples)));

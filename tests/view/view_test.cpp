@@ -17,6 +17,9 @@
 #include <sstream>
 #include <thread>
 
+#include "commands/method_choice.h"
+#include "gpu/device.h"
+
 #include "../tool/png_reader.h"
 #include "../tool/vitrail.h"
 #include "desk.h"
@@ -425,6 +428,26 @@ TEST(ViewMethodsTest, DrawsByEveryMethod) {
   }
   EXPECT_GE(methods.size(), 15U);
   EXPECT_FALSE(methods.contains("interlock")); // which Mesa's driver lacks
+  view.expectClosesWell();
+}
+
+TEST(ViewMethodsTest, DrawsByTheFasterMethodWhereNoneIsNamed) {
+  const TemporaryFolder folder;
+  const tool::DeviceSummary device = tool::listDevices().front();
+  tool::rememberCosts(folder.path() / "vitrail" / "methods.json", device.identity,
+                      {{{50.0, 6.0}, {40.0, 3.0}}, {{900.0, 0.5}, {800.0, 0.4}}});
+  ::setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
+  View view(folder, {"--scene", "interlocked", "--device", "llvmpipe", "--samples", "4"});
+  ::unsetenv("XDG_CACHE_HOME");
+  const Json first = view.settled();
+  EXPECT_EQ(first["method"], "tiles");
+  EXPECT_NE(first["command"].get<std::string>().find("--method tiles --samples 4"), std::string::npos);
+  // Light goes its true way through volumes by lists alone.
+  view.desk.drop({std::string(VITRAIL_TEST_CORPUS) + "/good/volume.gltf"});
+  ASSERT_FALSE(view.happened("opened").is_null());
+  EXPECT_EQ(view.settled()["method"], "linked-list");
+  view.desk.key("m");
+  EXPECT_EQ(view.settled()["method"], "tiles"); // for somebody who asks for it
   view.expectClosesWell();
 }
 

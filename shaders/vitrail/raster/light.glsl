@@ -26,12 +26,6 @@ layout(VITRAIL_RASTER_BOUND(9), VITRAIL_COLOR_FORMAT) uniform image2D vitrailCol
 vec4 vitrailColorBehind(ivec2 pixel, uint sample_) { return imageLoad(vitrailColorImage, pixel); }
 #endif
 
-#ifdef VITRAIL_MULTISAMPLED
-#define VITRAIL_EACH_SAMPLE(what) VITRAIL_EACH_OF_8_SAMPLES(what)
-#else
-#define VITRAIL_EACH_SAMPLE(what) what(0)
-#endif
-
 // What fragments have added to a pixel so far, and what of the light behind still comes through at each sample. The
 // picture is the mean of the samples, and a surface is shaded once for all that it covers, so what it adds to the mean
 // is its colour times what comes through where it shows: the colours of single samples are never needed.

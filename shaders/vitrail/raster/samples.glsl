@@ -21,9 +21,15 @@ ivec2 vitrailSamplePlace(uint i) {
   return ivec2(8);
 }
 
-// Arrays stay in registers where their indices are constants, which those of loops are not for every driver.
-#define VITRAIL_EACH_OF_8_SAMPLES(what) what(0) what(1) what(2) what(3) what(4) what(5) what(6) what(7)
+// Spelled out: arrays stay in registers where their indices are constants, which those of loops are not for all
+// drivers.
+#ifdef VITRAIL_MULTISAMPLED
+#define VITRAIL_EACH_SAMPLE(what) what(0) what(1) what(2) what(3) what(4) what(5) what(6) what(7)
+#else
+#define VITRAIL_EACH_SAMPLE(what) what(0)
+#endif
 
+#ifdef VITRAIL_MULTISAMPLED
 // Keeps the pixels whose samples a record covers: of each sample the tile's upper and lower half.
 void vitrailKeepSamples(uint record, uvec2 m[VITRAIL_RASTER_MOST_SAMPLES]) {
   uint at = record * (VITRAIL_RASTER_SAMPLES / 2u);
@@ -56,5 +62,6 @@ uint vitrailCoveredSamples(uint record, uint pixel) {
   }
   return covered;
 }
+#endif
 
 #endif

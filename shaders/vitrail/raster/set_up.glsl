@@ -246,6 +246,7 @@ void vitrailCoverCandidates(uint count, uint firstPlace) {
   for (uint i = gl_LocalInvocationIndex; i < count; i += VITRAIL_RASTER_GROUP) {
     VitrailCandidate c = vitrailCandidateOf(i, firstPlace);
     if (c.place >= vitrailRaster.recordCapacity) continue;
+#ifdef VITRAIL_MULTISAMPLED
     uvec2 covered = uvec2(0u);
     uvec2 samples[VITRAIL_RASTER_MOST_SAMPLES];
 #define VITRAIL_COVER_SAMPLE(i) \
@@ -253,8 +254,11 @@ void vitrailCoverCandidates(uint count, uint firstPlace) {
     samples[i] = vitrailCoverCandidate(c, i); \
     covered |= samples[i]; \
   }
-    VITRAIL_EACH_OF_8_SAMPLES(VITRAIL_COVER_SAMPLE)
-    if (VITRAIL_RASTER_SAMPLES > 1u && (covered.x | covered.y) != 0u) vitrailKeepSamples(c.place, samples);
+    VITRAIL_EACH_SAMPLE(VITRAIL_COVER_SAMPLE)
+    if ((covered.x | covered.y) != 0u) vitrailKeepSamples(c.place, samples);
+#else
+    uvec2 covered = vitrailCoverCandidate(c, 0u);
+#endif
     uint number = 0u;
     if ((covered.x | covered.y) != 0u) number = atomicAdd(vitrailTileRecords[vitrailTileNumber(c.tile)].x, 1u);
     vitrailMakeRecord(c.place, c.tile, number, covered, c.source);
@@ -264,7 +268,9 @@ void vitrailCoverCandidates(uint count, uint firstPlace) {
 // A triangle that fits into 8 x 8 pixels, and so into four tiles.
 struct VitrailSmall {
   uvec2 covered; // of these pixels
-  uvec2 samples[VITRAIL_RASTER_MOST_SAMPLES]; // the same of each of several samples
+#ifdef VITRAIL_MULTISAMPLED
+  uvec2 samples[VITRAIL_RASTER_MOST_SAMPLES]; // the same of each
+#endif
   ivec2 first;   // pixel
   VitrailSource source;
   uint count;    // of tiles in which it covers something; 0: there is none
@@ -339,13 +345,13 @@ void vitrailCoverAll(VitrailSmall small, uint mine) {
     for (uint i = 0u; i < 4u; ++i) {
       if ((covered[i].x | covered[i].y) == 0u || !fits) continue;
       vitrailMakeRecord(place, (small.first >> 3) + ivec2(i & 1u, i >> 1), numbers[i], covered[i], small.source);
-      if (VITRAIL_RASTER_SAMPLES > 1u) {
-        uvec2 samples[VITRAIL_RASTER_MOST_SAMPLES];
+#ifdef VITRAIL_MULTISAMPLED
+      uvec2 samples[VITRAIL_RASTER_MOST_SAMPLES];
 #define VITRAIL_CUT_SAMPLE(k) \
   if (k < VITRAIL_RASTER_SAMPLES) samples[k] = vitrailCutAtTiles(small.samples[k], small.first, i);
-        VITRAIL_EACH_OF_8_SAMPLES(VITRAIL_CUT_SAMPLE)
-        vitrailKeepSamples(place, samples);
-      }
+      VITRAIL_EACH_SAMPLE(VITRAIL_CUT_SAMPLE)
+      vitrailKeepSamples(place, samples);
+#endif
       ++place;
     }
   }
@@ -413,15 +419,20 @@ uint vitrailSetUp(uint draw, uvec2 number, inout VitrailSmall small) {
     uvec2 window = isCut ? vitrailTileWindow(ivec2(0), last - first + 1) : uvec2(0xffffffffu);
     ivec3 corner = vitrailLittleEdgesAt(edges, t.p0, p1, p2, first * VITRAIL_SUBPIXELS);
     small.covered = uvec2(0u);
+#ifdef VITRAIL_MULTISAMPLED
+#define VITRAIL_KEEP_SMALL(i, mask) small.samples[i] = mask;
+#else
+#define VITRAIL_KEEP_SMALL(i, mask)
+#endif
 #define VITRAIL_COVER_SMALL(i) \
   if (i < VITRAIL_RASTER_SAMPLES) { \
     ivec2 place = vitrailSamplePlace(i) * (VITRAIL_SUBPIXELS / 16); \
     ivec3 at = corner + edges.right * place.x + edges.down * place.y; \
     uvec2 mask = window & vitrailLittleCoverage(edges, at, last - first + 1); \
-    if (VITRAIL_RASTER_SAMPLES > 1u) small.samples[i] = mask; \
+    VITRAIL_KEEP_SMALL(i, mask) \
     small.covered |= mask; \
   }
-    VITRAIL_EACH_OF_8_SAMPLES(VITRAIL_COVER_SMALL)
+    VITRAIL_EACH_SAMPLE(VITRAIL_COVER_SMALL)
     if ((small.covered.x | small.covered.y) == 0u) return 0u;
     small.first = first;
     small.count = vitrailTilesOfSmall(small.covered, first);

@@ -42,9 +42,13 @@
 #include "shaders/tiles_deep_several_constant.h"
 #include "shaders/tiles_large.h"
 #include "shaders/tiles_large_clipped.h"
+#include "shaders/tiles_large_several.h"
+#include "shaders/tiles_large_several_clipped.h"
 #include "shaders/tiles_positions.h"
 #include "shaders/tiles_set_up.h"
 #include "shaders/tiles_set_up_clipped.h"
+#include "shaders/tiles_set_up_several.h"
+#include "shaders/tiles_set_up_several_clipped.h"
 #include "tiles_geometry.h"
 
 namespace vitrail::tool {
@@ -81,6 +85,19 @@ class SurfaceConstants {
   VkSpecializationInfo info_{};
 };
 
+// A stage as permutations.cmake compiles it: of one sample or several, with its other choice or without.
+struct StageCode {
+  std::span<const std::uint32_t> one;
+  std::span<const std::uint32_t> several;
+  std::span<const std::uint32_t> oneWith;
+  std::span<const std::uint32_t> severalWith;
+
+  std::span<const std::uint32_t> of(std::uint32_t samples, bool with) const {
+    if (samples > 1) return with ? severalWith : several;
+    return with ? oneWith : one;
+  }
+};
+
 class Tiles final : public Method {
  public:
   Tiles(const MethodHost& host, std::uint32_t samples);
@@ -100,8 +117,6 @@ class Tiles final : public Method {
   void check(VkResult result, const char* call) const;
   void makeRaster();
   void setExtent(VkExtent2D extent);
-  std::span<const std::uint32_t> blendCode() const;
-  std::span<const std::uint32_t> deepCode() const;
   std::uint32_t blendModes() const;
   void countMemory();
   void follow();
@@ -139,24 +154,6 @@ void Tiles::check(VkResult result, const char* call) const {
   throw GpuError(reason_);
 }
 
-std::span<const std::uint32_t> Tiles::blendCode() const {
-  if (geometry_.constantTextures()) {
-    if (samples_ > 1) return shaders::tiles_blend_several_constant;
-    return shaders::tiles_blend_constant;
-  }
-  if (samples_ > 1) return shaders::tiles_blend_several;
-  return shaders::tiles_blend;
-}
-
-std::span<const std::uint32_t> Tiles::deepCode() const {
-  if (geometry_.constantTextures()) {
-    if (samples_ > 1) return shaders::tiles_deep_several_constant;
-    return shaders::tiles_deep_constant;
-  }
-  if (samples_ > 1) return shaders::tiles_deep_several;
-  return shaders::tiles_deep;
-}
-
 // Of tiles.glsl's surfaces.
 std::uint32_t Tiles::blendModes() const {
   std::uint32_t modes = 1U << VITRAIL_BLEND_OVER;
@@ -179,10 +176,18 @@ void Tiles::makeRaster() {
   desc.setLayoutCount = static_cast<std::uint32_t>(layouts.size());
   desc.setLayouts = layouts.data();
   if (geometry_.keepsPositions()) desc.positions = constants.stage(shaders::tiles_positions);
-  desc.setUp = clipped ? constants.stage(shaders::tiles_set_up_clipped) : constants.stage(shaders::tiles_set_up);
-  desc.setUpLarge = clipped ? constants.stage(shaders::tiles_large_clipped) : constants.stage(shaders::tiles_large);
-  desc.blend = constants.stage(blendCode());
-  desc.blendDeep = constants.stage(deepCode());
+  const StageCode setUp{shaders::tiles_set_up, shaders::tiles_set_up_several, shaders::tiles_set_up_clipped,
+                        shaders::tiles_set_up_several_clipped};
+  const StageCode large{shaders::tiles_large, shaders::tiles_large_several, shaders::tiles_large_clipped,
+                        shaders::tiles_large_several_clipped};
+  const StageCode blend{shaders::tiles_blend, shaders::tiles_blend_several, shaders::tiles_blend_constant,
+                        shaders::tiles_blend_several_constant};
+  const StageCode deep{shaders::tiles_deep, shaders::tiles_deep_several, shaders::tiles_deep_constant,
+                       shaders::tiles_deep_several_constant};
+  desc.setUp = constants.stage(setUp.of(samples_, clipped));
+  desc.setUpLarge = constants.stage(large.of(samples_, clipped));
+  desc.blend = constants.stage(blend.of(samples_, geometry_.constantTextures()));
+  desc.blendDeep = constants.stage(deep.of(samples_, geometry_.constantTextures()));
   desc.indexType = VK_INDEX_TYPE_UINT32;
   desc.blendModes = blendModes();
   desc.solids = (geometry_.anyFeatures() & shaders::FEATURE_SOLID) != 0 ? VK_TRUE : VK_FALSE;
