@@ -15,8 +15,8 @@ namespace {
 
 constexpr const char* kBlendHelp =
     R"(How to blend it:
-  --method M            one of these; the first is the default, on GPUs of windows and turns of 100
-                        pictures and more the faster one of the first two
+  --method M            one of these; the first is the default, but windows, and turns of 100 pictures
+                        and more, are drawn on a GPU by the faster one of the first two
 @methods@
   --samples N           1 (default), 2, 4 or 8 samples a pixel, as the device offers
   --msaa-resolve R      per-pixel (default): the samples are blended and averaged at once.
