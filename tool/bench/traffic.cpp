@@ -6,7 +6,6 @@ namespace {
 
 constexpr std::uint64_t kHeadBytes = 4;
 constexpr std::uint64_t kColorBytes = 8;
-
 constexpr std::uint64_t kDepthBytes = 4;
 
 std::uint64_t colorBytes(const FrameShape& frame) {

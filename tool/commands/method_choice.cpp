@@ -170,7 +170,13 @@ std::string methodFor(Gpu& gpu, std::uint64_t pictures, const std::function<void
   if (!costs) {
     if (gpu.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) return std::string(kListMethod);
     onMeasure();
-    costs = measureMethods(gpu);
+    try {
+      costs = measureMethods(gpu);
+    } catch (const DeviceLost&) {
+      throw;
+    } catch (const GpuError&) { // a measurement that fails is no reason not to draw: what is wrong will be said then
+      return std::string(kListMethod);
+    }
     rememberCosts(*memory, identity, *costs);
   }
   return fasterMethod(*costs, pictures);

@@ -50,8 +50,8 @@ inline constexpr std::uint64_t kManyPictures = 100;
 inline constexpr std::uint64_t kPicturesOfAWindow = 100'000;
 
 // The method for so many pictures of any scene. It is measured where nothing is remembered, and `onMeasure` is called
-// before. Of few pictures, on drivers for CPUs, and where nothing can be remembered, it is fragment lists. Throws
-// GpuError.
+// before. Of few pictures, on drivers for CPUs, and where nothing can be measured or remembered, it is fragment lists.
+// Throws DeviceLost.
 std::string methodFor(Gpu& gpu, std::uint64_t pictures, const std::function<void()>& onMeasure);
 
 // Whether tiles draws that scene as fragment lists do.
