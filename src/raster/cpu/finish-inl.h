@@ -261,22 +261,35 @@ inline void TileWorker::behind(const Frame& frame, std::uint32_t block, std::uin
   for (std::size_t c = 0; c < 4; ++c) color[c] = load(behind_.color[c]);
 }
 
-// Writes the picture's pixels: r, g, b, alpha.
+// Keeps the picture's pixels, r, g, b, alpha, until the tile is done: the picture is in memory, and what waits to be
+// stored there holds up all that is stored, and read again, after it.
 inline void TileWorker::write(const Frame& frame, std::uint32_t block, const F* color) {
   std::size_t stride = 0;
-  float* const first = pixelsOf(frame, block, stride);
-  if (first == nullptr) {
+  if (pixelsOf(frame, block, stride) == nullptr) {
     for (std::size_t c = 0; c < 4; ++c) store(pixels_.color[c], color[c]);
     writePixels(frame, tile_, block, pixels_);
     return;
   }
-  alignas(64) float fours[4 * kLanes];
-  storeFours(fours, color[0], color[1], color[2], color[3]);
+  storeFours(drawn_[block].data(), color[0], color[1], color[2], color[3]);
+  written_ |= std::uint64_t{1} << block;
+}
+
+// Writes what write() has kept.
+inline void TileWorker::writeTile(const Frame& frame) {
   const hn::FixedTag<float, 4> four;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    hn::StoreU(hn::Load(four, fours + 4 * placeOfFour(lane)), four,
-               first + lane / kBlockSide * stride + lane % kBlockSide * 4);
+  for (std::uint32_t row = 0; row < kBlocksAcross; ++row) {
+    for (std::uint32_t y = 0; y < kBlockSide; ++y) {
+      for (std::uint64_t left = written_ >> row * kBlocksAcross & 0xffU; left != 0; left &= left - 1) {
+        const std::uint32_t block = row * kBlocksAcross + static_cast<std::uint32_t>(std::countr_zero(left));
+        std::size_t stride = 0;
+        float* const to = pixelsOf(frame, block, stride) + y * stride;
+        for (std::size_t x = 0; x < kBlockSide; ++x) {
+          hn::StoreU(hn::Load(four, drawn_[block].data() + 4 * placeOfFour(y * kBlockSide + x)), four, to + 4 * x);
+        }
+      }
+    }
   }
+  written_ = 0;
 }
 
 // The mean of the samples, each over what is behind it.

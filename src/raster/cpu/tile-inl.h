@@ -36,6 +36,7 @@ inline void TileWorker::draw(const Frame& frame, std::uint32_t tile, TileCounts&
   orderByDepth(frame);
   if (!numbers_.empty() || (opaque_ != nullptr && opaque_->drawn != 0) || frame.info.sampleColors != nullptr) {
     drawParts(frame, blocks, counts);
+    writeTile(frame);
   }
 }
 

@@ -208,6 +208,7 @@ class TileWorker final : public TileWorkspace {
   float* pixelsOf(const Frame& frame, std::uint32_t block, std::size_t& stride) const;
   HWY_INLINE void prefetchPixels(const Frame& frame, std::uint32_t block) const;
   void write(const Frame& frame, std::uint32_t block, const F* color);
+  void writeTile(const Frame& frame);
   void blendedOver(const Frame& frame, std::uint32_t block, const State* state, F* sum);
   void finishBlock(const Frame& frame, std::uint32_t block, const State* state);
   void listBlock(const Frame& frame, std::uint32_t block, const SortedRows& sorted);
@@ -261,6 +262,9 @@ class TileWorker final : public TileWorkspace {
   std::vector<VitrailLayer> list_;
   PixelBlock pixels_;
   PixelBlock behind_;
+  // Blocks that are done but not in the picture yet: four floats a pixel, where storeFours() puts them.
+  alignas(64) std::array<std::array<float, 4 * kLanes>, kBlocks> drawn_{};
+  std::uint64_t written_ = 0;
   alignas(64) VitrailCpuFragments fragments_{};
 };
 
