@@ -24,14 +24,14 @@ namespace vitrail::raster::HWY_NAMESPACE {
 template <TileWorker::Kept kKept>
 HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, std::uint32_t item, Window* window) {
   constexpr bool kShaded = kKept == Kept::Shaded;
-  const Met met = meet(item);
-  const Work work = met.work;
-  const std::uint32_t t = work.triangle;
-  const std::uint32_t block = work.block;
-  std::uint32_t mask = work.pixels;
+  const Work work = work_[item];
+  const std::uint32_t t = work.triangle();
+  const std::uint32_t block = work.block();
+  std::uint32_t mask = work.pixels();
+  const F depth = depthOfWork(work);
   I keys[kMaxSamples];
-  if (hasDepth_) mask = testDepth(frame, work, item, met.depth, keys);
-  const I key = keyOf(met.depth, frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE);
+  if (hasDepth_) mask = testDepth(frame, work, item, depth, keys);
+  const I key = keyOfInner(depth, frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE);
   if (window != nullptr) {
     const std::uint32_t later = mask & ~bitsOf(load(window->until) > key);
     window->isCut = window->isCut || later != 0;
@@ -62,13 +62,14 @@ HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, s
                        HWY_ATTR { store(row + kLanes * vector, select(here, value, load(kept + kLanes * vector))); };
   put(RowShape::kKey, key);
   if constexpr (!kShaded) {
-    const std::uint32_t number = static_cast<std::uint32_t>(batch_.number[t]) & ~kFrontBit;
-    const std::uint32_t draw = frame.jobs[number >> kJobBits].draw;
-    put(RowShape::kNumber, set(static_cast<std::int32_t>(draw)));
-    if constexpr (kKept == Kept::FlatTracked) trackHidden(frame, block, here, key, frame.flatPairs[draw][3]);
+    const std::int32_t draw = batch_.draw[t];
+    put(RowShape::kNumber, set(draw));
+    if constexpr (kKept == Kept::FlatTracked) {
+      trackHidden(frame, block, here, key, colors_.alphaOf(draw));
+    }
   } else {
     F weights[6];
-    perspective(t, met.second, met.third, frame.needs.derivatives, weights);
+    perspective(work, frame.needs.derivatives, weights);
     put(RowShape::kNumber, set(batch_.number[t]));
     const std::uint32_t count = frame.needs.derivatives ? 6 : 2;
     for (std::uint32_t i = 0; i < count; ++i) put(RowShape::kSecond + i, bitsOf(weights[i]));
@@ -91,16 +92,88 @@ template <TileWorker::Kept kKept>
 HWY_INLINE bool TileWorker::emit(const Frame& frame, std::uint32_t item, Window* window) {
   Emitted emitted = emitTransparent<kKept>(frame, item, window);
   if (HWY_UNLIKELY(emitted == Emitted::IsCrowded)) {
-    thin(frame, work_[item].block);
+    thin(frame, work_[item].block());
     emitted = emitTransparent<kKept>(frame, item, window);
   }
   return emitted == Emitted::IsStored;
 }
 
+// Stores fragments from an entry of work_ on, up to one that takes more than that: a chunk, a look at what is hidden, a
+// triangle that is careful or big. Returns which one that is. A part of emitTransparent(), with half as many instructions.
+template <TileWorker::Kept kKept>
+HWY_INLINE std::uint32_t TileWorker::emitPlain(const Frame& frame, std::uint32_t item, std::uint32_t count) {
+  constexpr bool kTracked = kKept == Kept::FlatTracked;
+  constexpr bool kShaded = kKept == Kept::Shaded;
+  const std::uint32_t stride = (kShaded ? shape_.vectors : RowShape::kFlatVectors) * kLanes;
+  const bool derivatives = frame.needs.derivatives;
+  const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
+  const I flip = set(nearestIsOne ? -1 : 0); // as keyOfInner()
+  const I base = set(nearestIsOne ? kOneBits + kNearestKey + 1 : kNearestKey);
+  const F zero = set(0.0F);
+  const F one = set(1.0F);
+  const F least = set(0.5F * frame.leastTransmittance);
+  const std::uint64_t saturated = saturated_;
+  const std::int32_t* const draws = batch_.draw;
+  Store::Head* const heads = store_.heads();
+  for (; item < count; ++item) {
+    const Work work = work_[item];
+    const std::uint32_t t = work.triangle();
+    const std::uint32_t block = work.block();
+    const std::uint32_t mask = work.pixels();
+    const M here = maskOf(mask);
+    Store::Head& head = heads[block];
+    const std::uint32_t index = Store::freeRow(head, mask);
+    const Row row = Store::rowAfter(head, index, stride);
+    if (HWY_UNLIKELY(row > head.last || batch_.careful[t] != 0)) break;
+    if (kShaded && HWY_UNLIKELY(batch_.big[t] != 0)) break;
+    const F depth = planeAt(batch_, t, load(kBlockLanes.place[block][0]), load(kBlockLanes.place[block][1]));
+    const I key = (bitsOf(min(max(depth, zero), one)) ^ flip) + base;
+    if ((saturated >> block & 1U) != 0) {
+      if (!kTracked || (mask & ~bitsOf(load(until_[block]) > key)) != 0) break;
+    }
+    if constexpr (kTracked) { // as trackHidden()
+      const F before = load(through_[block]);
+      const F through = fnma(before, keep(here, set(colors_.alphaOf(draws[t]))), before);
+      if (HWY_UNLIKELY(bitsOf(least > through) != opaquePixels_[block])) break;
+      store(through_[block], through);
+      store(farthest_[block], max(load(farthest_[block]), keep(here, key)));
+    }
+    const std::int32_t* const kept = store_.take(head, mask, index, row);
+    const auto put = [&](std::uint32_t vector, const I& value)
+                         HWY_ATTR { store(row + kLanes * vector, select(here, value, load(kept + kLanes * vector))); };
+    put(RowShape::kKey, key);
+    if constexpr (!kShaded) {
+      put(RowShape::kNumber, set(draws[t]));
+    } else {
+      F weights[6];
+      perspective<true>(work, derivatives, weights);
+      put(RowShape::kNumber, set(batch_.number[t]));
+      put(RowShape::kSecond, bitsOf(weights[0]));
+      put(RowShape::kThird, bitsOf(weights[1]));
+      if (derivatives) {
+        for (std::uint32_t i = 0; i < 4; ++i) put(RowShape::kDerivatives + i, bitsOf(weights[2 + i]));
+      }
+    }
+  }
+  return item;
+}
+
+// Stores the first `count` entries of work_. False: the store is full.
+template <TileWorker::Kept kKept>
+HWY_INLINE bool TileWorker::emitAll(const Frame& frame, std::uint32_t count) {
+  const bool isPlain = !hasDepth_ && shape_.coverage == 0 && batch_.pieces == nullptr;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (isPlain) i = emitPlain<kKept>(frame, i, count);
+    if (i < count && !emit<kKept>(frame, i, nullptr)) return false;
+  }
+  return true;
+}
+
 // False: the store is full.
 template <TileWorker::Kept kKept>
 inline bool TileWorker::collect(const Frame& frame, std::uint64_t blocks) {
-  return rasterise(frame, blocks, [&](std::uint32_t i) HWY_ATTR { return emit<kKept>(frame, i, nullptr); });
+  return rasterise(frame, blocks, kKept == Kept::Shaded,
+                   [&](std::uint32_t count) HWY_ATTR { return emitAll<kKept>(frame, count); });
 }
 
 inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, TileCounts& counts) {
@@ -178,7 +251,7 @@ inline void TileWorker::shrink(Window& window, std::uint32_t block) {
   for (std::size_t r = 0; r < most; ++r) { // what is not filled in below is not there, but names what exists
     std::memcpy(copy.data() + r * stride, rows_[r], shape_.bytes());
     std::fill_n(copy.data() + r * stride, kLanes, kFarKey);
-    if (shape_.isFlat) std::fill_n(copy.data() + r * stride + kLanes * RowShape::kNumber, kLanes, shape_.nothing);
+    if (shape_.isFlat) std::fill_n(copy.data() + r * stride + kLanes * RowShape::kNumber, kLanes, 0);
   }
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     for (std::size_t r = 0; r < lists[lane].size(); ++r) {
@@ -203,13 +276,17 @@ inline void TileWorker::drawInWindows(const Frame& frame, std::uint32_t block, T
     store_.reset(Store::kNoLimit);
     saturated_ = 0;
     store(layers_, set(0));
-    rasterise(frame, std::uint64_t{1} << block, [&](std::uint32_t item) HWY_ATTR {
-      while (
-          !(frame.needs.shaded ? emit<Kept::Shaded>(frame, item, &window) : emit<Kept::Flat>(frame, item, &window))) {
-        if (frame.info.list != nullptr) {
-          store_.grow(); // the hook takes whole lists
-        } else {
-          shrink(window, block);
+    const auto emitOne = [&](std::uint32_t i) HWY_ATTR {
+      return frame.needs.shaded ? emit<Kept::Shaded>(frame, i, &window) : emit<Kept::Flat>(frame, i, &window);
+    };
+    rasterise(frame, std::uint64_t{1} << block, frame.needs.shaded, [&](std::uint32_t count) HWY_ATTR {
+      for (std::uint32_t i = 0; i < count; ++i) {
+        while (!emitOne(i)) {
+          if (frame.info.list != nullptr) {
+            store_.grow(); // the hook takes whole lists
+          } else {
+            shrink(window, block);
+          }
         }
       }
       return true;

@@ -108,8 +108,8 @@ inline SortedRows TileWorker::sortBlock(const Frame& frame, std::uint32_t block)
     sorted.pairs = store_.base();
     sorted.filters = store_.base() + kLanes * (RowShape::kFilters - RowShape::kPairs);
   } else {
-    sorted.pairs = frame.flatPairs.front().data();
-    sorted.filters = frame.needs.filters ? frame.flatFilters.front().data() : nullptr;
+    sorted.pairs = colors_.pairs();
+    sorted.filters = colors_.filters();
   }
   sortKeys(sorted.keys, sorted.rows);
   sorted.rows = rows_.size(); // those that were added are last
@@ -175,6 +175,8 @@ inline void TileWorker::blendInto(const Frame& frame, std::uint32_t block, const
     }
     if (frame.needs.filters) {
       blendRows<true>(sorted, least, state.samples[0]);
+    } else if (!frame.needs.shaded && colors_.areFew()) {
+      blendFlat(sorted, colors_, least, state.samples[0]);
     } else {
       blendRows<false>(sorted, least, state.samples[0]);
     }

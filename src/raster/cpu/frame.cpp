@@ -7,27 +7,23 @@
 namespace vitrail::raster {
 
 void Bins::append(Bin& bin) {
-  if ((used_ >> kSlabBits) == slabs_.size()) slabs_.push_back(std::make_unique_for_overwrite<Slab>());
-  const std::uint32_t chunk = used_++;
-  chunkAt(chunk).next = kNone;
-  if (bin.count == 0) {
-    bin.first = chunk;
-  } else {
-    chunkAt(bin.last).next = chunk;
-  }
-  bin.last = chunk;
+  if (used_ / kSlab == slabs_.size()) slabs_.push_back(std::make_unique_for_overwrite<Slab>());
+  Chunk& chunk = (*slabs_[used_ / kSlab])[used_ % kSlab];
+  ++used_;
+  (bin.chunks == 0 ? bin.first : bin.last->next) = &chunk;
+  bin.last = &chunk;
+  ++bin.chunks;
+  bin.next = chunk.numbers.data();
+  bin.end = bin.next + kChunk;
 }
 
 void Bins::copy(std::size_t tile, std::uint32_t* to) const {
-  const Bin& bin = bins_[tile];
-  std::uint32_t chunk = bin.first;
-  for (std::uint32_t left = bin.count; left > 0;) {
-    const Chunk& from = chunkAt(chunk);
+  const Chunk* chunk = bins_[tile].first;
+  for (std::uint32_t left = countOf(tile); left > 0; chunk = chunk->next) {
     const std::uint32_t count = std::min(left, kChunk);
-    std::memcpy(to, from.numbers.data(), count * sizeof(std::uint32_t));
+    std::memcpy(to, chunk->numbers.data(), count * sizeof(std::uint32_t));
     to += count;
     left -= count;
-    chunk = from.next;
   }
 }
 

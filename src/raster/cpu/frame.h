@@ -45,8 +45,7 @@ struct Job {
 // Triangle numbers in chunks, of one thread and one tile; in the order in which they were added.
 class Bins {
  public:
-  static constexpr std::uint32_t kChunk = 31;
-  static constexpr std::uint32_t kNone = ~0U;
+  static constexpr std::uint32_t kChunk = 30;
 
   void reset(std::size_t tiles) {
     bins_.assign(tiles, {});
@@ -55,39 +54,38 @@ class Bins {
 
   void add(std::size_t tile, std::uint32_t number) {
     Bin& bin = bins_[tile];
-    const std::uint32_t place = bin.count % kChunk;
-    if (place == 0) append(bin);
-    chunkAt(bin.last).numbers[place] = number;
-    ++bin.count;
+    if (bin.next == bin.end) append(bin);
+    *bin.next++ = number;
   }
 
-  std::uint32_t countOf(std::size_t tile) const { return bins_[tile].count; }
+  std::uint32_t countOf(std::size_t tile) const {
+    const Bin& bin = bins_[tile];
+    return bin.chunks * kChunk - static_cast<std::uint32_t>(bin.end - bin.next);
+  }
 
   // Writes the numbers of a tile one after the other.
   void copy(std::size_t tile, std::uint32_t* to) const;
 
  private:
-  struct Bin {
-    std::uint32_t first = kNone;
-    std::uint32_t last = kNone;
-    std::uint32_t count = 0;
-  };
   struct Chunk {
     std::array<std::uint32_t, kChunk> numbers;
-    std::uint32_t next;
+    Chunk* next;
   };
-  static constexpr std::uint32_t kSlabBits = 12;
-  struct Slab {
-    std::array<Chunk, 1U << kSlabBits> chunks;
+  struct Bin {
+    std::uint32_t* next = nullptr; // where the next number goes
+    std::uint32_t* end = nullptr;  // of its chunk
+    Chunk* first = nullptr;
+    Chunk* last = nullptr;
+    std::uint32_t chunks = 0;
   };
+  static constexpr std::uint32_t kSlab = 4096; // chunks
+  using Slab = std::array<Chunk, kSlab>;
 
-  Chunk& chunkAt(std::uint32_t i) { return slabs_[i >> kSlabBits]->chunks[i & ((1U << kSlabBits) - 1)]; }
-  const Chunk& chunkAt(std::uint32_t i) const { return slabs_[i >> kSlabBits]->chunks[i & ((1U << kSlabBits) - 1)]; }
   void append(Bin& bin);
 
   std::vector<Bin> bins_;
   std::vector<std::unique_ptr<Slab>> slabs_;
-  std::uint32_t used_ = 0;
+  std::size_t used_ = 0; // chunks
 };
 
 // Of one thread.

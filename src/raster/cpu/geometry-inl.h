@@ -7,6 +7,7 @@
 #endif
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "raster/cpu/frame.h"
@@ -117,7 +118,12 @@ inline void placeVertices(Frame& frame, const VertexChunk& chunk) {
   }
 }
 
-// Tiles whose pixels' samples a box in subpixels may hold.
+// How near to a pixel's borders samples lie, in subpixels.
+inline std::int32_t sampleMargin(std::uint32_t samples) {
+  return samples == 1 ? 128 : samples == 2 ? 64 : samples == 4 ? 32 : 16;
+}
+
+// Tiles whose pixels' samples a box in subpixels may hold; where x1 is below x0, or y1 below y0, none.
 struct TileRange {
   std::int32_t x0;
   std::int32_t y0;
@@ -125,23 +131,40 @@ struct TileRange {
   std::int32_t y1;
 };
 
-// How near to a pixel's borders samples lie, in subpixels.
-inline std::int32_t sampleMargin(std::uint32_t samples) {
-  return samples == 1 ? 128 : samples == 2 ? 64 : samples == 4 ? 32 : 16;
-}
+// The same of sixteen boxes.
+struct TileRanges {
+  alignas(64) std::int32_t x0[kLanes];
+  alignas(64) std::int32_t y0[kLanes];
+  alignas(64) std::int32_t x1[kLanes];
+  alignas(64) std::int32_t y1[kLanes];
+  alignas(64) std::int32_t first[kLanes]; // number of the first tile
+  std::uint32_t single = 0;               // those of one tile, a bit each
+};
 
-inline TileRange tilesOf(const Frame& frame, std::int32_t left, std::int32_t top, std::int32_t right,
-                         std::int32_t bottom) {
+// Returns which of them hold anything, a bit each.
+HWY_INLINE std::uint32_t tilesOfSixteen(const Frame& frame, const I& left, const I& top, const I& right,
+                                        const I& bottom, TileRanges& ranges) {
   const std::int32_t margin = sampleMargin(frame.info.samples);
-  const auto width = static_cast<std::int32_t>(frame.info.width);
-  const auto height = static_cast<std::int32_t>(frame.info.height);
   // From the first pixel with a sample at or right of `left` to the last one with a sample at or left of `right`.
-  const std::int32_t x0 = std::max((left + margin - 1) >> kSubpixelBits, 0);
-  const std::int32_t y0 = std::max((top + margin - 1) >> kSubpixelBits, 0);
-  const std::int32_t x1 = std::min((right - margin) >> kSubpixelBits, width - 1);
-  const std::int32_t y1 = std::min((bottom - margin) >> kSubpixelBits, height - 1);
-  if (x0 > x1 || y0 > y1) return {0, 0, -1, -1};
-  return {x0 >> 5, y0 >> 5, x1 >> 5, y1 >> 5};
+  const I before = set(margin - 1);
+  const I after = set(margin);
+  const I zero = set(0);
+  const I x0 = max(shiftRight<kSubpixelBits>(left + before), zero);
+  const I y0 = max(shiftRight<kSubpixelBits>(top + before), zero);
+  const I x1 = min(shiftRight<kSubpixelBits>(right - after), set(static_cast<std::int32_t>(frame.info.width) - 1));
+  const I y1 = min(shiftRight<kSubpixelBits>(bottom - after), set(static_cast<std::int32_t>(frame.info.height) - 1));
+  const I tileX0 = shiftRight<5>(x0);
+  const I tileY0 = shiftRight<5>(y0);
+  const I tileX1 = shiftRight<5>(x1);
+  const I tileY1 = shiftRight<5>(y1);
+  store(ranges.x0, tileX0);
+  store(ranges.y0, tileY0);
+  store(ranges.x1, tileX1);
+  store(ranges.y1, tileY1);
+  store(ranges.first, tileY0 * set(static_cast<std::int32_t>(frame.tilesX)) + tileX0);
+  const std::uint32_t seen = ~bitsOf((x0 > x1) | (y0 > y1)) & 0xffffU;
+  ranges.single = seen & bitsOf((tileX0 == tileX1) & (tileY0 == tileY1));
+  return seen;
 }
 
 inline void addTo(Bins& bins, const Frame& frame, const TileRange& range, std::uint32_t number) {
@@ -169,7 +192,55 @@ inline void binPieces(const Frame& frame, const DrawInfo& info, std::uint32_t pr
       bottom = std::max(bottom, corner.y);
     }
   }
-  addTo(bins, frame, tilesOf(frame, left, top, right, bottom), number);
+  TileRanges ranges;
+  if (tilesOfSixteen(frame, set(left), set(top), set(right), set(bottom), ranges) == 0) return;
+  addTo(bins, frame, {ranges.x0[0], ranges.y0[0], ranges.x1[0], ranges.y1[0]}, number);
+}
+
+// Up to sixteen triangles of a job, from its `first`th on, in any order, but always the same. Returns about how near they
+// come.
+HWY_INLINE float binSixteen(const Frame& frame, const DrawInfo& info, std::uint32_t jobNumber, std::uint32_t first,
+                            std::uint32_t count, bool nearestIsOne, Bins& bins) {
+  const VitrailCpuDraw& draw = info.draw;
+  const Job& job = frame.jobs[jobNumber];
+  const Corner* const base = frame.corners.data() + info.firstVertex;
+  I x[3];
+  I y[3];
+  F nearest;
+  for (std::uint32_t c = 0; c < 3; ++c) {
+    const auto cornerOf = [&](std::size_t lane) { // what is beyond the job repeats its last triangle
+      const std::uint64_t triangle = job.first + std::min(first + static_cast<std::uint32_t>(lane), job.count - 1);
+      return reinterpret_cast<const float*>(base + vertexOf(draw, 3 * triangle + c));
+    };
+    F column[4];
+    loadFours(cornerOf, column[0], column[1], column[2], column[3]);
+    x[c] = bitsOf(column[0]);
+    y[c] = bitsOf(column[1]);
+    if (c == 0) nearest = column[2]; // one corner tells enough
+  }
+  const I left = min(x[0], min(x[1], x[2]));
+  const std::uint32_t here = 0xffffU >> (kLanes - count);
+  const std::uint32_t clipped = bitsOf(left == set(kNeedsClipping)) & here;
+  TileRanges ranges;
+  const std::uint32_t seen = tilesOfSixteen(frame, left, min(y[0], min(y[1], y[2])), max(x[0], max(x[1], x[2])),
+                                            max(y[0], max(y[1], y[2])), ranges);
+  const std::uint32_t number = jobNumber << kJobBits | first;
+  const std::uint32_t single = ranges.single & here & ~clipped;
+  for (std::uint32_t lanes = single; lanes != 0; lanes &= lanes - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+    bins.add(static_cast<std::uint32_t>(ranges.first[lane]), number + lane);
+  }
+  for (std::uint32_t lanes = (seen | clipped) & here & ~single; lanes != 0; lanes &= lanes - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+    if (HWY_UNLIKELY((clipped >> lane & 1U) != 0)) {
+      binPieces(frame, info, job.first + first + lane, number + lane, bins);
+    } else {
+      addTo(bins, frame, {ranges.x0[lane], ranges.y0[lane], ranges.x1[lane], ranges.y1[lane]}, number + lane);
+    }
+  }
+  const F farthest = set(nearestIsOne ? 0.0F : 1.0F);
+  const F depths = select(maskOf(here & ~clipped), nearest, farthest);
+  return nearestIsOne ? mostOf(depths) : leastOf(depths);
 }
 
 inline void binJob(Frame& frame, std::uint32_t jobNumber, ThreadBins& threadBins) {
@@ -177,30 +248,19 @@ inline void binJob(Frame& frame, std::uint32_t jobNumber, ThreadBins& threadBins
   const DrawInfo& info = frame.draws[job.draw];
   const VitrailCpuDraw& draw = info.draw;
   Bins& bins = draw.surface == VITRAIL_CPU_OPAQUE ? threadBins.opaque : threadBins.transparent;
-  const Corner* corners = frame.corners.data() + info.firstVertex;
   const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
-  float nearest = nearestIsOne ? 0.0F : 1.0F;
-  for (std::uint32_t i = 0; i < job.count; ++i) {
-    const std::uint32_t number = jobNumber << kJobBits | i;
-    const std::uint32_t primitive = job.first + i;
-    if (draw.topology != VITRAIL_CPU_TRIANGLES) {
-      binPieces(frame, info, primitive, number, bins);
-      continue;
+  job.nearest = nearestIsOne ? 0.0F : 1.0F;
+  if (draw.topology != VITRAIL_CPU_TRIANGLES) {
+    for (std::uint32_t i = 0; i < job.count; ++i) {
+      binPieces(frame, info, job.first + i, jobNumber << kJobBits | i, bins);
     }
-    const std::uint64_t at = std::uint64_t{primitive} * 3;
-    const Corner& a = corners[vertexOf(draw, at)];
-    const Corner& b = corners[vertexOf(draw, at + 1)];
-    const Corner& c = corners[vertexOf(draw, at + 2)];
-    if (a.x == kNeedsClipping || b.x == kNeedsClipping || c.x == kNeedsClipping) {
-      binPieces(frame, info, primitive, number, bins);
-      continue;
-    }
-    const TileRange range = tilesOf(frame, std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}),
-                                    std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}));
-    addTo(bins, frame, range, number);
-    nearest = nearestIsOne ? std::max(nearest, a.depth) : std::min(nearest, a.depth); // one corner tells enough
+    return;
   }
-  job.nearest = nearest;
+  for (std::uint32_t i = 0; i < job.count; i += kLanes) {
+    const std::uint32_t count = std::min<std::uint32_t>(kLanes, job.count - i);
+    const float nearest = binSixteen(frame, info, jobNumber, i, count, nearestIsOne, bins);
+    job.nearest = nearestIsOne ? std::max(job.nearest, nearest) : std::min(job.nearest, nearest);
+  }
 }
 
 } // namespace vitrail::raster::HWY_NAMESPACE

@@ -61,8 +61,8 @@ inline bool TileWorker::mayHide(const Frame& frame) const {
     };
     F pair[4];
     F filter[4];
-    pairs(frame.flatPairs.front().data(), RowShape::kPairs, pair);
-    if (frame.needs.filters) pairs(frame.flatFilters.front().data(), RowShape::kFilters, filter);
+    pairs(colors_.pairs(), RowShape::kPairs, pair);
+    if (frame.needs.filters) pairs(colors_.filters(), RowShape::kFilters, filter);
     through.take(counts, pair[3], filter);
   }
   return !none(through.isTooLittle());
@@ -76,8 +76,8 @@ inline bool TileWorker::mayHideFlat(const Frame& frame, std::uint32_t block) {
   for (std::size_t r = first; r < rows_.size(); ++r) {
     const std::int32_t* draws = rows_[r] + kLanes * RowShape::kNumber; // of what is not there: one that does nothing
     const bool isOne = all(load(draws) == set(draws[0]));
-    F alpha = set(frame.flatPairs[static_cast<std::uint32_t>(draws[0])][3]);
-    if (!isOne) alpha = gather(frame.flatPairs.front().data() + 3, shiftLeft<2>(load(draws)));
+    F alpha = set(colors_.alphaOf(draws[0]));
+    if (!isOne) alpha = gather(colors_.pairs() + 3, shiftLeft<2>(load(draws)));
     through = fnma(through, alpha, through);
   }
   store(through_[block], through);

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include <cstdint>
+#include <cstring>
 
 HWY_BEFORE_NAMESPACE();
 namespace vitrail::raster::HWY_NAMESPACE {
@@ -199,10 +200,44 @@ HWY_INLINE F gather(const float* from, const I& at) {
   VITRAIL_EACH r.v[i] = hn::GatherIndex(kF, from, at.v[i]);
   return r;
 }
+
+// Up to how many floats lookUpFloats() finds without memory: 0 where it is no faster than memory.
+#if HWY_TARGET == HWY_AVX3
+constexpr std::size_t kLookedUp = 64;
+#else
+constexpr std::size_t kLookedUp = 0;
+#endif
+// The floats at places, below `count`, of a table of kLookedUp.
+HWY_INLINE F lookUpFloats(const float* table, const I& at, std::size_t count) {
+#if HWY_TARGET == HWY_AVX3
+  F r;
+  const auto quarter = [table](std::size_t i) HWY_ATTR { return _mm512_load_ps(table + 16 * i); };
+  r.v[0].raw = _mm512_permutex2var_ps(quarter(0), at.v[0].raw, quarter(1));
+  if (count > 32) {
+    const __m512 upper = _mm512_permutex2var_ps(quarter(2), at.v[0].raw, quarter(3));
+    r.v[0].raw = _mm512_mask_blend_ps(_mm512_cmpgt_epi32_mask(at.v[0].raw, _mm512_set1_epi32(31)), r.v[0].raw, upper);
+  }
+  return r;
+#else
+  static_cast<void>(count);
+  return gather(table, at);
+#endif
+}
+
 HWY_INLINE std::int32_t sumOf(const I& a) {
   hn::Vec<TagI> sum = a.v[0];
   for (std::size_t i = 1; i < kVectors; ++i) sum = hn::Add(sum, a.v[i]);
   return hn::GetLane(hn::SumOfLanes(kI, sum));
+}
+HWY_INLINE float mostOf(const F& a) {
+  hn::Vec<TagF> most = a.v[0];
+  for (std::size_t i = 1; i < kVectors; ++i) most = hn::Max(most, a.v[i]);
+  return hn::GetLane(hn::MaxOfLanes(kF, most));
+}
+HWY_INLINE float leastOf(const F& a) {
+  hn::Vec<TagF> least = a.v[0];
+  for (std::size_t i = 1; i < kVectors; ++i) least = hn::Min(least, a.v[i]);
+  return hn::GetLane(hn::MinOfLanes(kF, least));
 }
 HWY_INLINE std::int32_t mostOf(const I& a) {
   hn::Vec<TagI> most = a.v[0];
@@ -235,6 +270,15 @@ HWY_INLINE D setDouble(double x) {
 HWY_INLINE D toDouble(const I& a) {
   D r;
   const hn::Half<TagI> half;
+  VITRAIL_EACH {
+    r.v[2 * i] = hn::PromoteTo(kD, hn::LowerHalf(half, a.v[i]));
+    r.v[2 * i + 1] = hn::PromoteTo(kD, hn::UpperHalf(half, a.v[i]));
+  }
+  return r;
+}
+HWY_INLINE D toDouble(const F& a) {
+  D r;
+  const hn::Half<TagF> half;
   VITRAIL_EACH {
     r.v[2 * i] = hn::PromoteTo(kD, hn::LowerHalf(half, a.v[i]));
     r.v[2 * i + 1] = hn::PromoteTo(kD, hn::UpperHalf(half, a.v[i]));
@@ -350,6 +394,20 @@ constexpr std::size_t placeOfKey(std::size_t lane) {
   const std::size_t vector = lane / kVectorLanes;
   const std::size_t block = lane % kVectorLanes / 4;
   return (2 * vector + lane % 4 / 2) * kKeyLanes + 2 * block + lane % 2;
+}
+
+// What goes with the depths of sixteen keys, in the order of lanes.
+HWY_INLINE I restsOf(const double* keys) {
+#if HWY_TARGET == HWY_AVX3
+  I r;
+  r.v[0].raw = _mm512_castps_si512(_mm512_shuffle_ps(_mm512_castpd_ps(_mm512_load_pd(keys)),
+                                                     _mm512_castpd_ps(_mm512_load_pd(keys + kKeyLanes)), 0x88));
+  return r;
+#else
+  alignas(64) std::int32_t rests[kLanes];
+  for (std::size_t l = 0; l < kLanes; ++l) std::memcpy(rests + l, keys + placeOfKey(l), sizeof(rests[l]));
+  return load(rests);
+#endif
 }
 
 } // namespace vitrail::raster::HWY_NAMESPACE

@@ -17,18 +17,17 @@ HWY_BEFORE_NAMESPACE();
 namespace vitrail::raster::HWY_NAMESPACE {
 
 HWY_INLINE void TileWorker::emitOpaque(const Frame& frame, std::uint32_t item) {
-  const Met met = meet(item);
-  const Work work = met.work;
-  const std::uint32_t t = work.triangle;
-  const std::uint32_t block = work.block;
+  const Work work = work_[item];
+  const std::uint32_t t = work.triangle();
+  const std::uint32_t block = work.block();
+  const F depth = depthOfWork(work);
   I keys[kMaxSamples];
-  std::uint32_t mask = testDepth(frame, work, item, met.depth, keys);
+  std::uint32_t mask = testDepth(frame, work, item, depth, keys);
   if (mask == 0) return;
   F weights[6];
-  perspective(t, met.second, met.third, frame.needs.opaqueDerivatives, weights);
-  const I centre = keyOf(met.depth, frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE);
-  const std::uint32_t number = static_cast<std::uint32_t>(batch_.number[t]) & ~kFrontBit;
-  const VitrailCpuDraw& draw = frame.draws[frame.jobs[number >> kJobBits].draw].draw;
+  perspective(work, frame.needs.opaqueDerivatives, weights);
+  const I centre = keyOfInner(depth, frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE);
+  const VitrailCpuDraw& draw = frame.draws[static_cast<std::uint32_t>(batch_.draw[t])].draw;
   if ((draw.shadeFlags & VITRAIL_CPU_SHADE_DISCARD) != 0) {
     ToShade s;
     s.x = frame.info.originX + blockX(block);
@@ -125,8 +124,8 @@ inline void TileWorker::drawOpaque(const Frame& frame, std::uint32_t tile) {
     }
   }
   if (numbers_.empty()) return;
-  rasterise(frame, ~std::uint64_t{0}, [&](std::uint32_t item) HWY_ATTR {
-    emitOpaque(frame, item);
+  rasterise(frame, ~std::uint64_t{0}, true, [&](std::uint32_t count) HWY_ATTR {
+    for (std::uint32_t i = 0; i < count; ++i) emitOpaque(frame, i);
     return true;
   });
   for (std::uint64_t left = opaque_->drawn; left != 0; left &= left - 1) {

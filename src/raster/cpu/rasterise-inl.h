@@ -8,6 +8,7 @@
 
 #include <hwy/cache_control.h>
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "raster/cpu/worker-inl.h"
@@ -26,9 +27,10 @@ inline void TileWorker::merge(const Frame& frame, std::uint32_t tile, bool opaqu
     const std::size_t before = numbers_.size();
     numbers_.resize(before + count);
     bins.copy(tile, numbers_.data() + before);
-    // Each list ascends: threads take jobs in ascending order.
+    // Jobs ascend in each list: threads take them in ascending order.
     if (lists++ > 0) {
-      std::inplace_merge(numbers_.begin(), numbers_.begin() + static_cast<std::ptrdiff_t>(before), numbers_.end());
+      std::inplace_merge(numbers_.begin(), numbers_.begin() + static_cast<std::ptrdiff_t>(before), numbers_.end(),
+                         [](std::uint32_t a, std::uint32_t b) { return a >> kJobBits < b >> kJobBits; });
     }
   }
 }
@@ -56,12 +58,29 @@ inline void TileWorker::orderByDepth(const Frame& frame) {
   numbers_.swap(ordered_);
 }
 
-// Finds the corners of up to kBatch triangles, so that they are in cache when they are staged.
-HWY_INLINE void TileWorker::fetch(const Frame& frame, std::size_t first, std::uint32_t count, Fetched* fetched) const {
+// Corners of what is no triangle, or not there.
+inline constexpr Corner kClippedCorner{kNeedsClipping, 0, 0.0F, 0.0F};
+inline constexpr Corner kNoCorner{};
+
+// What is set up with the last triangles of a batch are some that cover nothing.
+HWY_INLINE void pad(Staged& staged) {
+  for (std::uint32_t i = staged.count; i % kLanes != 0; ++i) {
+    for (auto& corners : staged.corners) corners[i] = &kNoCorner;
+    staged.number[i] = 0;
+    staged.draw[i] = 0;
+    staged.cull[i] = 0;
+  }
+}
+
+// Finds the corners of up to kBatch triangles, so that they are in cache when they are set up.
+HWY_INLINE void TileWorker::stage(const Frame& frame, std::size_t first, std::uint32_t count, bool isShaded,
+                                  Staged& staged) {
   std::uint32_t jobNumber = ~0U;
   const VitrailCpuDraw* draw = nullptr;
   const Corner* corners = nullptr;
+  std::uint32_t drawNumber = 0;
   std::uint32_t firstPrimitive = 0;
+  staged.count = count;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t number = numbers_[first + i];
     if (number >> kJobBits != jobNumber) {
@@ -69,86 +88,85 @@ HWY_INLINE void TileWorker::fetch(const Frame& frame, std::size_t first, std::ui
       const Job& job = frame.jobs[jobNumber];
       const DrawInfo& info = frame.draws[job.draw];
       draw = &info.draw;
+      drawNumber = isShaded ? job.draw : colors_.numberOf(frame, job.draw);
       corners = frame.corners.data() + info.firstVertex;
       firstPrimitive = job.first;
     }
-    Fetched& f = fetched[i];
-    f.draw = draw;
+    staged.number[i] = static_cast<std::int32_t>(number);
+    staged.draw[i] = static_cast<std::int32_t>(drawNumber);
+    staged.cull[i] = draw->cull;
     if (HWY_UNLIKELY(draw->topology != VITRAIL_CPU_TRIANGLES)) {
-      f.corners[0] = nullptr;
+      for (auto& each : staged.corners) each[i] = &kClippedCorner;
       continue;
     }
     const std::uint64_t at = std::uint64_t{firstPrimitive + (number & (kJobTriangles - 1))} * 3;
     for (std::uint64_t c = 0; c < 3; ++c) {
-      f.corners[c] = corners + vertexOf(*draw, at + c);
-      hwy::Prefetch(f.corners[c]);
+      const Corner* const corner = corners + vertexOf(*draw, at + c);
+      staged.corners[c][i] = corner;
+      hwy::Prefetch(corner);
     }
   }
+  pad(staged);
 }
 
-HWY_INLINE void TileWorker::add(std::uint32_t number, const VitrailCpuDraw& draw, const Corner& a, const Corner& b,
-                                const Corner& c) {
-  const std::uint32_t at = batch_.count++;
-  batch_.corners[0][at] = a;
-  batch_.corners[1][at] = b;
-  batch_.corners[2][at] = c;
-  batch_.number[at] = static_cast<std::int32_t>(number);
-  batch_.cull[at] = draw.cull;
-  batch_.isPiece[at] = false;
-}
-
-// Adds a triangle to the batch, or what it is rasterised as. False: the store is full.
+// Draws what a primitive is rasterised as that is no triangle, or has to be clipped, once a batch of it is full. False:
+// the store is full.
 template <class Emit>
-HWY_INLINE bool TileWorker::stage(const Frame& frame, std::uint32_t number, const Fetched& f, std::uint64_t blocks,
-                                  Emit emit) {
-  if (HWY_LIKELY(f.corners[0] != nullptr)) {
-    const Corner& a = *f.corners[0];
-    const Corner& b = *f.corners[1];
-    const Corner& c = *f.corners[2];
-    if (HWY_LIKELY(a.x != kNeedsClipping && b.x != kNeedsClipping && c.x != kNeedsClipping)) {
-      add(number, *f.draw, a, b, c);
-      return batch_.count < kBatch || flush(frame, blocks, emit);
-    }
-  }
-  return stagePieces(frame, number, blocks, emit);
-}
-
-template <class Emit>
-HWY_NOINLINE bool TileWorker::stagePieces(const Frame& frame, std::uint32_t number, std::uint64_t blocks, Emit emit) {
+HWY_NOINLINE bool TileWorker::stagePieces(const Frame& frame, std::uint32_t number, bool isShaded,
+                                          Emit emit) {
   const Job& job = frame.jobs[number >> kJobBits];
   const DrawInfo& info = frame.draws[job.draw];
   const Pieces pieces = piecesOf(frame, info, job.first + (number & (kJobTriangles - 1)));
   for (const Piece& piece : pieces.all()) {
-    const std::uint32_t at = batch_.count;
-    add(number, info.draw, piece.corners[0], piece.corners[1], piece.corners[2]);
-    batch_.isPiece[at] = true;
+    const std::uint32_t at = pieces_.count++;
     for (std::size_t i = 0; i < 3; ++i) {
-      batch_.second[i][at] = piece.second[i];
-      batch_.third[i][at] = piece.third[i];
+      pieces_.place[i][at] = piece.corners[i];
+      pieces_.corners[i][at] = &pieces_.place[i][at];
+      pieces_.second[i][at] = piece.second[i];
+      pieces_.third[i][at] = piece.third[i];
     }
-    if (batch_.count == kBatch && !flush(frame, blocks, emit)) return false;
+    pieces_.number[at] = static_cast<std::int32_t>(number);
+    pieces_.draw[at] = static_cast<std::int32_t>(isShaded ? job.draw : colors_.numberOf(frame, job.draw));
+    pieces_.cull[at] = info.draw.cull;
+    if (pieces_.count == kBatch && !drawPieces(frame, isShaded, emit)) return false;
   }
   return true;
 }
 
-// False: the store is full.
 template <class Emit>
-inline bool TileWorker::rasterise(const Frame& frame, std::uint64_t blocks, Emit emit) {
-  batch_.count = 0;
+inline bool TileWorker::drawPieces(const Frame& frame, bool isShaded, Emit emit) {
+  if (pieces_.count == 0) return true;
+  pad(pieces_);
+  std::uint64_t clipped = 0;
+  const bool isDone = drawBatch(frame, pieces_, &pieces_, isShaded, clipped, emit);
+  pieces_.count = 0;
+  return isDone;
+}
+
+// Calls emit(n) for each batch: it draws the first n entries of work_, or returns false. `isShaded`: asks for weights; else for the
+// numbers of draws in colors_. False: the store is full.
+template <class Emit>
+inline bool TileWorker::rasterise(const Frame& frame, std::uint64_t blocks, bool isShaded, Emit emit) {
+  for (std::uint32_t b = 0; b < kBlocks; ++b) {
+    wanted_[b] = (blocks >> b & 1U) != 0 ? tile_.pixels[b] : std::uint16_t{0};
+  }
+  pieces_.count = 0;
   const std::size_t total = numbers_.size();
   const auto countAt = [total](std::size_t i) {
     return i < total ? static_cast<std::uint32_t>(std::min<std::size_t>(kBatch, total - i)) : 0U;
   };
   std::size_t turn = 0;
-  fetch(frame, 0, countAt(0), fetched_[turn].data());
+  stage(frame, 0, countAt(0), isShaded, staged_[turn]);
   for (std::size_t i = 0; i < total; i += kBatch, turn ^= 1U) {
-    fetch(frame, i + kBatch, countAt(i + kBatch), fetched_[turn ^ 1U].data());
-    const std::uint32_t count = countAt(i);
-    for (std::uint32_t k = 0; k < count; ++k) {
-      if (!stage(frame, numbers_[i + k], fetched_[turn][k], blocks, emit)) return false;
+    stage(frame, i + kBatch, countAt(i + kBatch), isShaded, staged_[turn ^ 1U]);
+    std::uint64_t clipped = 0;
+    if (!drawBatch(frame, staged_[turn], nullptr, isShaded, clipped, emit)) return false;
+    for (; HWY_UNLIKELY(clipped != 0); clipped &= clipped - 1) {
+      const std::size_t at = i + static_cast<std::size_t>(std::countr_zero(clipped));
+      if (!stagePieces(frame, numbers_[at], isShaded, emit)) return false;
     }
   }
-  return flush(frame, blocks, emit);
+  return drawPieces(frame, isShaded, emit);
 }
 
 // Fragments that nothing shows of are counted all the same.
@@ -156,18 +174,20 @@ HWY_INLINE void TileWorker::countHidden(std::uint32_t block, std::uint32_t mask)
   store(hidden_[block], load(hidden_[block]) + keep(maskOf(mask), set(1)));
 }
 
-// `kHides`: triangles that are behind all that shows of a block are only counted there. They are set aside first: a
-// branch that nobody can foresee would cost as much as it spares.
-template <bool kHides>
-HWY_INLINE std::uint32_t TileWorker::cover(std::uint64_t blocks, std::uint32_t items) {
+// Lists in work_ which triangles cover what of which blocks, of the `items` pairs of both in pairs_. `kIsBig`: edges of
+// some triangle need more than 16 bits. `kHides`: triangles that are behind all that shows of a block are only counted
+// there. They are set aside first: a branch that nobody can foresee would cost as much as it spares.
+template <bool kIsBig, bool kHides>
+HWY_INLINE std::uint32_t TileWorker::cover(std::uint32_t items) {
   std::uint32_t count = 0;
   std::uint32_t hidden = 0;
   for (std::uint32_t i = 0; i < items; ++i) {
-    const std::uint32_t t = tags_[i];
-    const std::uint32_t block = ids_[i];
+    const std::uint32_t pair = pairs_[i];
+    const std::uint32_t t = pair & 0xffU;
+    const std::uint32_t block = pair >> 8U;
     const I position = load(kBlockLanes.position[block]);
     I outside;
-    if (HWY_LIKELY(!batch_.isBig)) {
+    if constexpr (!kIsBig) {
       outside = multiplyHalves(set(batch_.c[0][0][t]), set(batch_.ab[0][t]), position) |
                 multiplyHalves(set(batch_.c[0][1][t]), set(batch_.ab[1][t]), position) |
                 multiplyHalves(set(batch_.c[0][2][t]), set(batch_.ab[2][t]), position);
@@ -179,10 +199,9 @@ HWY_INLINE std::uint32_t TileWorker::cover(std::uint64_t blocks, std::uint32_t i
         outside = outside | (set(batch_.c[0][k][t]) + set(batch_.a[k][t]) * x + set(batch_.b[k][t]) * y);
       }
     }
-    const std::uint32_t mask = ~signsOf(outside) & tile_.pixels[block];
-    const Work work{static_cast<std::uint8_t>(t), static_cast<std::uint8_t>(block), static_cast<std::uint16_t>(mask)};
-    const std::uint32_t isThere =
-        static_cast<std::uint32_t>(mask != 0) & static_cast<std::uint32_t>(blocks >> block & 1U);
+    const std::uint32_t mask = ~signsOf(outside) & wanted_[block];
+    const auto isThere = static_cast<std::uint32_t>(mask != 0);
+    const Work work{pair | mask << 16U};
     work_[count] = work;
     if constexpr (kHides) {
       const auto isHidden = static_cast<std::uint32_t>(nearest_[t] >= allUntil_[block]);
@@ -193,15 +212,16 @@ HWY_INLINE std::uint32_t TileWorker::cover(std::uint64_t blocks, std::uint32_t i
       count += isThere;
     }
   }
-  for (std::uint32_t i = 0; kHides && i < hidden; ++i) countHidden(hiddenWork_[i].block, hiddenWork_[i].pixels);
+  for (std::uint32_t i = 0; kHides && i < hidden; ++i) countHidden(hiddenWork_[i].block(), hiddenWork_[i].pixels());
   return count;
 }
 
-HWY_INLINE std::uint32_t TileWorker::coverSamples(std::uint64_t blocks, std::uint32_t items, std::uint32_t samples) {
+HWY_INLINE std::uint32_t TileWorker::coverSamples(std::uint32_t items, std::uint32_t samples) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < items; ++i) {
-    const std::uint32_t t = tags_[i];
-    const std::uint32_t block = ids_[i];
+    const std::uint32_t pair = pairs_[i];
+    const std::uint32_t t = pair & 0xffU;
+    const std::uint32_t block = pair >> 8U;
     const I position = load(kBlockLanes.position[block]);
     const I x = position & set(0xffff);
     const I y = shiftRight<16>(position);
@@ -214,67 +234,56 @@ HWY_INLINE std::uint32_t TileWorker::coverSamples(std::uint64_t blocks, std::uin
     for (std::uint32_t s = 0; s < samples; ++s) {
       I outside = set(0);
       for (std::size_t k = 0; k < 3; ++k) outside = outside | (slope[k] + set(batch_.c[s][k][t]));
-      const std::uint32_t mask = ~signsOf(outside) & tile_.pixels[block];
+      const std::uint32_t mask = ~signsOf(outside) & wanted_[block];
       sampleMasks_[s][count] = static_cast<std::uint16_t>(mask);
       any |= mask;
     }
-    work_[count] = {static_cast<std::uint8_t>(t), static_cast<std::uint8_t>(block), static_cast<std::uint16_t>(any)};
-    count += static_cast<std::uint32_t>(any != 0) & static_cast<std::uint32_t>(blocks >> block & 1U);
+    work_[count] = Work{pair | any << 16U};
+    count += static_cast<std::uint32_t>(any != 0);
   }
   return count;
 }
 
+// The same for one batch. `pieces` is `staged` where it holds pieces. `clipped` takes the triangles that have to be
+// clipped first, a bit each.
 template <class Emit>
-inline bool TileWorker::flush(const Frame& frame, std::uint64_t blocks, Emit emit) {
-  const std::uint32_t triangles = batch_.count;
-  batch_.count = 0;
-  batch_.isBig = false;
-  if (triangles == 0) return true;
+inline bool TileWorker::drawBatch(const Frame& frame, const Staged& staged, const StagedPieces* pieces, bool isShaded,
+                 std::uint64_t& clipped, Emit emit) {
+  const std::uint32_t triangles = staged.count;
   const std::uint32_t samples = frame.info.samples;
-  const auto padded = std::min<std::uint32_t>(kBatch, (triangles + kLanes - 1) / kLanes * kLanes);
-  for (std::uint32_t i = triangles; i < padded; ++i) { // what is set up with them is one that covers nothing
-    for (auto& corners : batch_.corners) corners[i] = {};
-    batch_.number[i] = 0;
-    batch_.cull[i] = 0;
+  batch_.draw = staged.draw;
+  batch_.pieces = pieces;
+  batch_.isBig = false;
+  for (std::uint32_t i = 0; i < triangles; i += kLanes) {
+    clipped |= std::uint64_t{setUpSixteen(batch_, staged, i, tile_, samples, isShaded)} << i;
   }
-  for (std::uint32_t i = 0; i < triangles; i += kLanes) setUpSixteen(batch_, i, tile_, samples);
   std::uint32_t items = 0;
   for (std::uint32_t t = 0; t < triangles; ++t) {
-    if (batch_.x1[t] < 0) continue;
-    items += listBlocks(ids_.data() + items, tags_.data() + items, batch_.x0[t], batch_.x1[t], batch_.y0[t],
-                        batch_.y1[t], static_cast<std::uint8_t>(t));
+    items += listBlocks(pairs_.data() + items, batch_.x0[t], batch_.x1[t], batch_.y0[t], batch_.y1[t], t);
   }
   std::uint32_t count = 0;
   if (samples > 1) {
-    count = coverSamples(blocks, items, samples);
+    count = coverSamples(items, samples);
   } else if (saturated_ == 0 || hasDepth_) {
-    count = cover<false>(blocks, items);
+    count = batch_.isBig ? cover<true, false>(items) : cover<false, false>(items);
   } else {
     const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
     for (std::uint32_t i = 0; i < triangles; i += kLanes) {
       store(nearest_.data() + i, nearestOf(batch_, i, nearestIsOne));
     }
-    count = cover<true>(blocks, items);
+    count = batch_.isBig ? cover<true, true>(items) : cover<false, true>(items);
   }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (!emit(i)) return false;
-  }
-  return true;
-}
-
-HWY_INLINE TileWorker::Met TileWorker::meet(std::uint32_t item) const {
-  Met met;
-  met.work = work_[item];
-  const std::uint32_t t = met.work.triangle;
-  weightsAt(batch_, t, load(kBlockLanes.position[met.work.block]), met.second, met.third);
-  met.depth = fma(met.third, set(batch_.z[2][t]), fma(met.second, set(batch_.z[1][t]), set(batch_.z[0][t])));
-  return met;
+  return emit(count);
 }
 
 // Perspective-correct weights of what the host handed over, and how they change: second, third, and with derivatives
-// second to the right and down, third to the right and down.
-HWY_INLINE void TileWorker::perspective(std::uint32_t t, const F& flatSecond, const F& flatThird, bool derivatives,
-                                        F* weights) const {
+// second to the right and down, third to the right and down. `kPlain`: the triangle is not big, and no piece.
+template <bool kPlain>
+HWY_INLINE void TileWorker::perspective(const Work& work, bool derivatives, F* weights) const {
+  const std::uint32_t t = work.triangle();
+  F flatSecond;
+  F flatThird;
+  weightsAt<kPlain>(batch_, t, load(kBlockLanes.position[work.block()]), flatSecond, flatThird);
   const F slope1 = set(batch_.w[1][t]);
   const F slope2 = set(batch_.w[2][t]);
   const F inverse = set(1.0F) / fma(flatThird, slope2, fma(flatSecond, slope1, set(batch_.w[0][t])));
@@ -293,20 +302,21 @@ HWY_INLINE void TileWorker::perspective(std::uint32_t t, const F& flatSecond, co
       weights[4 + axis] = fnma(weights[1], change, w2 * third) * inverse;
     }
   }
-  if (HWY_LIKELY(!batch_.isPiece[t])) return;
+  if (kPlain || HWY_LIKELY(batch_.pieces == nullptr)) return;
+  const StagedPieces& pieces = *batch_.pieces;
   const auto whole = [&](const float(&at)[3][kBatch], const F& second, const F& third, float base) HWY_ATTR {
     return fma(third, set(at[2][t] - at[0][t]), fma(second, set(at[1][t] - at[0][t]), set(base)));
   };
   const F second = weights[0];
   const F third = weights[1];
-  weights[0] = whole(batch_.second, second, third, batch_.second[0][t]);
-  weights[1] = whole(batch_.third, second, third, batch_.third[0][t]);
+  weights[0] = whole(pieces.second, second, third, pieces.second[0][t]);
+  weights[1] = whole(pieces.third, second, third, pieces.third[0][t]);
   if (!derivatives) return;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const F secondSlope = weights[2 + axis];
     const F thirdSlope = weights[4 + axis];
-    weights[2 + axis] = whole(batch_.second, secondSlope, thirdSlope, 0.0F);
-    weights[4 + axis] = whole(batch_.third, secondSlope, thirdSlope, 0.0F);
+    weights[2 + axis] = whole(pieces.second, secondSlope, thirdSlope, 0.0F);
+    weights[4 + axis] = whole(pieces.third, secondSlope, thirdSlope, 0.0F);
   }
 }
 
@@ -317,14 +327,14 @@ HWY_INLINE std::uint32_t TileWorker::testDepth(const Frame& frame, const Work& w
   const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
   const std::uint32_t samples = frame.info.samples;
   if (samples == 1) {
-    keys[0] = keyOf(depth, nearestIsOne);
-    return work.pixels & ~bitsOf(keys[0] > load(opaque_->depth[0].value[work.block]));
+    keys[0] = keyOfInner(depth, nearestIsOne);
+    return work.pixels() & ~bitsOf(keys[0] > load(opaque_->depth[0].value[work.block()]));
   }
   std::uint32_t any = 0;
   for (std::uint32_t s = 0; s < samples; ++s) {
-    keys[s] = keyOf(depth + set(batch_.sampleDepth[s][work.triangle]), nearestIsOne);
+    keys[s] = keyOfInner(depth + set(batch_.sampleDepth[s][work.triangle()]), nearestIsOne);
     std::uint16_t& mask = sampleMasks_[s][item];
-    mask = static_cast<std::uint16_t>(mask & ~bitsOf(keys[s] > load(opaque_->depth[s].value[work.block])));
+    mask = static_cast<std::uint16_t>(mask & ~bitsOf(keys[s] > load(opaque_->depth[s].value[work.block()])));
     any |= mask;
   }
   return any;

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <vector>
 
+#include "raster/cpu/colors-inl.h"
 #include "raster/cpu/shade-inl.h"
 #include "raster/cpu/sort-inl.h"
 #include "raster/cpu/store-inl.h"
@@ -164,6 +165,21 @@ HWY_INLINE void blendRows(const SortedRows& sorted, float leastTransmittance, Bl
     loadRow<kFilters>(sorted, r, color, alpha, filter);
     put<kFilters>(blended, alive, color, alpha, filter);
   }
+}
+
+// The same of draws without a shade function, of few colours.
+HWY_INLINE void blendFlat(const SortedRows& sorted, const TileColors& colors, float leastTransmittance,
+                          Blended& blended) {
+  const F least = set(leastTransmittance);
+  Blended b = blended; // in registers
+  for (std::size_t r = 0; r < sorted.rows; ++r) {
+    const M alive = isAlive<false>(b, least);
+    if (none(alive)) break;
+    const I numbers = restsOf(sorted.keys + r * kLanes);
+    const F color[3] = {colors.lookUp(0, numbers), colors.lookUp(1, numbers), colors.lookUp(2, numbers)};
+    put<false>(b, alive, color, colors.lookUp(3, numbers), nullptr);
+  }
+  blended = b;
 }
 
 // The same for each sample, by the coverage that stands in the rows.

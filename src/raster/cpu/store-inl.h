@@ -38,6 +38,12 @@ HWY_INLINE I keyOf(const F& depth, bool nearestIsOne) {
   return bitsOf(select(one >= depth, max(depth, zero), one)) + base;
 }
 
+// The same of a depth between those of a triangle's corners, which is a number.
+HWY_INLINE I keyOfInner(const F& depth, bool nearestIsOne) {
+  const I bits = bitsOf(min(max(depth, set(0.0F)), set(1.0F)));
+  return nearestIsOne ? set(kOneBits + kNearestKey) - bits : bits + set(kNearestKey);
+}
+
 HWY_INLINE F depthOf(const I& key, bool nearestIsOne) {
   return nearestIsOne ? floatOf(set(kOneBits + kNearestKey) - key) : floatOf(key - set(kNearestKey));
 }
@@ -45,7 +51,7 @@ HWY_INLINE F depthOf(const I& key, bool nearestIsOne) {
 // Which vector of a row holds what. Shading replaces the weights by what is blended.
 struct RowShape {
   static constexpr std::uint32_t kKey = 0;
-  static constexpr std::uint32_t kNumber = 1; // shaded: the triangle's number; else: the draw's place in flatPairs
+  static constexpr std::uint32_t kNumber = 1; // shaded: the triangle's number; else: the draw's in TileColors
   static constexpr std::uint32_t kPairs = 2;  // shaded, four vectors: r, g, b, alpha of each pixel, side by side
   static constexpr std::uint32_t kSecond = 2; // weights and derivatives, until they are shaded
   static constexpr std::uint32_t kThird = 3;
@@ -53,12 +59,11 @@ struct RowShape {
   static constexpr std::uint32_t kFilters = 6; // four vectors
   static constexpr std::uint32_t kMost = 11;
   std::uint32_t coverage = 0;
-  std::uint32_t vectors = 2; // at most kMost
+  static constexpr std::uint32_t kFlatVectors = 2;
+  std::uint32_t vectors = kFlatVectors; // at most kMost
   bool isFlat = false;
-  std::int32_t nothing = 0; // flat: the place of the pair that does nothing
 
-  RowShape(const FrameNeeds& needs, bool multisampled, std::size_t draws)
-      : isFlat(!needs.shaded), nothing(static_cast<std::int32_t>(draws)) {
+  RowShape(const FrameNeeds& needs, bool multisampled) : isFlat(!needs.shaded) {
     if (needs.shaded) vectors = needs.filters ? 10 : needs.derivatives ? 8 : 6;
     if (multisampled) coverage = vectors++;
   }
@@ -75,6 +80,7 @@ class Store {
   static constexpr std::uint64_t kFull = ~std::uint64_t{0}; // so that the first fragment opens a row
   static constexpr std::uint32_t kFirstLimit = 64;
   static constexpr std::uint32_t kNoLimit = ~0U;
+  static constexpr std::uint32_t kRoomForAll = 16 * kBlocks; // chunks
 
   // Where pairs are is told in 32 bits, in units of 16 bytes.
   static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 36U;
@@ -104,42 +110,80 @@ class Store {
     free_ = kNone;
     for (Head& head : heads_) {
       head = {};
+      head.row = head.last = arena_.get();
       head.limit = limit;
+      // The first chunk is there before it is needed, where there is room for many: whether a block's first fragment
+      // comes is what nobody can foresee.
+      if (chunks_ >= kRoomForAll) openChunk(head, used_++);
     }
+    peak_ = std::max(peak_, used_);
   }
 
-  std::uint32_t rows(std::uint32_t block) const { return heads_[block].rows; }
+  std::uint32_t rows(std::uint32_t block) const {
+    const Head& head = heads_[block];
+    return head.chunks * kChunkRows - static_cast<std::uint32_t>((head.last - head.row) / stride_);
+  }
 
-  // The row for fragments of a block at the pixels of `mask`, and the one whose values its other pixels keep: itself,
-  // or where nothing is in it yet one without fragments. Null: the arena is full.
+  struct Head { // of a block
+    std::uint64_t filled = kFull; // pixels of the last four rows, the last one's in the uppermost bits
+    Row row = nullptr;            // the last one
+    Row last = nullptr;           // of its chunk; where there is none, both are the arena
+    std::uint32_t chunk = 0;      // the last one
+    std::uint32_t chunks = 0;
+    std::uint32_t shaded = 0; // of its first rows
+    std::uint32_t limit = kFirstLimit;
+  };
+
+  // Which of the block's last four rows is the first in which all pixels of a mask are free: 0 to 3, or 4: none of them,
+  // another row is opened. What follows from it has no branches: nobody could tell which way they go.
+  static HWY_INLINE std::uint32_t freeRow(const Head& head, std::uint32_t mask) {
+#if HWY_TARGET == HWY_AVX3
+    const __m128i filled = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(&head.filled)); // four more rows: all free
+    const auto free = _mm_testn_epi16_mask(filled, _mm_set1_epi16(static_cast<short>(mask)));
+    return static_cast<std::uint32_t>(std::countr_zero(static_cast<std::uint32_t>(free)));
+#else
+    constexpr std::uint64_t kOnes = 0x0001000100010001U;
+    const std::uint64_t taken = head.filled & mask * kOnes;
+    // The top bit of each such row, and maybe of rows above the lowest one.
+    const std::uint64_t free = (taken - kOnes) & ~taken & kOnes << 15U;
+    return static_cast<std::uint32_t>(std::countr_zero(free)) >> 4U;
+#endif
+  }
+  // It is beyond the block's last chunk. `stride`: from row to row.
+  static HWY_INLINE Row rowAfter(const Head& head, std::uint32_t index, std::uint32_t stride) {
+    return head.row + (static_cast<std::ptrdiff_t>(index) - 3) * static_cast<std::ptrdiff_t>(stride);
+  }
+  // Takes it, and tells the row whose values its other pixels keep: itself, or where nothing is in it yet one without
+  // fragments.
+  HWY_INLINE const std::int32_t* take(Head& head, std::uint32_t mask, std::uint32_t index, Row row) const {
+    const std::uint32_t isFresh = index >> 2U;
+    head.row = std::max(head.row, row);
+    head.filled = head.filled >> 16U * isFresh | std::uint64_t{mask} << 16U * (index - isFresh);
+    return isFresh != 0 ? blank_ : row;
+  }
+
+  // All of these, and a chunk if it takes one. Null: the arena is full, or the block crowded.
   HWY_INLINE Row rowFor(std::uint32_t block, std::uint32_t mask, const std::int32_t*& kept) {
     Head& head = heads_[block];
-    constexpr std::uint64_t kOnes = 0x0001000100010001U;
-    // The top bit of each row in which all pixels of the mask are free, and maybe of rows above the lowest such one.
-    const std::uint64_t taken = head.filled & mask * kOnes;
-    const std::uint64_t free = (taken - kOnes) & ~taken & kOnes << 15U;
-    const auto isFresh = static_cast<std::uint32_t>(free == 0);
-    if (HWY_UNLIKELY((isFresh & static_cast<std::uint32_t>(head.left == 0)) != 0)) {
+    std::uint32_t index = freeRow(head, mask);
+    Row row = rowAfter(head, index, stride_);
+    if (HWY_UNLIKELY(row > head.last)) {
       if (!addChunk(head)) return nullptr;
-    } else {
-      head.row += isFresh * shape_.vectors * kLanes;
+      index = freeRow(head, mask);
+      row = rowAfter(head, index, stride_);
     }
-    head.left -= isFresh;
-    head.rows += isFresh;
-    constexpr std::uint64_t kTop = std::uint64_t{1} << 63U;
-    const auto place = static_cast<std::uint32_t>(std::countr_zero(free | kTop)) & 48U; // of its sixteen bits
-    head.filled = head.filled >> 16U * isFresh | std::uint64_t{mask} << place;
-    const Row row = head.row - (48U - place) * shape_.vectors;          // kLanes numbers a vector, 16 bits a row
-    kept = row + (blank_ - row) * static_cast<std::ptrdiff_t>(isFresh); // without a branch: nobody could tell
+    kept = take(head, mask, index, row);
     return row;
   }
+
+  Head* heads() { return heads_.data(); }
 
   // All rows of a block, in the order in which they were opened.
   void collect(std::uint32_t block, std::vector<Row>& rows) const {
     const Head& head = heads_[block];
-    rows.resize(head.rows);
+    rows.resize(this->rows(block));
     std::uint32_t chunk = head.chunk;
-    for (std::uint32_t left = head.rows; left > 0;) {
+    for (auto left = static_cast<std::uint32_t>(rows.size()); left > 0;) {
       const std::uint32_t count = (left - 1) % kChunkRows + 1;
       left -= count;
       for (std::uint32_t i = 0; i < count; ++i) rows[left + i] = rowAt(chunk, i);
@@ -149,13 +193,13 @@ class Store {
 
   void setLimit(std::uint32_t block, std::uint32_t limit) { heads_[block].limit = limit; }
   // Whether it is time to look which fragments of a block can still be seen.
-  bool isCrowded(std::uint32_t block) const { return heads_[block].rows >= heads_[block].limit; }
+  bool isCrowded(std::uint32_t block) const { return rows(block) >= heads_[block].limit; }
   // How many of a block's rows, its first ones, were shaded.
   std::uint32_t shadedRows(std::uint32_t block) const { return heads_[block].shaded; }
 
   // All of its rows were.
   void setShaded(std::uint32_t block) {
-    heads_[block].shaded = heads_[block].rows;
+    heads_[block].shaded = rows(block);
     heads_[block].filled = kFull; // nothing is added to a row that was shaded
   }
 
@@ -163,18 +207,17 @@ class Store {
   void keepFirst(std::uint32_t block, std::uint32_t rows, std::uint32_t limit) {
     Head& head = heads_[block];
     const std::uint32_t chunks = (rows + kChunkRows - 1) / kChunkRows;
-    for (std::uint32_t i = (head.rows + kChunkRows - 1) / kChunkRows; i > chunks; --i) {
+    for (; head.chunks > chunks; --head.chunks) {
       const std::uint32_t before = previous_[head.chunk];
       previous_[head.chunk] = free_;
       free_ = head.chunk;
       head.chunk = before;
     }
-    head.rows = rows;
     head.shaded = rows;
     head.limit = limit;
     head.filled = kFull;
-    head.left = chunks * kChunkRows - rows;
-    head.row = rows == 0 ? nullptr : rowAt(head.chunk, (rows - 1) % kChunkRows);
+    head.row = rows == 0 ? arena_.get() : rowAt(head.chunk, (rows - 1) % kChunkRows);
+    head.last = rows == 0 ? arena_.get() : rowAt(head.chunk, kChunkRows - 1);
   }
 
   // Twice as much room, for what has to be held at once. Rows move.
@@ -183,7 +226,8 @@ class Store {
     std::unique_ptr<std::int32_t, Free> larger(allocate(chunks_ * 2));
     std::memcpy(larger.get(), arena_.get(), chunks_ * chunkBytes_);
     for (Head& head : heads_) {
-      if (head.row != nullptr) head.row = larger.get() + (head.row - arena_.get());
+      head.row = larger.get() + (head.row - arena_.get());
+      head.last = larger.get() + (head.last - arena_.get());
     }
     arena_ = std::move(larger);
     chunks_ *= 2;
@@ -204,19 +248,19 @@ class Store {
   struct Free {
     void operator()(std::int32_t* p) const { ::operator delete (p, std::align_val_t{kVectorBytes}); }
   };
-  struct Head {
-    std::uint64_t filled = kFull; // pixels of the last four rows, the last one's in the uppermost bits
-    std::uint32_t rows = 0;
-    std::uint32_t left = 0; // rows of the last chunk that are free
-    std::uint32_t chunk = 0;
-    std::uint32_t shaded = 0; // of its first rows
-    std::uint32_t limit = kFirstLimit;
-    Row row = nullptr; // the last one
-  };
-
   void makeBlank() {
+    stride_ = static_cast<std::uint32_t>(shape_.vectors * kLanes);
     std::fill_n(blank_, kLanes, kFarKey);
-    if (shape_.isFlat) std::fill_n(blank_ + kLanes * RowShape::kNumber, kLanes, shape_.nothing);
+  }
+
+  // An empty one after a block's others.
+  void openChunk(Head& head, std::uint32_t chunk) {
+    previous_[chunk] = head.chunk;
+    head.chunk = chunk;
+    ++head.chunks;
+    head.last = rowAt(chunk, kChunkRows - 1);
+    head.row = head.last - kChunkRows * stride_;
+    head.filled = kFull; // rows before it are in another chunk
   }
 
   std::uint32_t chunksWithin(std::uint64_t budget) const {
@@ -233,21 +277,18 @@ class Store {
   }
 
   HWY_NOINLINE bool addChunk(Head& head) {
-    if (head.rows >= head.limit) return false;
+    if (head.chunks * kChunkRows >= head.limit) return false; // all of them full
     if (free_ == kNone && used_ == chunks_) return false;
     const std::uint32_t chunk = free_ != kNone ? free_ : used_++;
     peak_ = std::max(peak_, used_);
     if (chunk == free_) free_ = previous_[chunk];
-    previous_[chunk] = head.chunk;
-    head.chunk = chunk;
-    head.row = rowAt(head.chunk, 0);
-    head.left = kChunkRows;
-    head.filled = kFull; // rows before it are in another chunk
+    openChunk(head, chunk);
     return true;
   }
 
   RowShape shape_;
   alignas(64) std::int32_t blank_[RowShape::kMost * kLanes] = {}; // a row without fragments
+  std::uint32_t stride_ = 0; // of rows
   std::size_t chunkBytes_ = 0;
   std::uint32_t chunks_ = 0;
   std::uint32_t used_ = 0;

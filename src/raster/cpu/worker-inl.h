@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "raster/cpu/batch-inl.h"
+#include "raster/cpu/colors-inl.h"
 #include "raster/cpu/picture.h"
 #include "raster/cpu/resolve-inl.h"
 #include "raster/cpu/shade-inl.h"
@@ -22,15 +23,18 @@ namespace vitrail::raster::HWY_NAMESPACE {
 
 constexpr std::uint32_t kBlocksAcross = kTileSide / kBlockSide;
 
-// The pixels of each block, in the tile: x below, y in the upper 16 bits.
+// The pixels of each block, in the tile: x below, y in the upper 16 bits; and both as numbers.
 struct BlockLanes {
   alignas(64) std::int32_t position[kBlocks][kLanes];
-  constexpr BlockLanes() : position() {
+  alignas(64) float place[kBlocks][2][kLanes];
+  constexpr BlockLanes() : position(), place() {
     for (std::uint32_t b = 0; b < kBlocks; ++b) {
       for (std::uint32_t l = 0; l < kLanes; ++l) {
-        const std::uint32_t x = b % kBlocksAcross * kBlockSide + l % kBlockSide;
-        const std::uint32_t y = b / kBlocksAcross * kBlockSide + l / kBlockSide;
-        position[b][l] = static_cast<std::int32_t>(x | y << 16U);
+        const std::uint32_t column = b % kBlocksAcross * kBlockSide + l % kBlockSide;
+        const std::uint32_t row = b / kBlocksAcross * kBlockSide + l / kBlockSide;
+        position[b][l] = static_cast<std::int32_t>(column | row << 16U);
+        place[b][0][l] = static_cast<float>(column);
+        place[b][1][l] = static_cast<float>(row);
       }
     }
   }
@@ -46,26 +50,35 @@ struct PairPlaces {
 };
 inline constexpr PairPlaces kPairPlaces;
 
-// A triangle and a block in which it covers something, and what.
+// A triangle of the batch and a block in which it covers something, and what: from below 8, 8 and 16 bits.
 struct Work {
-  std::uint8_t triangle; // of the batch
-  std::uint8_t block;
-  std::uint16_t pixels; // in which some sample is covered
+  std::uint32_t bits;
+  std::uint32_t triangle() const { return bits & 0xffU; }
+  std::uint32_t block() const { return bits >> 8U & 0xffU; }
+  std::uint32_t pixels() const { return bits >> 16U; } // in which some sample is covered
 };
 
-// Writes the numbers (x + 8 y) of the blocks in a rectangle, and beside each the same tag; up to 7 bytes too many.
-HWY_INLINE std::uint32_t listBlocks(std::uint8_t* ids, std::uint8_t* tags, std::int32_t x0, std::int32_t x1,
-                                    std::int32_t y0, std::int32_t y1, std::uint8_t tag) {
-  constexpr std::uint64_t kOnes = 0x0101010101010101U;
-  std::uint64_t row = 0x0706050403020100U + static_cast<std::uint64_t>(x0 + 8 * y0) * kOnes;
-  const std::uint64_t same = tag * kOnes;
+// Lists triangle t with the blocks in a rectangle, as in Work; none where x1 is below x0. Writes up to kListedTooMany
+// pairs too many: what most triangles need, without asking.
+constexpr std::uint32_t kListedTooMany = 32;
+HWY_INLINE std::uint32_t listBlocks(std::uint16_t* pairs, std::int32_t x0, std::int32_t x1, std::int32_t y0,
+                                    std::int32_t y1, std::uint32_t t) {
+  constexpr std::uint64_t kOnes = 0x0001000100010001U;
+  std::uint64_t left = 0x0300020001000000U + (t + (static_cast<std::uint64_t>(x0 + 8 * y0) << 8U)) * kOnes;
   const auto width = static_cast<std::uint32_t>(x1 - x0 + 1);
-  std::uint32_t count = 0;
-  for (std::int32_t y = y0; y <= y1; ++y, row += 8 * kOnes, count += width) {
-    std::memcpy(ids + count, &row, sizeof(row));
-    std::memcpy(tags + count, &same, sizeof(same));
+  const auto height = static_cast<std::uint32_t>(y1 - y0 + 1);
+  const auto list = [&](std::uint32_t y) {
+    const std::uint64_t row[2] = {left, left + 0x0400U * kOnes};
+    std::memcpy(pairs + y * width, row, sizeof(row));
+    left += 0x0800U * kOnes;
+  };
+  list(0);
+  list(1);
+  list(2);
+  if (HWY_UNLIKELY(height > 3)) {
+    for (std::uint32_t y = 3; y < height; ++y) list(y);
   }
-  return count;
+  return width * height;
 }
 
 // Opaque surfaces of a tile: of each sample of each pixel the nearest.
@@ -126,13 +139,6 @@ class TileWorker final : public TileWorkspace {
     const Blended& of(std::uint32_t sample) const { return samples[isUniform ? 0 : sample]; }
   };
 
-  struct Met { // a triangle in a block
-    Work work;
-    F second; // weights straight on the picture
-    F third;
-    F depth; // at the pixels' centres
-  };
-
   // A block's first pixel in the frame.
   std::uint32_t blockX(std::uint32_t block) const {
     return static_cast<std::uint32_t>(tile_.x) + block % kBlocksAcross * kBlockSide;
@@ -141,30 +147,31 @@ class TileWorker final : public TileWorkspace {
     return static_cast<std::uint32_t>(tile_.y) + block / kBlocksAcross * kBlockSide;
   }
 
-  static RowShape shapeOf(const Frame& frame) { return {frame.needs, frame.info.samples > 1, frame.draws.size()}; }
+  static RowShape shapeOf(const Frame& frame) { return {frame.needs, frame.info.samples > 1}; }
   void merge(const Frame& frame, std::uint32_t tile, bool opaque);
   void orderByDepth(const Frame& frame);
+  void stage(const Frame& frame, std::size_t first, std::uint32_t count, bool isShaded, Staged& staged);
   template <class Emit>
-  bool rasterise(const Frame& frame, std::uint64_t blocks, Emit emit);
+  bool rasterise(const Frame& frame, std::uint64_t blocks, bool isShaded, Emit emit);
   template <class Emit>
-  bool flush(const Frame& frame, std::uint64_t blocks, Emit emit);
-  struct Fetched {
-    const VitrailCpuDraw* draw;
-    std::array<const Corner*, 3> corners; // the first is null where it is no triangle
-  };
-  void fetch(const Frame& frame, std::size_t first, std::uint32_t count, Fetched* fetched) const;
-  void add(std::uint32_t number, const VitrailCpuDraw& draw, const Corner& a, const Corner& b, const Corner& c);
+  bool stagePieces(const Frame& frame, std::uint32_t number, bool isShaded, Emit emit);
   template <class Emit>
-  bool stage(const Frame& frame, std::uint32_t number, const Fetched& f, std::uint64_t blocks, Emit emit);
+  bool drawPieces(const Frame& frame, bool isShaded, Emit emit);
   template <class Emit>
-  bool stagePieces(const Frame& frame, std::uint32_t number, std::uint64_t blocks, Emit emit);
-  template <bool kHides>
-  HWY_INLINE std::uint32_t cover(std::uint64_t blocks, std::uint32_t items);
-  HWY_INLINE std::uint32_t coverSamples(std::uint64_t blocks, std::uint32_t items, std::uint32_t samples);
+  bool drawBatch(const Frame& frame, const Staged& staged, const StagedPieces* pieces, bool isShaded,
+                 std::uint64_t& clipped, Emit emit);
+  template <bool kIsBig, bool kHides>
+  HWY_INLINE std::uint32_t cover(std::uint32_t items);
+  HWY_INLINE std::uint32_t coverSamples(std::uint32_t items, std::uint32_t samples);
 
-  HWY_INLINE void perspective(std::uint32_t t, const F& flatSecond, const F& flatThird, bool derivatives,
-                              F* weights) const;
-  Met meet(std::uint32_t item) const;
+  // At the pixels' centres.
+  HWY_INLINE F depthOfWork(const Work& work) const {
+    const std::uint32_t block = work.block();
+    return depthAt(batch_, work.triangle(), load(kBlockLanes.position[block]), load(kBlockLanes.place[block][0]),
+                   load(kBlockLanes.place[block][1]));
+  }
+  template <bool kPlain = false>
+  HWY_INLINE void perspective(const Work& work, bool derivatives, F* weights) const;
   HWY_INLINE void countHidden(std::uint32_t block, std::uint32_t mask);
   // What is kept of a fragment: its triangle and place, its draw, or that and what light is left behind it.
   enum class Kept { Shaded, Flat, FlatTracked };
@@ -173,6 +180,10 @@ class TileWorker final : public TileWorkspace {
   Emitted emitTransparent(const Frame& frame, std::uint32_t item, Window* window);
   template <Kept kKept>
   bool emit(const Frame& frame, std::uint32_t item, Window* window);
+  template <Kept kKept>
+  std::uint32_t emitPlain(const Frame& frame, std::uint32_t item, std::uint32_t count);
+  template <Kept kKept>
+  bool emitAll(const Frame& frame, std::uint32_t count);
   HWY_INLINE void emitOpaque(const Frame& frame, std::uint32_t item);
   HWY_INLINE std::uint32_t testDepth(const Frame& frame, const Work& work, std::uint32_t item, const F& depth, I* keys);
 
@@ -219,6 +230,7 @@ class TileWorker final : public TileWorkspace {
   RowShape shape_;
   Store store_;
   Batch batch_{};
+  TileColors colors_;
   TileBox tile_{};
   std::vector<std::uint32_t> numbers_;
   struct Run { // of triangles of one job, in numbers_
@@ -228,11 +240,12 @@ class TileWorker final : public TileWorkspace {
   };
   std::vector<Run> runs_;
   std::vector<std::uint32_t> ordered_;
-  std::array<std::array<Fetched, kBatch>, 2> fetched_{};
+  std::array<Staged, 2> staged_{};
+  StagedPieces pieces_{};
   std::unique_ptr<OpaqueTile> opaque_;
   bool hasDepth_ = false; // opaque surfaces may hide fragments of this tile
-  std::array<std::uint8_t, kBatch * kBlocks + 64> ids_{};
-  std::array<std::uint8_t, kBatch * kBlocks + 64> tags_{};
+  std::array<std::uint16_t, kBlocks> wanted_{}; // pixels of each block that are drawn
+  std::array<std::uint16_t, kBatch * kBlocks + kListedTooMany> pairs_{};
   std::array<Work, kBatch * kBlocks + 64> work_{};
   std::array<Work, kBatch * kBlocks + 64> hiddenWork_{};
   std::array<std::array<std::uint16_t, kBatch * kBlocks + 64>, kMaxSamples> sampleMasks_{};
