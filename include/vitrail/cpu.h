@@ -245,6 +245,9 @@ typedef struct VitrailCpuFrame {
   /* In: what is behind all draws. Out: the picture. Rows top to bottom. */
   void* color;          /* required */
   uint32_t colorStride; /* bytes from row to row; default: without gaps */
+  /* Optional: one colour behind all draws, 4 floats, linear, premultiplied with alpha (pictures of 8 bits take no
+   * alpha). `color` is then not read, and every pixel of it is written: faster than to fill it first. */
+  const float* clear;
   /* Optional: the opaque depth in [0, 1], which draws are tested against and opaque ones change: `samples` floats a
    * pixel. Without it there is nothing opaque but this frame's draws. */
   float* depth;
@@ -252,7 +255,7 @@ typedef struct VitrailCpuFrame {
   /* Optional, samples > 1: what is behind each sample, in place of `color`: 4 floats times `samples` a pixel, without
    * gaps. It is not written. */
   const float* sampleColors;
-  float brightest;     /* the largest r, g or b of `color` and `sampleColors`; default 1 */
+  float brightest;     /* the largest r, g or b of `color`, `clear` and `sampleColors`; default 1 */
   VitrailCpuList list; /* optional */
   void* listUser;
   VitrailCpuProgress progress; /* optional */

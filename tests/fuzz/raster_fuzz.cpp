@@ -225,6 +225,8 @@ void makeFrame(Bytes& bytes, Frame& frame) {
     desc.list = list;
     desc.listUser = &desc;
   }
+  static constexpr float kClear[4] = {0.5F, 0.25F, 0.125F, 0.75F};
+  if (bytes.oneIn(4)) desc.clear = kClear;
   desc.memoryBudget = bytes.oneIn(2) ? 65536 : bytes.oneIn(16) ? bytes.word() % (1U << 24U) : 0;
 }
 

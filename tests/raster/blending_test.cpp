@@ -1,7 +1,9 @@
 // Whole frames against the double-precision reference, feature by feature and all of them together.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string>
 
 #include "reference.h"
@@ -200,6 +202,52 @@ TEST(PartsTest, AreThoseOfTheWholePicture) {
       }
     }
   }
+}
+
+// ---- One colour behind all draws
+
+// `color` is not read: it holds no numbers. Tiles and blocks in which there is nothing are written, too.
+TEST(ClearTest, IsThePictureOverThatColor) {
+  Random random(12);
+  for (int i = 0; i < 24; ++i) {
+    SceneOptions options = randomOptions(random);
+    options.hasSampleColors = false;
+    Scene scene = randomScene(random, options);
+    if (i % 4 == 0) scene.draws.clear();
+    const std::array<float, 4> color = {random.single(0.0, 1.0), random.single(0.0, 1.0), 0.25F, 0.5F};
+    for (std::size_t at = 0; at < scene.background.size(); ++at) scene.background[at] = color[at % 4];
+    for (const VitrailCpuInstructions instructions : instructionsHere()) {
+      Raster raster(instructions);
+      const Drawn filled = draw(raster, scene);
+      Scene cleared;
+      cleared.frame = scene.frame;
+      cleared.frame.clear = color.data();
+      cleared.depth = scene.depth;
+      cleared.background.assign(scene.background.size(), std::numeric_limits<float>::quiet_NaN());
+      EXPECT_TRUE(draw(raster, cleared, scene.descs()) == filled) << "scene " << i << ", " << nameOf(instructions);
+    }
+  }
+}
+
+TEST(ClearTest, OfEightBitsTakesNoAlpha) {
+  Random random(13);
+  SceneOptions options;
+  options.hasOpaque = true;
+  const Scene scene = randomScene(random, options);
+  Raster raster(VITRAIL_CPU_BEST);
+  const auto drawOver = [&](std::uint8_t held, const float* clear) {
+    std::vector<std::uint8_t> bytes(std::size_t{options.width} * options.height * 4, held);
+    VitrailCpuFrame frame = scene.frame;
+    frame.colorFormat = VITRAIL_CPU_RGBA8_SRGB;
+    frame.color = bytes.data();
+    frame.clear = clear;
+    EXPECT_EQ(raster.render(frame, scene.descs()), VITRAIL_SUCCESS);
+    return bytes;
+  };
+  const std::array<float, 4> white = {1.0F, 1.0F, 1.0F, 0.0F};
+  std::vector<std::uint8_t> filled = drawOver(255, nullptr);
+  EXPECT_EQ(drawOver(77, white.data()), filled);
+  EXPECT_NE(drawOver(77, nullptr), filled);
 }
 
 // ---- Rows of the host's arrays

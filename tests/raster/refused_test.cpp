@@ -48,6 +48,11 @@ const Mistake kMistakes[] = {
     {"depthStride", [](Described& d) { d.frame.depthStride = 28; }},
     {"depthStride", [](Described& d) { d.frame.depthStride = 34; }},
     {"sampleColors", [](Described& d) { d.frame.sampleColors = d.picture.pixels.data(); }},
+    {"clear and sampleColors",
+     [](Described& d) {
+       d.frame.samples = 2;
+       d.frame.clear = d.frame.sampleColors = d.picture.pixels.data();
+     }},
     {"memoryBudget", [](Described& d) { d.frame.memoryBudget = 65535; }},
     {"brightest", [](Described& d) { d.frame.brightest = -1.0F; }},
     {"brightest", [](Described& d) { d.frame.brightest = NAN; }},

@@ -67,13 +67,6 @@ class Encoded {
     picture.encoding == Encoding::Srgb8 ? shallow.resize(count) : deep.resize(count);
   }
 
-  // Makes all pixels the same.
-  void fill(const float* linear) {
-    std::array<std::uint8_t, 4> pixel{};
-    encodePixels(linear, 1, pixel.data());
-    for (std::size_t i = 0; i < shallow.size(); i += 4) std::copy_n(pixel.data(), 4, &shallow[i]);
-  }
-
   // Takes rows of linear light, from `firstRow` on.
   void set(std::uint32_t firstRow, std::uint32_t rows, const float* linear) {
     const std::size_t width = picture_.width;
@@ -269,8 +262,7 @@ void CpuStillRenderer::Impl::drawCodes(const RenderOptions& picture, VitrailCpuF
                                        Totals& totals) {
   std::array<float, 4> linear{};
   drawBackground(picture.background, picture.view, 1, 1, 0, 1, linear.data());
-  encoded.fill(linear.data());
-  totals.clock.end("background");
+  frame.clear = linear.data();
   frame.colorFormat = VITRAIL_CPU_RGBA8_SRGB;
   frame.color = encoded.shallow.data();
   VitrailStats stats{};
@@ -295,10 +287,17 @@ void CpuStillRenderer::Impl::drawBands(const RenderOptions& picture, VitrailCpuF
     frame.list = countLayers;
     frame.listUser = &counts;
   }
+  std::array<float, 4> everywhere{};
+  if (picture.background.kind != Background::Kind::Sky) {
+    drawBackground(picture.background, picture.view, 1, 1, 0, 1, everywhere.data());
+    frame.clear = everywhere.data();
+  }
   for (frame.originY = 0; frame.originY < picture.height; frame.originY += rows) {
     frame.height = std::min(rows, picture.height - frame.originY);
-    fillBackground(picture, frame.originY, frame.height, pixels);
-    totals.clock.end("background");
+    if (frame.clear == nullptr) {
+      fillBackground(picture, frame.originY, frame.height, pixels);
+      totals.clock.end("background");
+    }
     VitrailStats stats{};
     rasterizer.render(frame, draws, stats);
     totals.add(stats);

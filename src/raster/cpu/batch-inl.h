@@ -37,9 +37,9 @@ struct StagedPieces : Staged {
 // its weights at a pixel's centre are (a * x + b * y + weightC) * scale + offset, and its depth there is
 // (x - fromX) * right + (y - fromY) * down + from, or where it is careful what the weights make of its corners' depths.
 struct Batch {
-  const std::int32_t* draw;   // the host's number, or that in TileColors
-  const StagedPieces* pieces;       // null: whole triangles
-  alignas(64) std::int32_t number[kBatch]; // with kFrontBit
+  const std::int32_t* draw;                 // the host's number, or that in TileColors
+  const StagedPieces* pieces;               // null: whole triangles
+  alignas(64) std::int32_t number[kBatch];  // with kFrontBit
   alignas(64) std::int32_t big[kBatch];     // not 0: edges need more than 16 bits
   alignas(64) std::int32_t careful[kBatch]; // not 0: so thin that its depth as a plane would be far off, or big
 
@@ -131,10 +131,10 @@ HWY_INLINE M setUpEdges(Batch& batch, std::uint32_t at, const SetUp& s, std::uin
   return ~(zero > rejected);
 }
 
-// Depth as a plane, from the pixel that is nearest to corner 0. What it rounds is at most 2^-24 of the largest depth and of
-// how much the plane changes from there to the pixel, a few times; where that could be more than the 2^-22 of the largest
-// depth that cpu.h promises (thin triangles, and such as go far into the picture) it is a careful one; returns which.
-// Nothing of it depends on the tile.
+// Depth as a plane, from the pixel that is nearest to corner 0. What it rounds is at most 2^-24 of the largest depth
+// and of how much the plane changes from there to the pixel, a few times; where that could be more than the 2^-22 of
+// the largest depth that cpu.h promises (thin triangles, and such as go far into the picture) it is a careful one;
+// returns which. Nothing of it depends on the tile.
 HWY_INLINE M setUpDepth(Batch& batch, std::uint32_t at, const I* x, const I* y, const F* z, const SetUp& s,
                         std::uint32_t samples) {
   const I fromX = shiftRight<kSubpixelBits>(x[0] + set(kSubpixels / 2));

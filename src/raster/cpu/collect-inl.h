@@ -99,7 +99,8 @@ HWY_INLINE bool TileWorker::emit(const Frame& frame, std::uint32_t item, Window*
 }
 
 // Stores fragments from an entry of work_ on, up to one that takes more than that: a chunk, a look at what is hidden, a
-// triangle that is careful or big. Returns which one that is. A part of emitTransparent(), with half as many instructions.
+// triangle that is careful or big. Returns which one that is. A part of emitTransparent(), with half as many
+// instructions.
 template <TileWorker::Kept kKept>
 HWY_INLINE std::uint32_t TileWorker::emitPlain(const Frame& frame, std::uint32_t item, std::uint32_t count) {
   constexpr bool kTracked = kKept == Kept::FlatTracked;
@@ -194,7 +195,11 @@ inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, Tile
       const auto block = static_cast<std::uint32_t>(std::countr_zero(left));
       if (store_.rows(block) == 0) {
         const bool isDrawn = opaque_ != nullptr && (opaque_->drawn >> block & 1U) != 0;
-        if (isDrawn || frame.info.sampleColors != nullptr) finishBlock(frame, block, nullptr);
+        if (isDrawn || frame.info.sampleColors != nullptr) {
+          finishBlock(frame, block, nullptr);
+        } else {
+          untouched_ |= std::uint64_t{1} << block;
+        }
         continue;
       }
       const std::uint64_t next = left & (left - 1);

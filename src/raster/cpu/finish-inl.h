@@ -253,11 +253,14 @@ inline void TileWorker::behind(const Frame& frame, std::uint32_t block, std::uin
     for (std::size_t c = 0; c < 4; ++c) color[c] = load(opaque_->color[sample].value[c][block]);
     return;
   }
+  if (frame.info.clear != nullptr) {
+    for (std::size_t c = 0; c < 4; ++c) color[c] = set(frame.info.clear[c]);
+    if (frame.info.colorFormat == VITRAIL_CPU_RGBA8_SRGB) color[3] = set(1.0F);
+    return;
+  }
   std::size_t stride = 0;
   if (const float* first = pixelsOf(frame, block, stride)) {
-    loadFours([&](std::size_t lane) HWY_ATTR { return first + lane / kBlockSide * stride + lane % kBlockSide * 4; },
-              color[0], color[1], color[2], color[3]);
-    return;
+    return loadPixels(first, stride, color[0], color[1], color[2], color[3]);
   }
   if (sample == 0 || frame.info.sampleColors != nullptr) readPixels(frame, tile_, block, sample, behind_);
   for (std::size_t c = 0; c < 4; ++c) color[c] = load(behind_.color[c]);
@@ -272,22 +275,21 @@ inline void TileWorker::write(const Frame& frame, std::uint32_t block, const F* 
     writePixels(frame, tile_, block, pixels_);
     return;
   }
-  storeFours(drawn_[block].data(), color[0], color[1], color[2], color[3]);
+  storePixels(drawn_[block].data(), color[0], color[1], color[2], color[3]);
   written_ |= std::uint64_t{1} << block;
 }
 
 // Writes what write() has kept.
 inline void TileWorker::writeTile(const Frame& frame) {
-  const hn::FixedTag<float, 4> four;
+  constexpr std::size_t kRow = 4 * kBlockSide; // floats
   for (std::uint32_t row = 0; row < kBlocksAcross; ++row) {
     for (std::uint32_t y = 0; y < kBlockSide; ++y) {
       for (std::uint64_t left = written_ >> row * kBlocksAcross & 0xffU; left != 0; left &= left - 1) {
         const std::uint32_t block = row * kBlocksAcross + static_cast<std::uint32_t>(std::countr_zero(left));
         std::size_t stride = 0;
         float* const to = pixelsOf(frame, block, stride) + y * stride;
-        for (std::size_t x = 0; x < kBlockSide; ++x) {
-          hn::StoreU(hn::Load(four, drawn_[block].data() + 4 * placeOfFour(y * kBlockSide + x)), four, to + 4 * x);
-        }
+        const float* const from = drawn_[block].data() + y * kRow;
+        for (std::size_t i = 0; i < kRow; i += kVectorLanes) hn::StoreU(hn::Load(kF, from + i), kF, to + i);
       }
     }
   }

@@ -104,6 +104,9 @@ const char* whatIsWrongWith(const VitrailCpuFrame& frame) {
   }
   if (frame.depthStride % sizeof(float) != 0) return "depthStride is no multiple of a float";
   if (frame.sampleColors != nullptr && sampleCount == 1) return "sampleColors is for several samples";
+  if (frame.sampleColors != nullptr && frame.clear != nullptr) {
+    return "clear and sampleColors both say what is behind all draws: leave one out";
+  }
   if (frame.memoryBudget != 0 && frame.memoryBudget < kLeastBudget) return "memoryBudget is below 65536 bytes";
   if (!(frame.brightest >= 0.0F)) return "the frame's brightest is negative or not a number";
   return nullptr;

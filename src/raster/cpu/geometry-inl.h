@@ -197,8 +197,8 @@ inline void binPieces(const Frame& frame, const DrawInfo& info, std::uint32_t pr
   addTo(bins, frame, {ranges.x0[0], ranges.y0[0], ranges.x1[0], ranges.y1[0]}, number);
 }
 
-// Up to sixteen triangles of a job, from its `first`th on, in any order, but always the same. Returns about how near they
-// come.
+// Up to sixteen triangles of a job, from its `first`th on, in any order, but always the same. Returns about how near
+// they come.
 HWY_INLINE float binSixteen(const Frame& frame, const DrawInfo& info, std::uint32_t jobNumber, std::uint32_t first,
                             std::uint32_t count, bool nearestIsOne, Bins& bins) {
   const VitrailCpuDraw& draw = info.draw;

@@ -372,6 +372,54 @@ HWY_INLINE void storeFours(float* p, const F& x, const F& y, const F& z, const F
   }
 }
 
+// The same for a picture's pixels, a row of four every `stride` floats.
+HWY_INLINE void loadPixels(const float* first, std::size_t stride, F& x, F& y, F& z, F& w) {
+#if HWY_TARGET == HWY_AVX3
+  const __m512 row[4] = {_mm512_loadu_ps(first), _mm512_loadu_ps(first + stride), _mm512_loadu_ps(first + 2 * stride),
+                         _mm512_loadu_ps(first + 3 * stride)};
+  const __m512 upper[2] = {_mm512_shuffle_f32x4(row[0], row[1], 0x44), _mm512_shuffle_f32x4(row[2], row[3], 0x44)};
+  const __m512 lower[2] = {_mm512_shuffle_f32x4(row[0], row[1], 0xee), _mm512_shuffle_f32x4(row[2], row[3], 0xee)};
+  const __m512 column[4] = {
+      _mm512_shuffle_f32x4(upper[0], upper[1], 0x88), _mm512_shuffle_f32x4(upper[0], upper[1], 0xdd),
+      _mm512_shuffle_f32x4(lower[0], lower[1], 0x88), _mm512_shuffle_f32x4(lower[0], lower[1], 0xdd)};
+  const __m512 xy01 = _mm512_unpacklo_ps(column[0], column[1]);
+  const __m512 zw01 = _mm512_unpackhi_ps(column[0], column[1]);
+  const __m512 xy23 = _mm512_unpacklo_ps(column[2], column[3]);
+  const __m512 zw23 = _mm512_unpackhi_ps(column[2], column[3]);
+  x.v[0].raw = _mm512_shuffle_ps(xy01, xy23, 0x44);
+  y.v[0].raw = _mm512_shuffle_ps(xy01, xy23, 0xee);
+  z.v[0].raw = _mm512_shuffle_ps(zw01, zw23, 0x44);
+  w.v[0].raw = _mm512_shuffle_ps(zw01, zw23, 0xee);
+#else
+  loadFours([first, stride](std::size_t lane) { return first + lane / 4 * stride + lane % 4 * 4; }, x, y, z, w);
+#endif
+}
+
+// As storeFours(), in the order of lanes.
+HWY_INLINE void storePixels(float* p, const F& x, const F& y, const F& z, const F& w) {
+#if HWY_TARGET == HWY_AVX3
+  const __m512 xyLow = _mm512_unpacklo_ps(x.v[0].raw, y.v[0].raw);
+  const __m512 xyHigh = _mm512_unpackhi_ps(x.v[0].raw, y.v[0].raw);
+  const __m512 zwLow = _mm512_unpacklo_ps(z.v[0].raw, w.v[0].raw);
+  const __m512 zwHigh = _mm512_unpackhi_ps(z.v[0].raw, w.v[0].raw);
+  const __m512 column[4] = {_mm512_shuffle_ps(xyLow, zwLow, 0x44), _mm512_shuffle_ps(xyLow, zwLow, 0xee),
+                            _mm512_shuffle_ps(xyHigh, zwHigh, 0x44), _mm512_shuffle_ps(xyHigh, zwHigh, 0xee)};
+  const __m512 upper[2] = {_mm512_shuffle_f32x4(column[0], column[1], 0x44),
+                           _mm512_shuffle_f32x4(column[2], column[3], 0x44)};
+  const __m512 lower[2] = {_mm512_shuffle_f32x4(column[0], column[1], 0xee),
+                           _mm512_shuffle_f32x4(column[2], column[3], 0xee)};
+  _mm512_store_ps(p, _mm512_shuffle_f32x4(upper[0], upper[1], 0x88));
+  _mm512_store_ps(p + kLanes, _mm512_shuffle_f32x4(upper[0], upper[1], 0xdd));
+  _mm512_store_ps(p + 2 * kLanes, _mm512_shuffle_f32x4(lower[0], lower[1], 0x88));
+  _mm512_store_ps(p + 3 * kLanes, _mm512_shuffle_f32x4(lower[0], lower[1], 0xdd));
+#else
+  alignas(64) float fours[4 * kLanes];
+  const hn::FixedTag<float, 4> four;
+  storeFours(fours, x, y, z, w);
+  for (std::size_t l = 0; l < kLanes; ++l) hn::Store(hn::Load(four, fours + 4 * placeOfFour(l)), four, p + 4 * l);
+#endif
+}
+
 // ---- Sorting keys: a depth above, what goes with it below, as a positive double, which has the order of its bits
 
 using Key = hn::Vec<TagD>;

@@ -1,6 +1,7 @@
 #include "raster/cpu/picture.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "raster/cpu/srgb.h"
@@ -37,7 +38,10 @@ void readPixels(const Frame& frame, const TileBox& tile, std::uint32_t block, st
   for (std::uint32_t i = 0; i < kBlockPixels; ++i) {
     const Place at = placeOf(frame, tile, block, i);
     float color[4];
-    if (info.sampleColors != nullptr) {
+    if (info.clear != nullptr) {
+      std::memcpy(color, info.clear, sizeof(color));
+      if (info.colorFormat == VITRAIL_CPU_RGBA8_SRGB) color[3] = 1.0F;
+    } else if (info.sampleColors != nullptr) {
       const std::size_t pixel = std::size_t{at.y} * info.width + at.x;
       std::memcpy(color, info.sampleColors + (pixel * info.samples + sample) * 4, sizeof(color));
     } else if (info.colorFormat == VITRAIL_CPU_RGBA32F) {
@@ -48,6 +52,35 @@ void readPixels(const Frame& frame, const TileBox& tile, std::uint32_t block, st
       color[3] = 1.0F;
     }
     for (std::size_t c = 0; c < 4; ++c) pixels.color[c][i] = color[c];
+  }
+}
+
+void clearBlocks(const Frame& frame, const TileBox& tile, std::uint64_t blocks) {
+  constexpr std::uint32_t kAcross = kTileSide / kBlockSide;
+  const VitrailCpuFrame& info = frame.info;
+  std::uint8_t code[4] = {0, 0, 0, 255};
+  if (info.colorFormat == VITRAIL_CPU_RGBA8_SRGB) {
+    for (std::size_t c = 0; c < 3; ++c) code[c] = srgbTables().encode(info.clear[c]);
+  }
+  const auto fill = [](auto* to, const auto* pixel, std::uint32_t count) {
+    for (std::uint32_t x = 0; x < count; ++x, to += 4) std::memcpy(to, pixel, 4 * sizeof(*pixel));
+  };
+  for (std::uint32_t y = 0; y <= static_cast<std::uint32_t>(tile.lastY); ++y) {
+    auto row = static_cast<std::uint32_t>(blocks >> y / kBlockSide * kAcross & 0xffU);
+    while (row != 0) { // each run of blocks
+      const auto first = static_cast<std::uint32_t>(std::countr_zero(row));
+      const auto end = first + static_cast<std::uint32_t>(std::countr_one(row >> first));
+      row &= ~(((1U << (end - first)) - 1U) << first);
+      const std::uint32_t x = first * kBlockSide;
+      const std::uint32_t count = std::min(end * kBlockSide, static_cast<std::uint32_t>(tile.lastX) + 1) - x;
+      const std::size_t at = std::size_t{static_cast<std::uint32_t>(tile.x) + x} * 4;
+      const std::uint32_t line = static_cast<std::uint32_t>(tile.y) + y;
+      if (info.colorFormat == VITRAIL_CPU_RGBA32F) {
+        fill(rowOf<float>(info.color, info.colorStride, line) + at, info.clear, count);
+      } else {
+        fill(rowOf<std::uint8_t>(info.color, info.colorStride, line) + at, code, count);
+      }
+    }
   }
 }
 

@@ -15,6 +15,8 @@ struct PixelBlock {
 
 // What is behind a sample of each pixel: the host's colour, or that of the sample.
 void readPixels(const Frame& frame, const TileBox& tile, std::uint32_t block, std::uint32_t sample, PixelBlock& pixels);
+// Where the frame has a colour that is behind all draws: gives it to all pixels of some blocks, a bit each.
+void clearBlocks(const Frame& frame, const TileBox& tile, std::uint64_t blocks);
 void writePixels(const Frame& frame, const TileBox& tile, std::uint32_t block, const PixelBlock& pixels);
 
 // A sample's depth of each pixel. Only the pixels of `mask` are written.

@@ -112,8 +112,7 @@ HWY_INLINE void TileWorker::stage(const Frame& frame, std::size_t first, std::ui
 // Draws what a primitive is rasterised as that is no triangle, or has to be clipped, once a batch of it is full. False:
 // the store is full.
 template <class Emit>
-HWY_NOINLINE bool TileWorker::stagePieces(const Frame& frame, std::uint32_t number, bool isShaded,
-                                          Emit emit) {
+HWY_NOINLINE bool TileWorker::stagePieces(const Frame& frame, std::uint32_t number, bool isShaded, Emit emit) {
   const Job& job = frame.jobs[number >> kJobBits];
   const DrawInfo& info = frame.draws[job.draw];
   const Pieces pieces = piecesOf(frame, info, job.first + (number & (kJobTriangles - 1)));
@@ -143,8 +142,8 @@ inline bool TileWorker::drawPieces(const Frame& frame, bool isShaded, Emit emit)
   return isDone;
 }
 
-// Calls emit(n) for each batch: it draws the first n entries of work_, or returns false. `isShaded`: asks for weights; else for the
-// numbers of draws in colors_. False: the store is full.
+// Calls emit(n) for each batch: it draws the first n entries of work_, or returns false. `isShaded`: asks for weights;
+// else for the numbers of draws in colors_. False: the store is full.
 template <class Emit>
 inline bool TileWorker::rasterise(const Frame& frame, std::uint64_t blocks, bool isShaded, Emit emit) {
   for (std::uint32_t b = 0; b < kBlocks; ++b) {
@@ -248,7 +247,7 @@ HWY_INLINE std::uint32_t TileWorker::coverSamples(std::uint32_t items, std::uint
 // clipped first, a bit each.
 template <class Emit>
 inline bool TileWorker::drawBatch(const Frame& frame, const Staged& staged, const StagedPieces* pieces, bool isShaded,
-                 std::uint64_t& clipped, Emit emit) {
+                                  std::uint64_t& clipped, Emit emit) {
   const std::uint32_t triangles = staged.count;
   const std::uint32_t samples = frame.info.samples;
   batch_.draw = staged.draw;

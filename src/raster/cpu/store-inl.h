@@ -124,7 +124,7 @@ class Store {
     return head.chunks * kChunkRows - static_cast<std::uint32_t>((head.last - head.row) / stride_);
   }
 
-  struct Head { // of a block
+  struct Head {                   // of a block
     std::uint64_t filled = kFull; // pixels of the last four rows, the last one's in the uppermost bits
     Row row = nullptr;            // the last one
     Row last = nullptr;           // of its chunk; where there is none, both are the arena
@@ -134,8 +134,8 @@ class Store {
     std::uint32_t limit = kFirstLimit;
   };
 
-  // Which of the block's last four rows is the first in which all pixels of a mask are free: 0 to 3, or 4: none of them,
-  // another row is opened. What follows from it has no branches: nobody could tell which way they go.
+  // Which of the block's last four rows is the first in which all pixels of a mask are free: 0 to 3, or 4: none of
+  // them, another row is opened. What follows from it has no branches: nobody could tell which way they go.
   static HWY_INLINE std::uint32_t freeRow(const Head& head, std::uint32_t mask) {
 #if HWY_TARGET == HWY_AVX3
     const __m128i filled = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(&head.filled)); // four more rows: all free
@@ -288,7 +288,7 @@ class Store {
 
   RowShape shape_;
   alignas(64) std::int32_t blank_[RowShape::kMost * kLanes] = {}; // a row without fragments
-  std::uint32_t stride_ = 0; // of rows
+  std::uint32_t stride_ = 0;                                      // of rows
   std::size_t chunkBytes_ = 0;
   std::uint32_t chunks_ = 0;
   std::uint32_t used_ = 0;

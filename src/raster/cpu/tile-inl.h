@@ -36,9 +36,13 @@ inline void TileWorker::draw(const Frame& frame, std::uint32_t tile, TileCounts&
   merge(frame, tile, false);
   orderByDepth(frame);
   if (!numbers_.empty() || (opaque_ != nullptr && opaque_->drawn != 0) || frame.info.sampleColors != nullptr) {
+    untouched_ = 0;
     drawParts(frame, blocks, counts);
     writeTile(frame);
+  } else {
+    untouched_ = blocks;
   }
+  if (frame.info.clear != nullptr) clearBlocks(frame, tile_, untouched_);
 }
 
 } // namespace vitrail::raster::HWY_NAMESPACE

@@ -243,7 +243,7 @@ class TileWorker final : public TileWorkspace {
   std::array<Staged, 2> staged_{};
   StagedPieces pieces_{};
   std::unique_ptr<OpaqueTile> opaque_;
-  bool hasDepth_ = false; // opaque surfaces may hide fragments of this tile
+  bool hasDepth_ = false;                       // opaque surfaces may hide fragments of this tile
   std::array<std::uint16_t, kBlocks> wanted_{}; // pixels of each block that are drawn
   std::array<std::uint16_t, kBatch * kBlocks + kListedTooMany> pairs_{};
   std::array<Work, kBatch * kBlocks + 64> work_{};
@@ -275,9 +275,10 @@ class TileWorker final : public TileWorkspace {
   std::vector<VitrailLayer> list_;
   PixelBlock pixels_;
   PixelBlock behind_;
-  // Blocks that are done but not in the picture yet: four floats a pixel, where storeFours() puts them.
+  // Blocks that are done but not in the picture yet: four floats a pixel.
   alignas(64) std::array<std::array<float, 4 * kLanes>, kBlocks> drawn_{};
   std::uint64_t written_ = 0;
+  std::uint64_t untouched_ = 0; // blocks in which there is nothing
   alignas(64) VitrailCpuFragments fragments_{};
 };
 
