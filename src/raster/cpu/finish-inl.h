@@ -253,6 +253,11 @@ inline void TileWorker::behind(const Frame& frame, std::uint32_t block, std::uin
     for (std::size_t c = 0; c < 4; ++c) color[c] = load(opaque_->color[sample].value[c][block]);
     return;
   }
+  behindAll(frame, block, sample, color);
+}
+
+// What is behind all that the frame draws.
+inline void TileWorker::behindAll(const Frame& frame, std::uint32_t block, std::uint32_t sample, F* color) {
   if (frame.info.clear != nullptr) {
     for (std::size_t c = 0; c < 4; ++c) color[c] = set(frame.info.clear[c]);
     if (frame.info.colorFormat == VITRAIL_CPU_RGBA8_SRGB) color[3] = set(1.0F);

@@ -67,15 +67,14 @@ HWY_INLINE void placeSixteen(const Viewport& viewport, const F& x, const F& y, c
   }
   placeX = select(outside, set(kNeedsClipping), placeX - set(viewport.originX * kSubpixels));
   placeY = placeY - set(viewport.originY * kSubpixels);
-  alignas(64) std::int32_t columnX[kLanes];
-  alignas(64) std::int32_t columnY[kLanes];
-  alignas(64) float columnZ[kLanes];
-  alignas(64) float columnW[kLanes];
-  store(columnX, placeX);
-  store(columnY, placeY);
-  store(columnZ, depth);
-  store(columnW, inverse);
-  for (std::uint32_t i = 0; i < count; ++i) corners[i] = {columnX[i], columnY[i], columnZ[i], columnW[i]};
+  static_assert(sizeof(Corner) == 4 * sizeof(float));
+  alignas(64) float fours[4 * kLanes];
+  storePixels(fours, floatOf(placeX), floatOf(placeY), depth, inverse);
+  if (HWY_LIKELY(count == kLanes)) {
+    std::memcpy(corners, fours, sizeof(fours));
+  } else {
+    std::memcpy(corners, fours, count * sizeof(Corner));
+  }
 }
 
 // Bits of vertices that a plane of the draw's cuts away.
@@ -208,12 +207,17 @@ HWY_INLINE float binSixteen(const Frame& frame, const DrawInfo& info, std::uint3
   I y[3];
   F nearest;
   for (std::uint32_t c = 0; c < 3; ++c) {
-    const auto cornerOf = [&](std::size_t lane) { // what is beyond the job repeats its last triangle
-      const std::uint64_t triangle = job.first + std::min(first + static_cast<std::uint32_t>(lane), job.count - 1);
-      return reinterpret_cast<const float*>(base + vertexOf(draw, 3 * triangle + c));
-    };
     F column[4];
-    loadFours(cornerOf, column[0], column[1], column[2], column[3]);
+    const auto load = [&](auto cornerOf) HWY_ATTR { loadFours(cornerOf, column[0], column[1], column[2], column[3]); };
+    if (HWY_LIKELY(count == kLanes && draw.indices != nullptr)) {
+      const std::uint32_t* const indices = draw.indices + 3 * std::uint64_t{job.first + first} + c;
+      load([base, indices](std::size_t lane) { return reinterpret_cast<const float*>(base + indices[3 * lane]); });
+    } else {
+      load([&](std::size_t lane) { // what is beyond the job repeats its last triangle
+        const std::uint64_t triangle = job.first + std::min(first + static_cast<std::uint32_t>(lane), job.count - 1);
+        return reinterpret_cast<const float*>(base + vertexOf(draw, 3 * triangle + c));
+      });
+    }
     x[c] = bitsOf(column[0]);
     y[c] = bitsOf(column[1]);
     if (c == 0) nearest = column[2]; // one corner tells enough

@@ -130,11 +130,10 @@ inline void TileWorker::drawOpaque(const Frame& frame, std::uint32_t tile) {
   });
   for (std::uint64_t left = opaque_->drawn; left != 0; left &= left - 1) {
     const auto block = static_cast<std::uint32_t>(std::countr_zero(left));
+    F behind[4];
     for (std::uint32_t s = 0; s < samples; ++s) {
-      if (s == 0 || frame.info.sampleColors != nullptr) readPixels(frame, tile_, block, s, pixels_);
-      for (std::size_t c = 0; c < 4; ++c) {
-        store(opaque_->color[s].value[c][block], load(pixels_.color[c]));
-      }
+      if (s == 0 || frame.info.sampleColors != nullptr) behindAll(frame, block, s, behind);
+      for (std::size_t c = 0; c < 4; ++c) store(opaque_->color[s].value[c][block], behind[c]);
     }
     shadeOpaque(frame, block);
     for (std::uint32_t s = 0; frame.info.depth != nullptr && s < samples; ++s) {

@@ -216,6 +216,7 @@ class TileWorker final : public TileWorkspace {
   void coveragesOf(const SortedRows& sorted, std::uint32_t* coverages) const;
   Row rowOf(const SortedRows& sorted, std::size_t r, std::size_t lane) const;
   void behind(const Frame& frame, std::uint32_t block, std::uint32_t sample, F* color);
+  void behindAll(const Frame& frame, std::uint32_t block, std::uint32_t sample, F* color);
   float* pixelsOf(const Frame& frame, std::uint32_t block, std::size_t& stride) const;
   HWY_INLINE void prefetchPixels(const Frame& frame, std::uint32_t block) const;
   void write(const Frame& frame, std::uint32_t block, const F* color);
