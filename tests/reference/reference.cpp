@@ -89,7 +89,8 @@ class Eye {
                                   std::uint32_t sample) const;
   Blended blendAbsorbing(const PictureRay& ray, const PixelSurfaces& found, const std::vector<PixelSurface>& surfaces,
                          std::uint32_t sample, bool rounded) const;
-  Samples blendAll(const PictureRay& ray, const PixelSurfaces& found, const std::vector<PixelSurface>& surfaces) const;
+  Samples blendAll(const PictureRay& ray, const PixelSurfaces& found, const std::vector<PixelSurface>& surfaces,
+                   PixelList* stored) const;
   std::array<Color, kMostSamples> opaqueColors(const PictureRay& ray, const PixelSurfaces& surfaces) const;
   Color behindEverything(const PictureRay& ray) const;
   glm::dvec4 mean(const Samples& samples, const std::array<Color, kMostSamples>& behind) const;
@@ -339,9 +340,10 @@ Blended Eye::blendAbsorbing(const PictureRay& ray, const PixelSurfaces& found,
   return seen;
 }
 
-Samples Eye::blendAll(const PictureRay& ray, const PixelSurfaces& found,
-                      const std::vector<PixelSurface>& surfaces) const {
-  if (!absorbs_) return blend(ray, surfaces, nullptr);
+// `stored`: as in blend(), of a scene without solids.
+Samples Eye::blendAll(const PictureRay& ray, const PixelSurfaces& found, const std::vector<PixelSurface>& surfaces,
+                      PixelList* stored) const {
+  if (!absorbs_) return blend(ray, surfaces, stored);
   Samples samples;
   for (std::uint32_t s = 0; s < options_.samples; ++s) samples[s] = blendAbsorbing(ray, found, surfaces, s, false);
   return samples;
@@ -402,7 +404,8 @@ Sight Eye::look(const glm::dvec2& centre, const glm::dvec2& nudge, std::vector<R
   Sight sight;
   for (const PixelSurface& surface : surfaces.transparent) sight.layers += storedCount(ray, surface);
   PixelList stored{coding_, {}, {}, 0};
-  sight.exact = mean(blendAll(ray, surfaces, surfaces.transparent), behind);
+  PixelList* const wanted = still && !absorbs_ ? &stored : nullptr;
+  sight.exact = mean(blendAll(ray, surfaces, surfaces.transparent, wanted), behind);
   if (!still) return sight;
   if (absorbs_) {
     Samples samples;
@@ -411,13 +414,12 @@ Sight Eye::look(const glm::dvec2& centre, const glm::dvec2& nudge, std::vector<R
     }
     sight.rounded = mean(samples, behind);
   } else {
-    blend(ray, surfaces.transparent, &stored);
     const Color rounded = resolvePixel(stored, behind);
     sight.rounded = {rounded[0], rounded[1], rounded[2], rounded[3]};
   }
   const std::vector<PixelSurface> swapped = swapTies(surfaces.transparent);
   sight.tiesSwapped =
-      sameOrder(surfaces.transparent, swapped) ? sight.exact : mean(blendAll(ray, surfaces, swapped), behind);
+      sameOrder(surfaces.transparent, swapped) ? sight.exact : mean(blendAll(ray, surfaces, swapped, nullptr), behind);
   return sight;
 }
 

@@ -2,6 +2,7 @@
 #include "shading.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -34,9 +35,14 @@ std::int64_t wrapTexel(std::int64_t index, std::int64_t size, Wrap wrap) {
 }
 
 glm::dvec4 texel(const Image& image, std::int64_t x, std::int64_t y) {
+  static const std::array<double, 256> decoded = [] {
+    std::array<double, 256> all{};
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = decodeSrgb(static_cast<double>(i) / 255.0);
+    return all;
+  }();
   const std::size_t offset = (static_cast<std::size_t>(y) * image.width + static_cast<std::size_t>(x)) * 4;
-  const auto channel = [&](std::size_t i) { return static_cast<double>(image.rgba[offset + i]) / 255.0; };
-  return {decodeSrgb(channel(0)), decodeSrgb(channel(1)), decodeSrgb(channel(2)), channel(3)};
+  const auto channel = [&](std::size_t i) { return decoded.at(image.rgba[offset + i]); };
+  return {channel(0), channel(1), channel(2), static_cast<double>(image.rgba[offset + 3]) / 255.0};
 }
 
 double largestOf(const glm::dvec3& v) { return std::max({v.r, v.g, v.b}); }
@@ -143,7 +149,10 @@ Reflecting reflectingOf(const Surface& surface) {
   r.through =
       (1.0 - surface.transmission) * (1.0 - metal) * surface.diffuseTransmission * surface.diffuseTransmissionColor;
   r.diffuse *= 1.0 - surface.diffuseTransmission;
-  r.film = filmReflection(r.f0, r.nv, surface.iridescenceIor, surface.filmThickness);
+  // What a material has none of is not worked out.
+  if (surface.iridescence != 0.0) {
+    r.film = filmReflection(r.f0, r.nv, surface.iridescenceIor, surface.filmThickness);
+  }
   return r;
 }
 
@@ -176,6 +185,7 @@ glm::dvec3 directLight(const Surface& surface, const Reflecting& r, const Shine&
   glm::dvec3 f = r.f0 + (r.f90 - r.f0) * power5(1.0 - std::max(glm::dot(r.v, h), 0.0));
   f = glm::mix(f, r.film, surface.iridescence);
   glm::dvec3 reflected = (1.0 - f) * r.diffuse / kPi + f * lobeOf(surface, r, shine.toLight, h);
+  if (surface.sheenColor == glm::dvec3(0.0)) return shine.strength * cosine * reflected;
   const double rough = std::clamp(surface.sheenRoughness, 0.07, 1.0);
   const double most = std::min(largestOf(surface.sheenColor), 1.0);
   reflected *= 1.0 - most * sheenAlbedo(rough, r.nv);
@@ -228,9 +238,11 @@ glm::dvec3 shade(const Surface& surface) {
   mirror = glm::mix(mirror, r.film, surface.iridescence);
   glm::dvec3 color =
       r.ambientShare * hemisphere(r.n) * r.diffuse + hemisphere(mirrored) * mirror + hemisphere(-r.n) * r.through;
-  const double albedo = sheenAlbedo(std::clamp(surface.sheenRoughness, 0.07, 1.0), r.nv);
-  color *= 1.0 - std::min(largestOf(surface.sheenColor), 1.0) * albedo;
-  color += hemisphere(r.n) * surface.sheenColor * albedo;
+  if (surface.sheenColor != glm::dvec3(0.0)) {
+    const double albedo = sheenAlbedo(std::clamp(surface.sheenRoughness, 0.07, 1.0), r.nv);
+    color *= 1.0 - std::min(largestOf(surface.sheenColor), 1.0) * albedo;
+    color += hemisphere(r.n) * surface.sheenColor * albedo;
+  }
   glm::dvec3 coat = hemisphere(mirrored);
   for (const Shine& shine : lights) {
     color += directLight(surface, r, shine);

@@ -76,12 +76,15 @@ SurfaceFinder::SurfaceFinder(const Scene& scene, const ReferenceOptions& options
       rays_(scene, options.view),
       near_(options.view.nearPlane),
       far_(options.view.farPlane > 0.0F || options.view.orthographic ? double{options.view.farPlane}
-                                                                     : std::numeric_limits<double>::infinity()) {}
+                                                                     : std::numeric_limits<double>::infinity()) {
+  for (const Mesh& mesh : scene.meshes) vertices_.push_back(mesh.vertices());
+}
 
 std::array<Vertex, 3> SurfaceFinder::corners(const RayHit& hit) const {
   const Mesh& mesh = meshOf(hit);
+  const std::vector<Vertex>& vertices = vertices_[scene_.draws[hit.draw].mesh];
   const std::size_t first = std::size_t{hit.triangle} * 3;
-  return {mesh.vertex(mesh.indices[first]), mesh.vertex(mesh.indices[first + 1]), mesh.vertex(mesh.indices[first + 2])};
+  return {vertices[mesh.indices[first]], vertices[mesh.indices[first + 1]], vertices[mesh.indices[first + 2]]};
 }
 
 bool SurfaceFinder::isTransparent(const Material& material) const {

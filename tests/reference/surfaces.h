@@ -64,6 +64,7 @@ class SurfaceFinder {
 
   const Scene& scene_;
   const ReferenceOptions& options_;
+  std::vector<std::vector<Vertex>> vertices_; // by mesh
   RayScene rays_;
   double near_;
   double far_;
