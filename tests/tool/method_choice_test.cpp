@@ -81,8 +81,8 @@ std::string summaryOfTurn(const MethodCosts& costs, int pictures, const Words& m
   Words words = {"render",  "--scene",     "interlocked",           "--size", "8x8", "--device", "0", "-o",
                  "a%d.png", "--turntable", std::to_string(pictures)};
   words.insert(words.end(), more.begin(), more.end());
-  const ProcessResult result = vitrail(
-      words, {.folder = folder.path(), .environment = {"XDG_CACHE_HOME=" + folder.path().string()}, .running = {}});
+  const ProcessResult result =
+      vitrail(words, {.folder = folder.path(), .environment = cachesIn(folder.path()), .running = {}});
   EXPECT_EQ(result.exitCode, 0) << result.error;
   return result.out;
 }
@@ -101,8 +101,7 @@ TEST(MethodChoice, OfTurns) {
 TEST(MethodChoice, IsToldByInfo) {
   const TemporaryFolder folder;
   const tool::DeviceSummary device = tool::listDevices().front();
-  const ProcessOptions options{
-      .folder = {}, .environment = {"XDG_CACHE_HOME=" + folder.path().string()}, .running = {}};
+  const ProcessOptions options{.folder = {}, .environment = cachesIn(folder.path()), .running = {}};
   EXPECT_EQ(vitrail({"info"}, options).out.find("tiles in windows"), std::string::npos);
   tool::rememberCosts(folder.path() / "vitrail" / "methods.json", device.identity, kTilesAreFaster);
   EXPECT_NE(vitrail({"info"}, options).out.find("tiles in windows and turns: "), std::string::npos);

@@ -61,6 +61,18 @@ ProcessResult run(const std::vector<std::string>& arguments, const ProcessOption
   return result;
 }
 
+std::vector<std::string> cachesIn(const std::filesystem::path& folder) {
+  std::vector<std::string> variables = {"XDG_CACHE_HOME=" + folder.string()};
+  const char* usual = std::getenv("XDG_CACHE_HOME");
+  const char* home = std::getenv("HOME");
+  if (usual != nullptr) {
+    variables.push_back(std::string("MESA_SHADER_CACHE_DIR=") + usual);
+  } else if (home != nullptr) {
+    variables.push_back(std::string("MESA_SHADER_CACHE_DIR=") + home + "/.cache");
+  }
+  return variables;
+}
+
 TemporaryFolder::TemporaryFolder() {
   std::string pattern = (fs::temp_directory_path() / "vitrail-test-XXXXXX").string();
   if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");

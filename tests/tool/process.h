@@ -25,6 +25,10 @@ struct ProcessOptions {
 // Runs a program and waits for it. Throws std::runtime_error where it cannot be started.
 ProcessResult run(const std::vector<std::string>& arguments, const ProcessOptions& options = {});
 
+// The variables for a program whose caches are below a folder, but for Mesa's of compiled shaders, which stays the
+// usual one: in an empty one a driver for CPUs compiles all of them again.
+std::vector<std::string> cachesIn(const std::filesystem::path& folder);
+
 // A new empty folder, removed with its content.
 class TemporaryFolder {
  public:

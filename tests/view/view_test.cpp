@@ -33,7 +33,8 @@ using Clock = std::chrono::steady_clock;
 // A window, and what it says of itself.
 class View {
  public:
-  View(const TemporaryFolder& folder, Words words) : folder_(folder) {
+  // With variables NAME=value beside those of this program.
+  View(const TemporaryFolder& folder, Words words, Words variables = {}) : folder_(folder) {
     const std::string events = folder.file("events");
     std::ofstream(events).flush();
     words.insert(words.begin(), {kTool, "view", "--events", events, "--size", "640x480"});
@@ -44,6 +45,7 @@ class View {
       const int out = ::creat(folder.file("stdout").c_str(), 0600);
       ::dup2(error, STDERR_FILENO);
       ::dup2(out, STDOUT_FILENO);
+      for (std::string& variable : variables) ::putenv(variable.data());
       std::vector<char*> arguments;
       for (std::string& word : words) arguments.push_back(word.data());
       arguments.push_back(nullptr);
@@ -436,9 +438,7 @@ TEST(ViewMethodsTest, DrawsByTheFasterMethodWhereNoneIsNamed) {
   const tool::DeviceSummary device = tool::listDevices().front();
   tool::rememberCosts(folder.path() / "vitrail" / "methods.json", device.identity,
                       {{{50.0, 6.0}, {40.0, 3.0}}, {{900.0, 0.5}, {800.0, 0.4}}});
-  ::setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
-  View view(folder, {"--scene", "interlocked", "--device", "llvmpipe", "--samples", "4"});
-  ::unsetenv("XDG_CACHE_HOME");
+  View view(folder, {"--scene", "interlocked", "--device", "llvmpipe", "--samples", "4"}, cachesIn(folder.path()));
   const Json first = view.settled();
   EXPECT_EQ(first["method"], "tiles");
   EXPECT_NE(first["command"].get<std::string>().find("--method tiles --samples 4"), std::string::npos);
@@ -629,11 +629,9 @@ TEST(ViewMethodsTest, SortsOrDoesNot) {
 TEST(ViewMethodsTest, GoesOnWhenTheDeviceIsLost) {
   const TemporaryFolder folder;
   const std::string lose = folder.file("lose");
-  ::setenv("VK_LAYER_PATH", VITRAIL_TEST_LAYERS, 1);
-  ::setenv("VK_INSTANCE_LAYERS", "VK_LAYER_VITRAIL_losing", 1);
-  ::setenv("VITRAIL_TEST_LOSE", lose.c_str(), 1);
-  View view(folder, {"--scene", "interlocked", "--device", "llvmpipe"});
-  for (const char* name : {"VK_LAYER_PATH", "VK_INSTANCE_LAYERS", "VITRAIL_TEST_LOSE"}) ::unsetenv(name);
+  View view(folder, {"--scene", "interlocked", "--device", "llvmpipe"},
+            {std::string("VK_LAYER_PATH=") + VITRAIL_TEST_LAYERS, "VK_INSTANCE_LAYERS=VK_LAYER_VITRAIL_losing",
+             "VITRAIL_TEST_LOSE=" + lose});
   view.settled();
   for (const char* method : {"linked-list", "cpu"}) {
     std::ofstream(lose).flush();
