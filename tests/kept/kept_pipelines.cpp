@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <unordered_map>
 
-namespace vitrail::tool::test {
+namespace vitrail::tests {
 
 namespace {
 
@@ -22,8 +22,9 @@ class Content {
   }
   template <class Value>
   void addAll(const Value* values, std::size_t count) {
+    static_assert(std::is_trivially_copyable_v<Value> && !std::is_pointer_v<Value>);
     add(count);
-    for (std::size_t i = 0; values != nullptr && i < count; ++i) add(values[i]);
+    if (values != nullptr) bytes_.append(reinterpret_cast<const char*>(values), count * sizeof(Value));
   }
   void add(const std::string& bytes) { addAll(bytes.data(), bytes.size()); }
   // A structure without pointers but pNext, from the field behind that.
@@ -349,7 +350,9 @@ VKAPI_ATTR void VKAPI_CALL destroyPipeline(VkDevice device, VkPipeline pipeline,
   }
 }
 
-PFN_vkVoidFunction replaced(const char* name) {
+} // namespace
+
+PFN_vkVoidFunction keepingFunction(const char* name) {
   const std::pair<const char*, PFN_vkVoidFunction> functions[] = {
       {"vkCreateShaderModule", reinterpret_cast<PFN_vkVoidFunction>(createShaderModule)},
       {"vkDestroyShaderModule", reinterpret_cast<PFN_vkVoidFunction>(destroyShaderModule)},
@@ -367,14 +370,16 @@ PFN_vkVoidFunction replaced(const char* name) {
   return nullptr;
 }
 
+namespace {
+
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name) {
-  const PFN_vkVoidFunction function = replaced(name);
+  const PFN_vkVoidFunction function = keepingFunction(name);
   return function != nullptr ? function : state().next.getDeviceProcAddr(device, name);
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance, const char* name) {
   if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) return reinterpret_cast<PFN_vkVoidFunction>(getDeviceProcAddr);
-  const PFN_vkVoidFunction function = replaced(name);
+  const PFN_vkVoidFunction function = keepingFunction(name);
   return function != nullptr ? function : state().next.getInstanceProcAddr(instance, name);
 }
 
@@ -403,6 +408,22 @@ void keepPipelines() {
   replace(vkDestroyPipeline, destroyPipeline, next.destroyPipeline);
 }
 
+void keepPipelinesOf(VkDevice device, PFN_vkGetDeviceProcAddr next) {
+  const auto find = [&](auto& function, const char* name) {
+    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(next(device, name));
+  };
+  Functions& functions = state().next;
+  find(functions.createShaderModule, "vkCreateShaderModule");
+  find(functions.destroyShaderModule, "vkDestroyShaderModule");
+  find(functions.createDescriptorSetLayout, "vkCreateDescriptorSetLayout");
+  find(functions.destroyDescriptorSetLayout, "vkDestroyDescriptorSetLayout");
+  find(functions.createPipelineLayout, "vkCreatePipelineLayout");
+  find(functions.destroyPipelineLayout, "vkDestroyPipelineLayout");
+  find(functions.createComputePipelines, "vkCreateComputePipelines");
+  find(functions.createGraphicsPipelines, "vkCreateGraphicsPipelines");
+  find(functions.destroyPipeline, "vkDestroyPipeline");
+}
+
 std::vector<std::string> destroyKeptPipelines(VkDevice device) {
   State& kept = state();
   const std::lock_guard lock(kept.mutex);
@@ -419,4 +440,4 @@ std::vector<std::string> destroyKeptPipelines(VkDevice device) {
   return mistakes;
 }
 
-} // namespace vitrail::tool::test
+} // namespace vitrail::tests

@@ -9,7 +9,7 @@
 #include "../../tool/methods/methods.h"
 #include "../../tool/render/cpu_still.h"
 #include "../../tool/render/gl_still.h"
-#include "kept_pipelines.h"
+#include "../kept/kept_pipelines.h"
 
 namespace vitrail::tool::test {
 
@@ -30,7 +30,7 @@ class GpuEnvironment : public ::testing::Environment {
   void TearDown() override {
     sharedGl().reset();
     if (!sharedGpu()) return;
-    for (const std::string& mistake : destroyKeptPipelines(sharedGpu()->device())) ADD_FAILURE() << mistake;
+    for (const std::string& mistake : tests::destroyKeptPipelines(sharedGpu()->device())) ADD_FAILURE() << mistake;
     sharedGpu().reset();
   }
 };
@@ -45,7 +45,7 @@ Gpu& GpuTest::gpu() {
     GpuOptions options;
     options.validate = true;
     gpu = std::make_unique<Gpu>(options);
-    keepPipelines();
+    tests::keepPipelines();
   }
   return *gpu;
 }

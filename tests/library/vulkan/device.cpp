@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -11,6 +12,7 @@ namespace vitrail::tests::vulkan {
 namespace {
 
 constexpr const char* kLayer = "VK_LAYER_KHRONOS_validation";
+constexpr const char* kKeepingLayer = "VK_LAYER_VITRAIL_keeping"; // tests/kept
 constexpr VkFormat kDepthStencil = VK_FORMAT_D32_SFLOAT_S8_UINT;
 
 std::optional<std::uint32_t> drawingFamily(VkPhysicalDevice device) {
@@ -115,18 +117,20 @@ void Device::makeInstance() {
   validation.pNext = &messenger; // for what is said while the instance is made and destroyed
   validation.enabledValidationFeatureCount = 1;
   validation.pEnabledValidationFeatures = &kSynchronization;
+  std::vector<const char*> layers;
 #ifdef VITRAIL_TEST_NO_VULKAN_LAYERS // Wine's Vulkan has none
   constexpr std::array kExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
-  constexpr std::uint32_t kLayers = 0;
 #else
   constexpr std::array kExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
-  constexpr std::uint32_t kLayers = 1;
+  layers.push_back(kLayer);
+  // Below it: the first is the nearest to the application.
+  if (std::getenv("VITRAIL_TEST_KEEP_PIPELINES") != nullptr) layers.push_back(kKeepingLayer);
 #endif
   auto info = zeroed<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
   info.pNext = &validation;
   info.pApplicationInfo = &application;
-  info.enabledLayerCount = kLayers;
-  info.ppEnabledLayerNames = &kLayer;
+  info.enabledLayerCount = static_cast<std::uint32_t>(layers.size());
+  info.ppEnabledLayerNames = layers.data();
   info.enabledExtensionCount = kExtensions.size();
   info.ppEnabledExtensionNames = kExtensions.data();
   check(vkCreateInstance(&info, nullptr, &instance_), "vkCreateInstance under vulkan-validationlayers");
