@@ -72,7 +72,7 @@ Mesh slab(float low, float high) { return box({-3.0F, -3.0F, low}, {3.0F, 3.0F, 
 
 glm::dvec3 left(const glm::vec3& color, double length) { return glm::pow(glm::dvec3(color), glm::dvec3(length)); }
 
-constexpr std::array<DrawOrder, 3> kOrders{DrawOrder::Forward, DrawOrder::Reversed, DrawOrder::Shuffled};
+constexpr std::array<DrawOrder, 3> kVolumeOrders{DrawOrder::Forward, DrawOrder::Reversed, DrawOrder::Shuffled};
 
 class VolumeTest : public GpuTest {
  protected:
@@ -150,7 +150,7 @@ class VolumeTest : public GpuTest {
   // All orders by the default options, else one.
   static std::span<const DrawOrder> ordersOf(const MethodOptions& method) {
     const bool usual = method.samples == 1 && method.nodes == MethodOptions().nodes;
-    return usual ? std::span(kOrders) : std::span(kOrders).first(1);
+    return usual ? std::span(kVolumeOrders) : std::span(kVolumeOrders).first(1);
   }
 
   std::array<int, 3> middleOf(const RenderResult& result) const {

@@ -134,7 +134,7 @@ constexpr std::array kMethods{
         .name = kLayerCount, .help = "the depth complexity of each pixel", .make = makeLayerCount, .listed = false},
 };
 
-constexpr auto kNames = [] {
+constexpr auto kMethodNames = [] {
   std::array<std::string_view, std::ranges::count(kMethods, true, &MethodTraits::listed)> names;
   std::size_t count = 0;
   for (const MethodTraits& method : kMethods) {
@@ -230,7 +230,7 @@ void checkStored(const MethodOptions& options) {
 
 } // namespace
 
-std::span<const std::string_view> methodNames() { return kNames; }
+std::span<const std::string_view> methodNames() { return kMethodNames; }
 
 const MethodTraits& traitsOf(std::string_view name) {
   const auto* found = std::ranges::find(kMethods, name, &MethodTraits::name);
@@ -247,9 +247,9 @@ std::unique_ptr<GlMethod> makeGlMethod(const GlMethodHost& host, const MethodOpt
 }
 
 void checkMethodOptions(const MethodOptions& options) {
-  if (std::ranges::find(kNames, options.name) == kNames.end()) {
+  if (std::ranges::find(kMethodNames, options.name) == kMethodNames.end()) {
     throw std::invalid_argument(
-        fmt::format("there is no method \"{}\"; the methods are {}", options.name, fmt::join(kNames, ", ")));
+        fmt::format("there is no method \"{}\"; the methods are {}", options.name, fmt::join(kMethodNames, ", ")));
   }
   if (options.samples != 1 && options.samples != 2 && options.samples != 4 && options.samples != 8) {
     throw std::invalid_argument(fmt::format("a pixel has 1, 2, 4 or 8 samples, not {}", options.samples));

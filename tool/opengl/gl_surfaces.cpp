@@ -13,7 +13,7 @@ namespace vitrail::tool {
 
 namespace {
 
-GLenum topologyOf(std::uint32_t features) {
+GLenum glTopologyOf(std::uint32_t features) {
   if ((features & shaders::FEATURE_SOLID) == shaders::FEATURE_LINES) return GL_LINES;
   if ((features & shaders::FEATURE_SOLID) == shaders::FEATURE_POINTS) return GL_POINTS;
   return GL_TRIANGLES;
@@ -78,7 +78,7 @@ void GlSurfaces::draw(std::span<const GpuDraw> draws, std::span<const SurfaceRun
     }
     if (programs.hasObjects()) glUniform1ui(0, run.firstInstance);
     if (before) before(run);
-    glDrawElementsInstancedBaseInstance(topologyOf(draw.features), static_cast<GLsizei>(run.indexCount),
+    glDrawElementsInstancedBaseInstance(glTopologyOf(draw.features), static_cast<GLsizei>(run.indexCount),
                                         GL_UNSIGNED_INT,
                                         reinterpret_cast<const void*>(std::uintptr_t{run.firstIndex} * 4),
                                         static_cast<GLsizei>(run.instanceCount), run.firstInstance);

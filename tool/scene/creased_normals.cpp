@@ -89,8 +89,8 @@ struct NewVertices {
 };
 
 // Which of the corners at a place are inclined to one of them by less than the crease.
-constexpr std::size_t mostCompared = 256;
-using Neighbours = std::array<std::uint64_t, mostCompared / 64>;
+constexpr std::size_t mostCorners = 256;
+using Neighbours = std::array<std::uint64_t, mostCorners / 64>;
 
 class CornerNormals {
  public:
@@ -101,7 +101,7 @@ class CornerNormals {
   void add(std::span<const std::uint32_t> corners, NewVertices& made, std::vector<std::uint32_t>& indices) {
     const std::size_t first = made.originals.size();
     // All pairs are compared; where thousands of triangles meet, each keeps the normal of its plane.
-    const bool compared = corners.size() <= mostCompared;
+    const bool compared = corners.size() <= mostCorners;
     own_.clear();
     for (const std::uint32_t corner : corners) own_.push_back(facings_[corner / 3]);
     compareAll(compared);

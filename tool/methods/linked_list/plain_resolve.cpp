@@ -14,7 +14,7 @@ namespace vitrail::tool {
 
 namespace {
 
-struct Constants { // push constants
+struct PlainConstants { // push constants
   std::uint32_t peeled;
   std::uint32_t showsLess;
 };
@@ -38,7 +38,7 @@ PlainResolve::PlainResolve(Gpu& gpu, VkDescriptorSetLayout lists, std::uint32_t 
             {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT},
             {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_SHADER_STAGE_COMPUTE_BIT}},
            "plain resolve"),
-      layout_(makePipelineLayout(gpu, {lists, set_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(Constants)},
+      layout_(makePipelineLayout(gpu, {lists, set_.layout()}, {VK_SHADER_STAGE_COMPUTE_BIT, sizeof(PlainConstants)},
                                  "plain resolve")),
       pipeline_(makeComputePipeline(gpu, layout_.get(),
                                     resolveCode(samples > 1, testsDepth_, gpu.features().poolByAddress),
@@ -53,7 +53,7 @@ void PlainResolve::setTarget(const MethodTarget& target) {
 void PlainResolve::cmdResolve(VkCommandBuffer commands, VkDescriptorSet lists, VkExtent2D area, std::uint32_t peeled,
                               bool showsLess) const {
   const std::array<VkDescriptorSet, 2> sets{lists, set_.set()};
-  const Constants constants{peeled, showsLess ? 1U : 0U};
+  const PlainConstants constants{peeled, showsLess ? 1U : 0U};
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0,
                           static_cast<std::uint32_t>(sets.size()), sets.data(), 0, nullptr);

@@ -44,7 +44,7 @@ namespace {
 
 constexpr std::array<VkFormat, 3> kFormats{PictureImages::kColorFormat, PictureImages::kColorFormat,
                                            VK_FORMAT_R32_SFLOAT};
-constexpr std::uint64_t kLayerBytes = 8 + 8 + 4;
+constexpr std::uint64_t kStencilLayerBytes = 8 + 8 + 4;
 constexpr std::uint64_t kDepthBytes = 8;
 constexpr std::uint32_t kMostLayers = 254;
 
@@ -323,8 +323,8 @@ FrameStats StencilRouted::stats() const {
   stats.complete = stats.complete && inMiddle_;
   const std::uint64_t pixels = std::uint64_t{extent_.width} * extent_.height;
   const std::uint32_t layers = layers_[0].get().info().arrayLayers;
-  if (layers_[0].get().get() != VK_NULL_HANDLE) stats.nodesBytes = pixels * kLayerBytes * layers;
-  stats.totalBytes += stats.nodesBytes + pixels * samples_ * (kLayerBytes + kDepthBytes);
+  if (layers_[0].get().get() != VK_NULL_HANDLE) stats.nodesBytes = pixels * kStencilLayerBytes * layers;
+  stats.totalBytes += stats.nodesBytes + pixels * samples_ * (kStencilLayerBytes + kDepthBytes);
   return stats;
 }
 

@@ -149,7 +149,7 @@ void widen(const Elements& elements, std::size_t first, std::size_t components, 
 
 // Reads elements part by part. Of a mapped file the memory holds one part at a time.
 template <typename Read>
-void inParts(const GltfDocument& document, const Elements& elements, std::size_t size, Read read) {
+void inChunks(const GltfDocument& document, const Elements& elements, std::size_t size, Read read) {
   constexpr std::size_t stretch = std::size_t{1} << 22U; // bytes that are released at once
   std::size_t released = 0;
   for (std::size_t first = 0; first < elements.count; first += size) {
@@ -257,7 +257,7 @@ std::vector<std::uint32_t> plainIndices(const GltfDocument& document, std::size_
                  componentSize(source.componentType), true, accessorName(document, accessor));
   std::vector<std::uint32_t> indices(elements.count);
   const auto read = [&]<typename Raw>(Raw) {
-    inParts(document, elements, 4096, [&](std::size_t first, std::size_t count) {
+    inChunks(document, elements, 4096, [&](std::size_t first, std::size_t count) {
       for (std::size_t i = first; i < first + count; ++i)
         indices[i] = load<Raw>(elements.bytes.data() + i * elements.stride);
     });
@@ -293,7 +293,7 @@ void visitVectors(const GltfDocument& document, std::size_t accessor, int least,
       elementsIn(document, static_cast<std::size_t>(source.bufferView), source.byteOffset, source.count,
                  components * componentSize(source.componentType), true, accessorName(document, accessor));
   std::array<glm::vec4, 1024> part;
-  inParts(document, elements, part.size(), [&](std::size_t first, std::size_t count) {
+  inChunks(document, elements, part.size(), [&](std::size_t first, std::size_t count) {
     const std::span<glm::vec4> target = std::span(part).first(count);
     std::ranges::fill(target, fill);
     widen(elements, first, components, source.componentType, source.normalized, target);

@@ -9,7 +9,7 @@
 namespace vitrail::tool {
 namespace {
 
-std::uint8_t to8Bits(float value) {
+std::uint8_t toByte(float value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255.0F));
 }
 
@@ -52,7 +52,7 @@ char usedChannel(const Image& image, char channel) {
 
 Image rescaled(Image image, float base, float gain) {
   for (std::size_t i = 0; i < image.rgba.size(); ++i)
-    if (i % 4 != 3) image.rgba[i] = to8Bits(base + gain * static_cast<float>(image.rgba[i]) / 255.0F);
+    if (i % 4 != 3) image.rgba[i] = toByte(base + gain * static_cast<float>(image.rgba[i]) / 255.0F);
   return image;
 }
 
@@ -109,7 +109,7 @@ Image normalsFromHeights(const Image& heights, char channel, float strength) {
       // Rows run downwards, and a normal map's green upwards.
       const glm::vec3 normal = glm::normalize(glm::vec3(scale * (at(x + width - 1, y) - at(x + 1, y)),
                                                         scale * (at(x, y + 1) - at(x, y + height - 1)), 1.0F));
-      for (int c = 0; c < 3; ++c) out[c] = to8Bits(0.5F + 0.5F * normal[c]);
+      for (int c = 0; c < 3; ++c) out[c] = toByte(0.5F + 0.5F * normal[c]);
     }
   return normals;
 }

@@ -209,9 +209,9 @@ class PlyScene {
 
   // A vertex for each look that a vertex of the file has in the faces around it.
   void addSplitVertices(const CornerTriangles& triangles, std::int32_t texture) {
-    constexpr std::uint32_t none = 0xffffffff;
-    constexpr int mostCompared = 32; // what a hostile file makes of it stays linear
-    std::vector<std::uint32_t> newest(data_.positions.size(), none);
+    constexpr std::uint32_t noVertex = 0xffffffff;
+    constexpr int mostLooks = 32; // what a hostile file makes of it stays linear
+    std::vector<std::uint32_t> newest(data_.positions.size(), noVertex);
     std::vector<std::uint32_t> older; // of the mesh's vertices: the one before of the same vertex of the file
     std::vector<Look> looks;
     std::vector<glm::vec3> normals;
@@ -221,8 +221,8 @@ class PlyScene {
       const std::uint32_t vertex = data_.corners[corner];
       const Look look = lookOf(corner, triangles.faces[i / 3]);
       std::uint32_t found = newest[vertex];
-      for (int n = 0; found != none && looks[found] != look; ++n) found = n < mostCompared ? older[found] : none;
-      if (found == none) {
+      for (int n = 0; found != noVertex && looks[found] != look; ++n) found = n < mostLooks ? older[found] : noVertex;
+      if (found == noVertex) {
         found = static_cast<std::uint32_t>(looks.size());
         older.push_back(newest[vertex]);
         newest[vertex] = found;
