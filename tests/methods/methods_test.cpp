@@ -517,7 +517,9 @@ TEST_P(MethodsTest, PassesAreNamed) {
     EXPECT_TRUE(names.insert(name).second) << name;
     EXPECT_GE(milliseconds, 0.0) << name;
   }
-  EXPECT_TRUE(names.empty() || names.size() > 2) << "opaque, encode, and nothing between them";
+  // The processor draws opaque and transparent surfaces in one pass.
+  const std::size_t others = GetParam().name == tool::kCpuMethod ? 1 : 2;
+  EXPECT_TRUE(names.empty() || names.size() > others) << "opaque, encode, and nothing between them";
 }
 
 TEST_P(MethodsTest, SeveralSamplesAreRightOrRefused) {
