@@ -110,15 +110,37 @@ uint vitrailFindNearest(uint count, uint from, ivec2 corner, float farthest, boo
   return left;
 }
 
-// Puts fragments whose keys hold the same depth in order.
-void vitrailSettle(uint ties, uint count) {
-  for (uint i = 1u; i < count; ++i) {
-    for (uint k = i; k > 0u && (ties >> (k - 1u) & 1u) != 0u; --k) {
-      uint a = vitrailOrderAt(k - 1u);
-      uint b = vitrailOrderAt(k);
-      if (vitrailIsBefore(a, b)) break;
-      vitrailSetOrder(k - 1u, b);
-      vitrailSetOrder(k, a);
+// Puts fragments whose keys hold the same depth in order. Those that have one depth indeed stay ties.
+void vitrailSettle(inout uint ties, uint count) {
+  uint left = count > 1u ? ties & ((1u << (count - 1u)) - 1u) : 0u;
+  ties = 0u;
+  while (left != 0u) { // each thread goes to its own next run
+    uint first = uint(findLSB(left));
+    uint last = first + uint(findLSB(~(left >> first)));
+    left &= ~((1u << last) - (1u << first));
+    if (last > first + 1u) {
+      for (uint i = first + 1u; i <= last; ++i) {
+        for (uint k = i; k > first; --k) {
+          uint a = vitrailOrderAt(k - 1u);
+          uint b = vitrailOrderAt(k);
+          if (vitrailIsBefore(a, b)) break;
+          vitrailSetOrder(k - 1u, b);
+          vitrailSetOrder(k, a);
+        }
+      }
+    }
+    uint a = vitrailOrderAt(first);
+    uint keyA = vitrailExactKey(a);
+    for (uint i = first + 1u; i <= last; ++i) {
+      uint b = vitrailOrderAt(i);
+      uint keyB = vitrailExactKey(b);
+      if (keyA == keyB) ties |= 1u << (i - 1u);
+      bool isPair = last == first + 1u; // as most are: not in order yet
+      if (isPair && (keyB < keyA || (keyA == keyB && vitrailSourceBefore(vitrailRecordAt(b), vitrailRecordAt(a))))) {
+        vitrailSetOrder(first, b);
+        vitrailSetOrder(last, a);
+      }
+      keyA = keyB;
     }
   }
 }
@@ -169,16 +191,7 @@ void vitrailPartTies(inout uint ties, uint count) {
 #endif
 
 // How many fragments from the i-th on have one depth.
-uint vitrailAlikeFrom(uint i, uint ties, uint count) {
-  uint alike = 1u;
-  if ((ties >> i & 1u) == 0u) return alike;
-  uint key = vitrailExactKey(vitrailOrderAt(i));
-  while (i + alike < count && (ties >> (i + alike - 1u) & 1u) != 0u &&
-         vitrailExactKey(vitrailOrderAt(i + alike)) == key) {
-    ++alike;
-  }
-  return alike;
-}
+uint vitrailAlikeFrom(uint i, uint ties) { return 1u + uint(findLSB(~(ties >> i))); }
 
 void main() {
   vitrailThread = gl_LocalInvocationIndex;
@@ -232,19 +245,16 @@ void main() {
 #endif
     if (ties != 0u) vitrailSettle(ties, kept);
     uint k = 0u;
-#ifndef VITRAIL_MULTISAMPLED // of several samples it came out slower
-    // Up to the first that has the depth of another, which most pixels have not: nothing waits for what these take.
-    for (; k < kept && !ended; ++k) {
-      if ((ties >> k & 1u) != 0u && vitrailAlikeFrom(k, ties, kept) > 1u) break;
+    // Up to the first that has the depth of another, which most pixels have not.
+    for (; k < kept && !ended && (ties >> k & 1u) == 0u; ++k) {
       vitrailAlikeFirst = k;
       vitrailBlendAlike(light, pixel, vitrailThread, 1u);
       isEmpty = false;
       if (vitrailHasEnough(light)) ended = true;
     }
-#endif
     uint singles = 0u; // at one depth, more than whose order their colours decide
     while (k < kept && !ended) {
-      uint alike = singles > 0u ? 1u : vitrailAlikeFrom(k, ties, kept);
+      uint alike = singles > 0u ? 1u : vitrailAlikeFrom(k, ties);
       if (alike > VITRAIL_RASTER_TIES) singles = alike;
       if (singles > 0u) {
         --singles;

@@ -131,21 +131,23 @@ bool vitrailHasEnough(VitrailPixelLight light) {
   float through = VITRAIL_SHARE * max(max(all.r, all.g), max(all.b, all.a));
   if (VITRAIL_RASTER_BLENDS != 1u << VITRAIL_OVER || light.most < 0.0) return through <= 0.0;
   float darkest = min(light.color.r, min(light.color.g, light.color.b));
+  if (darkest <= 1.0 && through * light.most * (0.43958 * 255.0) >= VITRAIL_RASTER_STOP) return false; // it is as steep
   float steepness = darkest > 0.0031308 ? 0.43958 * pow(darkest, -0.58333) : 12.92;
   return through * light.most * steepness * 255.0 < VITRAIL_RASTER_STOP;
 }
 
-// The order at one depth: by what fragments are, as in fragment lists.
-uvec4 vitrailTieKey(vec4 color, uint blend, uint number) {
+// The order at one depth: by what fragments are, as in fragment lists. With the blend mode, in the lowest bits, its
+// number.
+uvec3 vitrailTieKey(vec4 color, uint blend, uint number) {
   uvec4 node;
   vitrailPack(color, blend, 0.0, 1u, VITRAIL_TIE_NODES, node);
-  return uvec4(blend, node.xy, number);
+  return uvec3(blend << 8 | number, node.xy);
 }
 
-bool vitrailLessKey(uvec4 a, uvec4 b) {
-  if (a.x != b.x) return a.x < b.x;
+bool vitrailLessKey(uvec3 a, uvec3 b) {
+  if (a.x >> 8 != b.x >> 8) return a.x < b.x;
   if (a.y != b.y) return a.y < b.y;
-  return a.z != b.z ? a.z < b.z : a.w < b.w;
+  return a.z != b.z ? a.z < b.z : a.x < b.x;
 }
 
 // The i-th surface of those that have one depth, which the including shader has at hand: its record, and it, to be
@@ -154,27 +156,28 @@ uint vitrailAlikeRecord(uint i);
 VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel);
 
 // Blends them: one, or up to VITRAIL_RASTER_TIES in the order of what they are. Then each turn through all finds the
-// next fragment, of which a surface has two at most. What shades them stands here once, as it is what takes long.
+// next fragment, of which a surface has two at most, and shades it again: what would be kept of it takes registers, and
+// few surfaces have the depth of others. What shades them stands here once, as it is what takes long.
 void vitrailBlendAlike(inout VitrailPixelLight light, ivec2 pixel, uint thread, uint alike) {
-  uvec4 last = uvec4(0u);
-  uvec4 best = uvec4(0xffffffffu);
-  vec4 bestColor = vec4(0.0);
-  uint bestVisible = 0u;
+  const uvec3 none = uvec3(0xffffffffu);
+  uvec3 last = uvec3(0u);
+  uvec3 next = none;
+  bool isFound = alike == 1u;
   uint i = 0u;
-  for (uint step = 0u; step < (2u * VITRAIL_RASTER_TIES + 1u) * VITRAIL_RASTER_TIES; ++step) {
+  for (uint step = 0u; step < (2u * VITRAIL_RASTER_TIES + 1u) * (VITRAIL_RASTER_TIES + 1u); ++step) {
     uint visible = 1u;
     if (VITRAIL_RASTER_SAMPLES > 1u) visible = vitrailVisibleSamples(light, vitrailAlikeRecord(i), pixel, thread);
     if (visible != 0u) {
       VitrailFragments f = vitrailFragmentsOf(vitrailAlikeSurface(i, pixel));
       // No loop: arrays stay in registers where their indices are constants.
 #define VITRAIL_TAKE_FRAGMENT(k) \
-  if (f.count > k && alike == 1u) vitrailPutFragment(light, f.colors[k], f.blends[k], visible); \
-  if (f.count > k && alike > 1u) { \
-    uvec4 order = vitrailTieKey(f.colors[k], f.blends[k], 2u * i + k + 1u); \
-    if (vitrailLessKey(last, order) && vitrailLessKey(order, best)) { \
-      best = order; \
-      bestColor = f.colors[k]; \
-      bestVisible = visible; \
+  if (f.count > k) { \
+    uint number = 2u * i + k + 1u; \
+    if (isFound) { \
+      if (alike == 1u || (next.x & 0xffu) == number) vitrailPutFragment(light, f.colors[k], f.blends[k], visible); \
+    } else { \
+      uvec3 key = vitrailTieKey(f.colors[k], f.blends[k], number); \
+      if (vitrailLessKey(last, key) && vitrailLessKey(key, next)) next = key; \
     } \
   }
       VITRAIL_TAKE_FRAGMENT(0u)
@@ -185,12 +188,16 @@ void vitrailBlendAlike(inout VitrailPixelLight light, ivec2 pixel, uint thread, 
 #endif
     }
     if (alike == 1u) return;
-    if (++i < alike) continue;
-    if (best.w == 0xffffffffu) return;
-    vitrailPutFragment(light, bestColor, best.x, bestVisible);
-    last = best;
-    best = uvec4(0xffffffffu);
-    i = 0u;
+    if (isFound) {
+      last = next;
+      next = none;
+      isFound = false;
+      i = 0u;
+    } else if (++i == alike) {
+      if (next == none) return;
+      isFound = true;
+      i = ((next.x & 0xffu) - 1u) / 2u;
+    }
   }
 }
 
