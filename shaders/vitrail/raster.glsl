@@ -128,8 +128,7 @@ VitrailFragments vitrailShadeTwice(VitrailSurface surface);
 #elif VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_SET_UP
 #include "raster/set_up.glsl"
 #elif VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_SET_UP_LARGE
-#define VITRAIL_RASTER_OF_LARGE
-#include "raster/set_up.glsl"
+#include "raster/set_up_large.glsl"
 #elif VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_BLEND
 #include "raster/blend.glsl"
 #else

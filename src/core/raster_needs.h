@@ -39,7 +39,7 @@ struct RasterBounds {
 
 // Bytes of what a frame's passes keep.
 constexpr std::uint64_t kRasterTileBytes = 8;      // of each of two arrays, the other with kRasterTileListBytes
-constexpr std::uint64_t kRasterTileListBytes = 16; // a place in each class
+constexpr std::uint64_t kRasterTileListBytes = 24; // a place in each class
 constexpr std::uint64_t kRasterRecordBytes = 32;
 constexpr std::uint64_t kRasterPlaceBytes = 12; // of a record
 constexpr std::uint64_t kRasterPairBytes = 8;

@@ -304,11 +304,12 @@ RasterNeeds guessOf(std::uint64_t triangles) {
 }
 
 RasterTables tablesOf(const VitrailVkRasterHints& hints, bool keepsPositions) {
-  constexpr std::uint64_t kGroup = raster::VITRAIL_RASTER_GROUP;
+  constexpr std::uint64_t kTriangles = raster::VITRAIL_RASTER_SET_UP * raster::VITRAIL_RASTER_TURNS;
+  constexpr std::uint64_t kVertices = raster::VITRAIL_RASTER_GROUP * raster::VITRAIL_RASTER_VERTICES;
   const auto atLeast = [](std::uint64_t value) { return std::max<std::uint64_t>(value, 1); };
   return {.draws = atLeast(hints.draws),
-          .groups = atLeast(hints.triangles / kGroup + hints.draws),
-          .vertexGroups = keepsPositions ? atLeast(hints.vertices / kGroup + hints.draws) : 1,
+          .groups = atLeast(hints.triangles / kTriangles + hints.draws),
+          .vertexGroups = keepsPositions ? atLeast(hints.vertices / kVertices + hints.draws) : 1,
           .items = atLeast(hints.instances),
           .vertices = keepsPositions ? atLeast(hints.vertices) : 1};
 }

@@ -18,8 +18,7 @@ namespace vitrail {
 
 // The raster's own buffers. Those of one kind follow the same needs.
 enum class RasterBuffer : std::uint8_t {
-  Frame,  // what frames always have
-  Counts, // control, classes of tiles and totals
+  Counts, // what frames always have: control, classes of tiles, totals and the frame's data
   Start,
   TileRecords, // tiles
   TileList,
@@ -44,11 +43,19 @@ enum class RasterBuffer : std::uint8_t {
 };
 constexpr std::size_t kRasterBuffers = static_cast<std::size_t>(RasterBuffer::Count);
 
-// Where the parts of RasterBuffer::Counts begin, at what any device aligns buffers to. They are cleared together.
+// Where the parts of RasterBuffer::Counts begin, at what any device aligns buffers to.
 constexpr std::uint64_t kRasterControlAt = 0;
 constexpr std::uint64_t kRasterClassesAt = 256;
 constexpr std::uint64_t kRasterTotalsAt = 512; // not cleared from band to band
-constexpr std::uint64_t kRasterCountBytes = 768;
+constexpr std::uint64_t kRasterFrameAt = 768;  // begin.comp
+constexpr std::uint64_t kRasterCountBytes = kRasterFrameAt + sizeof(raster::VitrailRasterFrame);
+
+// What the pass `begin` takes (push constants).
+struct RasterBegin {
+  std::array<std::uint32_t, raster::VITRAIL_RASTER_FRAME_WORDS> frame; // of VitrailRasterFrame
+  std::uint32_t isFirst;
+};
+static_assert(sizeof(RasterBegin) <= 128); // which any device has
 
 // The numbers of bindings of the raster's set are those of shaders/vitrail/raster/frame.glsl and the others in its
 // folder. The set is there three times, with what shaders of a kind look at, as hosts have buffers of their own, and
@@ -70,6 +77,7 @@ enum class RasterSet : std::uint8_t {
   Blend,    // of blending
   Count
 };
+constexpr std::size_t kRasterBlends = 4; // pipelines for tiles, from few records to deep ones
 constexpr std::size_t kRasterSets = static_cast<std::size_t>(RasterSet::Count);
 bool hasRasterBinding(RasterSet set, std::uint32_t samples, std::uint32_t binding);
 VkDescriptorType rasterBindingType(std::uint32_t binding);
@@ -168,8 +176,9 @@ struct VitrailVkRaster_T {
 
   VkPipeline positions = VK_NULL_HANDLE;
   VkPipeline setUp = VK_NULL_HANDLE;
+  VkPipeline setUpMedium = VK_NULL_HANDLE;
   VkPipeline setUpLarge = VK_NULL_HANDLE;
-  std::array<VkPipeline, vitrail::raster::VITRAIL_RASTER_CLASSES> blends{};
+  std::array<VkPipeline, vitrail::kRasterBlends> blends{};
   VkPipeline blendDeep = VK_NULL_HANDLE;
   std::array<VkPipeline, vitrail::kRasterKernels> kernels{};
   vitrail::RasterStage deepStage; // until the first frame that has deep tiles

@@ -1,5 +1,6 @@
 // The memory of a raster: its buffers, how they follow what frames need, and the sets that name them.
 #include <algorithm>
+#include <cstddef>
 #include <initializer_list>
 #include <limits>
 #include <utility>
@@ -29,8 +30,7 @@ struct BufferKind {
 };
 
 constexpr std::array<BufferKind, kRasterBuffers> kKinds = {
-    BufferKind{0, "frame"},
-    {kControlBinding, "counts"}, // and others
+    BufferKind{kControlBinding, "counts"}, // and others
     {22, "start"},
     {2, "records of tiles"},
     {7, "lists of tiles"},
@@ -56,10 +56,9 @@ constexpr std::array<BufferKind, kRasterBuffers> kKinds = {
 VkBufferUsageFlags usageOf(RasterBuffer which) {
   VkBufferUsageFlags usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   switch (which) {
-    case RasterBuffer::Frame:
-      return usage | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
     case RasterBuffer::Counts:
-      usage |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+      usage |=
+          VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
       break;
     case RasterBuffer::Start:
       usage |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
@@ -120,7 +119,6 @@ class Replacement {
 
 VkResult createRasterBuffers(VitrailVkRaster_T& raster) {
   Replacement made(raster, raster.context->log);
-  made.make(RasterBuffer::Frame, sizeof(raster::VitrailRasterFrame));
   made.make(RasterBuffer::Counts, kRasterCountBytes);
   made.make(RasterBuffer::Start, sizeof(raster::VitrailRasterStart));
   return made.commit();
@@ -203,7 +201,7 @@ bool hasRasterBinding(RasterSet set, std::uint32_t samples, std::uint32_t bindin
     for (const std::uint32_t one : bindings) bits |= 1U << one;
     return bits;
   };
-  constexpr std::uint32_t kGeometry = kBits({0, 1, 2, 3, 4, 6, 19, 21, 22, 23, 24, 25, 26, 27});
+  constexpr std::uint32_t kGeometry = kBits({0, 1, 2, 3, 4, 5, 6, 17, 19, 21, 22, 23, 24, 25, 26, 27});
   constexpr std::uint32_t kBlend =
       kBits({0, 1, 2, 3, 5, 7, 8, 9, 10, 11, 12, 13, 14, 16, 17, 18, 19, 21, 25, 26, 27, 28});
   if (binding == kOpaqueBinding && samples == 1) return false; // there is no such image
@@ -258,7 +256,10 @@ void writeRasterSets(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info)
   const VkBuffer counts = raster.buffer(RasterBuffer::Counts).buffer;
   buffers[kControlBinding] = {counts, kRasterControlAt, sizeof(raster::VitrailRasterControl)};
   buffers[kClassBinding] = {counts, kRasterClassesAt, sizeof(raster::VitrailRasterTileClasses)};
-  buffers[kTotalBinding] = {counts, kRasterTotalsAt, sizeof(raster::VitrailRasterTotals)};
+  // Without the clip planes, which no shader writes.
+  buffers[kTotalBinding] = {counts, kRasterTotalsAt,
+                            kRasterFrameAt + offsetof(raster::VitrailRasterFrame, clipPlanes) - kRasterTotalsAt};
+  buffers[kFrameBinding] = {counts, kRasterFrameAt, sizeof(raster::VitrailRasterFrame)};
   // What the host leaves out shaders name all the same, and nobody looks at it.
   const VkDescriptorBufferInfo nothing{raster.buffer(RasterBuffer::Start).buffer, 0, VK_WHOLE_SIZE};
   const auto addHost = [&](std::uint32_t binding, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize size) {

@@ -10,7 +10,7 @@ namespace vitrail {
 
 namespace {
 
-constexpr std::uint32_t kPushBytes = 3 * sizeof(std::uint32_t);
+constexpr std::uint32_t kPushBytes = sizeof(RasterBegin); // more than the other passes take
 
 // The constants of frame.glsl, in the order of their ids.
 struct RasterConstants {
@@ -19,7 +19,7 @@ struct RasterConstants {
   VkBool32 positions = VK_FALSE;
   std::uint32_t keep = 16;
   VkBool32 oneBatch = VK_FALSE;
-  std::uint32_t tileClass = 0;
+  std::uint32_t triangleClass = 0;
   std::uint32_t blends = 0;
   VkBool32 onlyTriangles = VK_FALSE;
   VkBool32 nearestIsZero = VK_FALSE;
@@ -201,29 +201,30 @@ VkResult createLayouts(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& des
   return VK_SUCCESS;
 }
 
-// One pipeline of a stage before blending.
+// One pipeline of a stage before blending, for a class of triangles where it asks.
 VkResult createGeometryPipeline(VitrailVkRaster_T& raster, const VitrailVkRasterStage& given, const char* name,
-                                VkPipeline* pipeline) {
+                                VkPipeline* pipeline, std::uint32_t triangleClass = 0) {
   RasterStage stage;
   VkResult result = keepStage(raster, given, name, stage);
   if (result == VK_SUCCESS) {
-    result = createPipeline(raster, raster.layout(RasterSet::Geometry), stage, constantsOf(raster), name, pipeline);
+    RasterConstants constants = constantsOf(raster);
+    constants.triangleClass = triangleClass;
+    result = createPipeline(raster, raster.layout(RasterSet::Geometry), stage, constants, name, pipeline);
   }
   destroyStage(*raster.context, stage);
   return result;
 }
 
-// One for each class of tiles. Tiles with few records keep fewer of a pixel's fragments in registers, so that more work
-// groups run at a time.
+// Tiles with few records, or of which no pixel is deep, keep fewer of a pixel's fragments in registers, so that more
+// work groups run at a time.
 VkResult createBlends(VitrailVkRaster_T& raster, const VitrailVkRasterStage& given) {
-  constexpr std::array<std::uint32_t, raster::VITRAIL_RASTER_CLASSES> kKeep = {8, 16, 16, 32};
+  constexpr std::array<std::uint32_t, kRasterBlends> kKeep = {8, 16, 16, 32};
   RasterStage stage;
   VkResult result = keepStage(raster, given, "blend", stage);
-  for (std::uint32_t i = 0; result == VK_SUCCESS && i < raster::VITRAIL_RASTER_CLASSES; ++i) {
+  for (std::uint32_t i = 0; result == VK_SUCCESS && i < kRasterBlends; ++i) {
     RasterConstants constants = constantsOf(raster);
     constants.keep = kKeep[i];
     constants.oneBatch = i < 2 ? VK_TRUE : VK_FALSE;
-    constants.tileClass = i;
     result = createPipeline(raster, raster.layout(RasterSet::Blend), stage, constants, "blend", &raster.blends[i]);
   }
   destroyStage(*raster.context, stage);
@@ -239,7 +240,9 @@ VkResult createRasterPipelines(VitrailVkRaster_T& raster, const VitrailVkRasterD
   if (raster.keepsPositions) result = createGeometryPipeline(raster, desc.positions, "positions", &raster.positions);
   if (result == VK_SUCCESS) result = createGeometryPipeline(raster, desc.setUp, "set up", &raster.setUp);
   if (result == VK_SUCCESS)
-    result = createGeometryPipeline(raster, desc.setUpLarge, "set up large", &raster.setUpLarge);
+    result = createGeometryPipeline(raster, desc.setUpLarge, "set up medium", &raster.setUpMedium, 0);
+  if (result == VK_SUCCESS)
+    result = createGeometryPipeline(raster, desc.setUpLarge, "set up large", &raster.setUpLarge, 1);
   if (result == VK_SUCCESS) result = createBlends(raster, desc.blend);
   if (result == VK_SUCCESS) result = keepStage(raster, desc.blendDeep, "blend deep", raster.deepStage);
   if (result == VK_SUCCESS) result = createKernels(raster, KernelMade::first);
@@ -259,7 +262,8 @@ void destroyRasterPipelines(VitrailVkRaster_T& raster) {
   const auto destroy = [&](VkPipeline pipeline) {
     context.vk.DestroyPipeline(context.device, pipeline, context.allocator);
   };
-  for (const VkPipeline pipeline : {raster.positions, raster.setUp, raster.setUpLarge, raster.blendDeep}) {
+  for (const VkPipeline pipeline :
+       {raster.positions, raster.setUp, raster.setUpMedium, raster.setUpLarge, raster.blendDeep}) {
     destroy(pipeline);
   }
   for (const VkPipeline pipeline : raster.blends) destroy(pipeline);

@@ -1,6 +1,7 @@
 // Records the passes of a raster's frame.
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 
 #include "check.h"
 #include "raster.h"
@@ -55,6 +56,7 @@ class Recording {
   void push(const std::array<std::uint32_t, 3>& words, RasterSet set) const {
     vk_.CmdPushConstants(commands_, raster_.layout(set), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(words), words.data());
   }
+  void begin(const Band& band, bool isFirst);
   void dispatch(VkPipeline pipeline, std::uint32_t x, std::uint32_t y) const {
     vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     vk_.CmdDispatch(commands_, x, y, 1);
@@ -74,10 +76,11 @@ class Recording {
   [[nodiscard]] std::uint32_t largeBlocks() const {
     return (raster_.tilesX() + raster::VITRAIL_RASTER_LARGE_BLOCK - 1) / raster::VITRAIL_RASTER_LARGE_BLOCK;
   }
+  [[nodiscard]] std::uint32_t largeGroups() const;
   [[nodiscard]] raster::VitrailRasterFrame frameOf(const Band& band) const;
   void clear(const Band& band, bool isFirst);
   void readDraws(bool isFirst);
-  void setUp(const Band& band);
+  void setUp();
   void bin(const Band& band);
   void blend();
   void blendDeep();
@@ -133,6 +136,7 @@ raster::VitrailRasterFrame Recording::frameOf(const Band& band) const {
   data.hasOrders = info_.orders != VK_NULL_HANDLE ? 1 : 0;
   data.countsDraws = info_.countBuffer != VK_NULL_HANDLE ? 1 : 0;
   data.depthStep = raster_.depthStep;
+  data.largeGroups = largeGroups();
   for (std::uint32_t i = 0; i < std::size(data.clipPlanes); ++i) {
     if (i >= info_.clipPlaneCount) {
       data.clipPlanes[i] = {0.0F, 0.0F, 0.0F, 1.0F}; // keeps all that can be seen
@@ -147,6 +151,35 @@ raster::VitrailRasterFrame Recording::frameOf(const Band& band) const {
   return data;
 }
 
+// Work groups that set up large triangles, of a row of tiles: so many that none takes long, as a driver ends loops that
+// it takes for endless.
+std::uint32_t Recording::largeGroups() const {
+  constexpr std::uint64_t kTurns = 64;
+  constexpr std::uint64_t kMostGroups = 65535; // that any device takes
+  const std::uint32_t blocks = largeBlocks();
+  const auto shares = static_cast<std::uint32_t>(
+      std::min(raster_.room.large / (raster::VITRAIL_RASTER_GROUP * kTurns) + 2, kMostGroups / blocks));
+  return blocks * shares;
+}
+
+// A dispatch takes less time than clearing by transfers, and it runs beside the one for positions.
+void Recording::begin(const Band& band, bool isFirst) {
+  const raster::VitrailRasterFrame data = frameOf(band);
+  RasterBegin begin{};
+  std::memcpy(begin.frame.data(), &data, sizeof(begin.frame));
+  begin.isFirst = isFirst ? 1 : 0;
+  bind(RasterSet::Own);
+  vk_.CmdPushConstants(commands_, raster_.layout(RasterSet::Own), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(begin),
+                       &begin);
+  const std::uint32_t tiles = data.tilesX * data.tilesY;
+  dispatch(raster_.kernel(RasterKernel::Begin),
+           (tiles + raster::VITRAIL_RASTER_TABLE - 1) / raster::VITRAIL_RASTER_TABLE, 1);
+  if (raster_.clipPlanes == 0) return;
+  vk_.CmdUpdateBuffer(commands_, raster_.buffer(RasterBuffer::Counts).buffer,
+                      kRasterFrameAt + offsetof(raster::VitrailRasterFrame, clipPlanes), sizeof(data.clipPlanes),
+                      data.clipPlanes);
+}
+
 void Recording::clear(const Band& band, bool isFirst) {
   constexpr VkPipelineStageFlags kStages =
       VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT;
@@ -159,12 +192,8 @@ void Recording::clear(const Band& band, bool isFirst) {
     bind(RasterSet::Geometry);
     dispatch(raster_.positions, RasterBuffer::Start, offsetof(raster::VitrailRasterStart, vertices));
   }
-  fill(RasterBuffer::TileRecords);
+  begin(band, isFirst);
   if (raster_.deepPlanned) fill(RasterBuffer::DeepPixels);
-  vk_.CmdFillBuffer(commands_, raster_.buffer(RasterBuffer::Counts).buffer, 0,
-                    isFirst ? kRasterCountBytes : kRasterTotalsAt, 0);
-  const raster::VitrailRasterFrame data = frameOf(band);
-  vk_.CmdUpdateBuffer(commands_, raster_.buffer(RasterBuffer::Frame).buffer, 0, sizeof(data), &data);
   // The clears, the frame's data and the positions -> all passes.
   barrier(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT, kWrites, kStages,
           kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
@@ -185,18 +214,15 @@ void Recording::readDraws(bool isFirst) {
   }
 }
 
-void Recording::setUp(const Band& band) {
+void Recording::setUp() {
   bind(RasterSet::Geometry);
   dispatch(raster_.setUp, RasterBuffer::Start, offsetof(raster::VitrailRasterStart, groups));
   // Triangles were put aside -> they are taken up; records and counts go on.
   passBarrier();
-  const std::uint32_t blocks = largeBlocks();
-  // So many that none takes long: a driver ends loops that it takes for endless.
-  constexpr std::uint64_t kTurns = 64;
-  constexpr std::uint64_t kMostGroups = 65535; // that any device takes
-  const auto shares = static_cast<std::uint32_t>(
-      std::min(raster_.room.large / (raster::VITRAIL_RASTER_GROUP * kTurns) + 2, kMostGroups / blocks));
-  dispatch(raster_.setUpLarge, blocks * shares, band.tilesY());
+  dispatch(raster_.setUpMedium, RasterBuffer::Counts,
+           kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, medium));
+  dispatch(raster_.setUpLarge, RasterBuffer::Counts,
+           kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, large));
   // Tiles counted their records -> they are given room.
   passBarrier();
 }
@@ -209,16 +235,23 @@ void Recording::bin(const Band& band) {
            (groups + raster::VITRAIL_RASTER_ROW - 1) / raster::VITRAIL_RASTER_ROW);
   // Tiles have room -> records go there.
   passBarrier();
-  dispatch(raster_.kernel(RasterKernel::Scatter), raster::VITRAIL_RASTER_SCATTER, 1);
+  // As many work groups as have something to do if all that there is room for is there, but no more than the device
+  // holds at once, as they go on.
+  constexpr std::uint64_t kTaken = raster::VITRAIL_RASTER_SCATTER * raster::VITRAIL_RASTER_TOGETHER;
+  constexpr std::uint64_t kMostGroups = 2048;
+  dispatch(raster_.kernel(RasterKernel::Scatter),
+           static_cast<std::uint32_t>(std::min(raster_.room.records / kTaken + 1, kMostGroups)), 1);
   // Records and lists of tiles -> they are blended, and the counts say how many.
   passBarrier();
 }
 
 void Recording::blend() {
   bind(RasterSet::Blend);
+  constexpr std::array<std::uint32_t, raster::VITRAIL_RASTER_CLASSES> kPipelines = {0, 1, 2, 2, 2, 3};
   for (std::uint32_t i = raster::VITRAIL_RASTER_CLASSES; i-- > 0;) { // those that take longest first
+    push({i, 0, 0}, RasterSet::Blend);
     dispatch(
-        raster_.blends[i], RasterBuffer::Counts,
+        raster_.blends.at(kPipelines.at(i)), RasterBuffer::Counts,
         kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, of) + i * sizeof(raster::VitrailRasterDispatch));
   }
 }
@@ -284,16 +317,16 @@ void Recording::drawBand(const Band& band, bool isFirst, bool isLast) {
   const bool empty = info_.drawCount == 0;
   if (!empty) readDraws(isFirst);
   passed("clear");
-  if (raster_.samples > 1) { // the blend writes over it, after barriers of the passes between
-    bind(RasterSet::Own);
-    dispatch(raster_.kernel(RasterKernel::Mean), raster_.tilesX(), band.tilesY());
-  }
   if (!empty) {
-    setUp(band);
+    setUp();
     passed("set up");
     bin(band);
     passed("bin");
     blend();
+  }
+  if (raster_.samples > 1) { // beside the blend, in other tiles
+    bind(RasterSet::Own);
+    dispatch(raster_.kernel(RasterKernel::Mean), raster_.tilesX(), band.tilesY());
   }
   passed("blend");
   if (!empty && raster_.deepPlanned) blendDeep();

@@ -14,6 +14,7 @@
 
 layout(local_size_x = VITRAIL_RASTER_PIXELS) in;
 
+layout(push_constant) uniform VitrailClassBlock { uint vitrailClass; }; // of tiles
 
 layout(VITRAIL_RASTER_BOUND(17), std430) readonly buffer VitrailTileClassBlock {
   VitrailRasterTileClasses vitrailTileClasses;
@@ -196,8 +197,8 @@ uint vitrailAlikeFrom(uint i, uint ties) { return 1u + uint(findLSB(~(ties >> i)
 void main() {
   vitrailThread = gl_LocalInvocationIndex;
   uint place = vitrailFlatGroup();
-  if (place >= vitrailTileClasses.of[VITRAIL_RASTER_CLASS].count) return;
-  uint tile = vitrailTileList[VITRAIL_RASTER_CLASS * vitrailRaster.tilesX * vitrailRaster.tilesY + place];
+  if (place >= vitrailTileClasses.of[vitrailClass].count) return;
+  uint tile = vitrailTileList[vitrailClass * vitrailRaster.tilesX * vitrailRaster.tilesY + place];
   uint count = vitrailTileRecords[tile].x;
   vitrailFirstPair = vitrailTileRecords[tile].y;
   vitrailInTile = ivec2(vitrailThread & 7u, vitrailThread >> 3);
@@ -285,7 +286,11 @@ void main() {
     if (vitrailThread == 0u) vitrailAddDeep(tile, count);
     return;
   }
+#ifdef VITRAIL_MULTISAMPLED
+  if (inside) vitrailBlendOver(pixel, light); // else nobody writes the pixel
+#else
   if (inside && !isEmpty) vitrailBlendOver(pixel, light);
+#endif
 }
 
 #endif

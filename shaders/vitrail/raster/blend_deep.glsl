@@ -39,7 +39,10 @@ void main() {
   uint number = deep * VITRAIL_RASTER_PIXELS + vitrailThread;
   uvec4 collected = vitrailDeepPixels[number];
   ivec2 pixel = vitrailFirstPixel(vitrailDeepTiles[deep].x) + ivec2(vitrailThread & 7u, vitrailThread >> 3);
-  if (collected.x == 0u || collected.y == VITRAIL_NO_PLACE || !vitrailIsInside(pixel)) return;
+  if (collected.y == VITRAIL_NO_PLACE || !vitrailIsInside(pixel)) return;
+#ifndef VITRAIL_MULTISAMPLED
+  if (collected.x == 0u) return;
+#endif
   VitrailPixelLight light = vitrailLightBehind(pixel);
   uint at = 0u;
 #define VITRAIL_LOAD_STATE(i) \

@@ -117,36 +117,70 @@ uvec2 vitrailTileCoverage(VitrailEdges e, ivec3 first) {
   return covered;
 }
 
-// The same of a little triangle that covers nothing beyond `size` pixels from the first one on: only these are looked
-// at, and at most three to their right.
-uvec2 vitrailLittleCoverage(VitrailEdges e, ivec3 first, ivec2 size) {
-  bool isWide = size.x > 4;
-  ivec3 right = e.right * VITRAIL_SUBPIXELS;
-  ivec3 down = e.down * VITRAIL_SUBPIXELS;
-  ivec3 row = first + right * (isWide ? 7 : 3);
-  uvec2 covered = uvec2(0u);
-  for (int y = 0; y < size.y; ++y) {
-    ivec3 at = row;
-    uint outside = 0u;
-    if (isWide) {
-      for (int x = 0; x < 4; ++x) {
-        outside = outside << 1 | uint(at.x | at.y | at.z) >> 31;
-        at -= right;
-      }
-    }
-    for (int x = 0; x < 4; ++x) {
-      outside = outside << 1 | uint(at.x | at.y | at.z) >> 31;
-      at -= right;
-    }
-    uint bits = (outside ^ 0xffu) & (isWide ? 0xffu : 0xfu);
-    if (y < 4) {
-      covered.x |= bits << (8 * y);
-    } else {
-      covered.y |= bits << (8 * y - 32);
-    }
-    row += down;
+// The same of a little triangle, by where its edges cross the rows. An edge at a row's first pixel is a whole number n
+// of 16 square subpixels, and changes by another whole number d from pixel to pixel. So the first pixel that it has
+// inside, or the number of those that it has, is a quotient of n + 1/2 and d, rounded up: which is half of 1 / d away
+// from any whole number, at least 2^-18, and floats get these right to 2^-20 where it is among the row's eight.
+struct VitrailRows {
+  vec3 corner; // the edges at the upper left corner of the first pixel; all in units of 16 square subpixels
+  vec3 right;  // what 1/16 pixel to the right adds
+  vec3 down;
+  vec4 scale; // edges to eighths of a row: of x, which begins what is inside, and of y, which ends it; of z for both
+  vec4 bias;
+};
+
+// The triangle's corners in such an order that the first edge begins what is inside of a row, and the second ends it,
+// or is level: the last corner is the uppermost.
+void vitrailTurnCorners(inout ivec2 p0, inout ivec2 p1, inout ivec2 p2) {
+  ivec2 a = p0;
+  ivec2 b = p1;
+  if (p2.y <= p0.y && p2.y < p1.y) return;
+  if (p0.y <= p1.y && p0.y < p2.y) {
+    p0 = b;
+    p1 = p2;
+    p2 = a;
+  } else {
+    p0 = p2;
+    p1 = a;
+    p2 = b;
+  }
+}
+
+// Of a little triangle whose corners are in that order; `pixel` is the first, whose corner is among the triangle's or a
+// tile away.
+VitrailRows vitrailRows(ivec2 p0, ivec2 p1, ivec2 p2, ivec2 pixel) {
+  VitrailEdges e = vitrailEdges(p0, p1, p2);
+  VitrailRows rows;
+  rows.corner = vec3(vitrailLittleEdgesAt(e, p0, p1, p2, pixel * VITRAIL_SUBPIXELS) >> 4);
+  rows.right = vec3(e.right);
+  rows.down = vec3(e.down);
+  const float most = 65536.0; // of a level edge: all of a row is inside or nothing
+  vec3 way = -1.0 / (128.0 * rows.right);
+  if (e.right.y == 0) way.y = most;
+  if (e.right.z == 0) way.z = most;
+  bool begins = e.right.z > 0;
+  vec3 half_ = 0.5 * way + 0.125;
+  rows.scale = vec4(way.xy, begins ? vec2(way.z, 0.0) : vec2(0.0, way.z));
+  rows.bias = vec4(half_.xy, begins ? vec2(half_.z, 1.0) : vec2(0.0, half_.z));
+  return rows;
+}
+
+uint vitrailFourRows(VitrailRows rows, vec3 at) {
+  uint covered = 0u;
+  for (int y = 0; y < 4; ++y) {
+    vec4 ends = clamp(fma(at.xyzz, rows.scale, rows.bias), 0.0, 1.0) * 8.0;
+    uint first = uint(max(ends.x, ends.z));
+    uint count = uint(min(ends.y, ends.w));
+    covered |= (0xffu << first & ((1u << count) - 1u)) << (8 * y);
+    at += rows.down * 16.0;
   }
   return covered;
+}
+
+// `place` is where in its pixel the sample is, in 1/16 pixel; rows from `count` on cover nothing.
+uvec2 vitrailRowCoverage(VitrailRows rows, ivec2 place, int count) {
+  vec3 at = rows.corner + rows.right * float(place.x) + rows.down * float(place.y);
+  return uvec2(vitrailFourRows(rows, at), count > 4 ? vitrailFourRows(rows, at + rows.down * 64.0) : 0u);
 }
 
 // The pixels of a tile from `low` up to and without `high`, both relative to its first.

@@ -14,7 +14,7 @@ layout(constant_id = 1711) const bool VITRAIL_RASTER_SHUFFLES = false; // batch.
 layout(constant_id = 1712) const bool VITRAIL_RASTER_POSITIONS = false; // are kept
 layout(constant_id = 1713) const uint VITRAIL_RASTER_KEEP = 16u; // nearest.glsl: 8, 16, 32
 layout(constant_id = 1714) const bool VITRAIL_RASTER_ONE_BATCH = false; // blend.glsl
-layout(constant_id = 1715) const uint VITRAIL_RASTER_CLASS = 0u; // of tiles
+layout(constant_id = 1715) const uint VITRAIL_RASTER_CLASS = 0u; // of triangles
 layout(constant_id = 1716) const uint VITRAIL_RASTER_BLENDS = 15u; // a bit for each that is drawn
 layout(constant_id = 1717) const bool VITRAIL_RASTER_ONLY_TRIANGLES = false;
 layout(constant_id = 1718) const bool VITRAIL_RASTER_NEAREST_IS_ZERO = false;
@@ -24,7 +24,8 @@ layout(constant_id = 1719) const uint VITRAIL_RASTER_INDEX_BYTES = 4u; // 2, 4, 
 
 layout(VITRAIL_RASTER_BOUND(0), std140) uniform VitrailRasterFrameBlock { VitrailRasterFrame vitrailRaster; };
 layout(VITRAIL_RASTER_BOUND(1), std430) buffer VitrailRasterControlBlock { VitrailRasterControl vitrailRasterControl; };
-// Of each tile: how many records it has, and where its pairs begin.
+// Of each tile: how many records it has; the pixels that one in VITRAIL_RASTER_SHARE of them cover, and then where its
+// pairs begin.
 layout(VITRAIL_RASTER_BOUND(2), std430) buffer VitrailTileRecordBlock { uvec2 vitrailTileRecords[]; };
 // Two for a record, which is a triangle in a tile: the pixels that it covers, the primitive (and in the highest bit
 // whether its front shows) and the item; the depth at the middle of the first pixel, what pixels to the right and down
@@ -32,7 +33,7 @@ layout(VITRAIL_RASTER_BOUND(2), std430) buffer VitrailTileRecordBlock { uvec2 vi
 layout(VITRAIL_RASTER_BOUND(3), std430) buffer VitrailRecordBlock { uvec4 vitrailRecords[]; };
 // Of each record the tile (or VITRAIL_NO_TILE), which one it is there, and its draw.
 layout(VITRAIL_RASTER_BOUND(4), std430) buffer VitrailRecordPlaceBlock { uint vitrailRecordPlaces[]; };
-// The records of each tile: the draw, and the record.
+// The records of each tile: the draw, and the record. While triangles are set up the medium ones: primitive and item.
 layout(VITRAIL_RASTER_BOUND(5), std430) buffer VitrailPairBlock { uvec2 vitrailPairs[]; };
 layout(VITRAIL_RASTER_BOUND(6), std430) buffer VitrailLargeBlock { uvec2 vitrailLarge[]; }; // primitive and item
 // Tiles by class: each has room for all.

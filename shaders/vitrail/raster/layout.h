@@ -16,22 +16,33 @@ struct vec4 {
 };
 #endif
 
-const uint VITRAIL_RASTER_GROUP = 128u;      // threads of a work group that sets up triangles, one each
-const uint VITRAIL_RASTER_PIXELS = 64u;      // of a tile, a thread each
-const uint VITRAIL_RASTER_ROW = 32768u;      // work groups in a row of a dispatch
-const uint VITRAIL_RASTER_LARGE = 64u;       // a triangle that may touch more tiles is left to a pass of its own
-const uint VITRAIL_RASTER_LARGE_BLOCK = 64u; // tiles of a row that a work group of that pass looks after
-const uint VITRAIL_RASTER_CLASSES = 4u;      // of tiles, by how many records they have: up to
-const uint VITRAIL_RASTER_FEW = 16u;         // so many, VITRAIL_RASTER_PIXELS,
-const uint VITRAIL_RASTER_SHALLOW = 256u;    // so many, and more
-const uint VITRAIL_RASTER_SCATTER = 1024u;   // work groups of passes over all records
-const uint VITRAIL_RASTER_BLOCK = 4096u;     // records of a deep tile that a work group looks after
-const uint VITRAIL_RASTER_CHUNK = 1024u;     // fragments that a work group sorts at once
-const uint VITRAIL_RASTER_SLICE = 2048u;     // fragments of a pixel that a dispatch blends
-const uint VITRAIL_RASTER_TIES = 16u;        // surfaces at one depth whose order their colours decide
-const uint VITRAIL_RASTER_MOST_KEPT = 32u;   // fragments of a pixel in registers
-const uint VITRAIL_RASTER_TABLE = 256u;      // threads of the work groups that make the tables of a frame
-const float VITRAIL_RASTER_STOP = 0.35f;     // of 1/255: what may be left out of a pixel that hardly shows it
+const uint VITRAIL_RASTER_GROUP = 128u;     // threads of a work group of most passes
+const uint VITRAIL_RASTER_VERTICES = 2u;    // vertices for each of those that ask for positions
+const uint VITRAIL_RASTER_SET_UP = 64u;     // of one that sets up triangles, each one of them
+const uint VITRAIL_RASTER_TURNS = 4u;       // so many times
+const uint VITRAIL_RASTER_FEW_MEDIUM = 16u; // medium triangles for a work group, at least, up to so many work groups
+const uint VITRAIL_RASTER_MEDIUM = 1024u;
+const uint VITRAIL_RASTER_PIXELS = 64u;        // of a tile, a thread each
+const uint VITRAIL_RASTER_ROW = 32768u;        // work groups in a row of a dispatch
+const uint VITRAIL_RASTER_LARGE = 64u;         // a triangle that may touch more tiles is left to a pass of its own
+const uint VITRAIL_RASTER_LARGE_BLOCK = 64u;   // tiles of a row that a work group of that pass looks after
+const uint VITRAIL_RASTER_CLASSES = 6u;        // of tiles, by how many records they have: up to
+const uint VITRAIL_RASTER_FEW = 16u;           // so many, VITRAIL_RASTER_PIXELS,
+const uint VITRAIL_RASTER_SHALLOW = 256u;      // so many, more; and by how deep they are in the mean: more than
+const uint VITRAIL_RASTER_DEPTH = 32u;         // so many layers, and
+const uint VITRAIL_RASTER_MORE_DEPTH = 64u;    // so many, or
+const uint VITRAIL_RASTER_FLAT_DEPTH = 24u;    // so many of no more than VITRAIL_RASTER_PIXELS records, or
+const uint VITRAIL_RASTER_SEVERAL_DEPTH = 12u; // so many with several samples
+const uint VITRAIL_RASTER_SHARE = 8u;          // one record in so many is looked at for that
+const uint VITRAIL_RASTER_SCATTER = 256u;      // threads of a work group that brings records to their tiles,
+const uint VITRAIL_RASTER_TOGETHER = 4u;       // so many at a time each
+const uint VITRAIL_RASTER_BLOCK = 4096u;       // records of a deep tile that a work group looks after
+const uint VITRAIL_RASTER_CHUNK = 1024u;       // fragments that a work group sorts at once
+const uint VITRAIL_RASTER_SLICE = 2048u;       // fragments of a pixel that a dispatch blends
+const uint VITRAIL_RASTER_TIES = 16u;          // surfaces at one depth whose order their colours decide
+const uint VITRAIL_RASTER_MOST_KEPT = 32u;     // fragments of a pixel in registers
+const uint VITRAIL_RASTER_TABLE = 256u;        // threads of the work groups that make the tables of a frame
+const float VITRAIL_RASTER_STOP = 0.35f;       // of 1/255: what may be left out of a pixel that hardly shows it
 
 // What a stage was compiled for: where its numbers begin in the word that the library reads in its SPIR-V, the default
 // of a specialization constant (raster.glsl).
@@ -78,7 +89,8 @@ struct VitrailRasterPlace {
   uvec4 start;  // the first work group that asks for the positions of its vertices; the first of their places
 };
 
-// What the passes of a frame share (std140).
+// What the passes of a frame share (std140). The host hands the first VITRAIL_RASTER_FRAME_WORDS to the pass `begin`.
+const uint VITRAIL_RASTER_FRAME_WORDS = 28u;
 struct VitrailRasterFrame {
   uint width; // of the picture
   uint height;
@@ -107,7 +119,7 @@ struct VitrailRasterFrame {
   uint countsDraws; // the GPU has
   float depthStep;  // of the opaque depths
   uint drawCapacity;
-  uint framePadding2;
+  uint largeGroups;   // that set up large triangles, of each row of tiles
   vec4 clipPlanes[8]; // of clip space
 };
 
@@ -133,9 +145,12 @@ struct VitrailRasterStart {
   uint wrongBlend;   // it is none of drawBlends
 };
 
-// Tiles by how many records they have. All zero at first. Apart from what is counted while they are blended.
+// Tiles by how many records they have, and who sets up large triangles. All zero at first. Apart from what is counted
+// meanwhile.
 struct VitrailRasterTileClasses {
   VitrailRasterDispatch of[VITRAIL_RASTER_CLASSES];
+  VitrailRasterDispatch medium;
+  VitrailRasterDispatch large;
 };
 
 // What a band counts. All zero at first.
@@ -152,6 +167,7 @@ struct VitrailRasterControl {
   uint recordsHigh;             // how often `records` has come round
   uint fragmentsHigh;           // the same of `fragments`
   uint wrongVertex;             // one more than the last draw that has an index of no vertex of it
+  uint medium;                  // triangles
 };
 
 // What a frame wanted: of its bands the most, but cut pixels together. All zero at first.
@@ -176,8 +192,9 @@ static_assert(sizeof(VitrailRasterDraw) == 48);
 static_assert(sizeof(VitrailRasterPlace) == 64);
 static_assert(sizeof(VitrailRasterFrame) == 240);
 static_assert(sizeof(VitrailRasterStart) == 72);
-static_assert(sizeof(VitrailRasterTileClasses) == 64);
-static_assert(sizeof(VitrailRasterControl) == 84);
+static_assert(offsetof(VitrailRasterFrame, clipPlanes) == VITRAIL_RASTER_FRAME_WORDS * sizeof(uint));
+static_assert(sizeof(VitrailRasterTileClasses) == 128);
+static_assert(sizeof(VitrailRasterControl) == 88);
 static_assert(sizeof(VitrailRasterTotals) == 120);
 } // namespace vitrail::raster
 #endif

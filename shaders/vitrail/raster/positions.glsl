@@ -14,10 +14,12 @@ void main() {
   uint vertices = vitrailDrawPlaces[draw].lookup.y;
   uvec4 size = vitrailDrawPlaces[draw].size;
   uvec4 start = vitrailDrawPlaces[draw].start;
-  uint number = (group - start.x) * VITRAIL_RASTER_GROUP + gl_LocalInvocationIndex;
-  if (number >= vertices * size.y) return;
-  uint instance = number < vertices ? 0u : number / vertices;
-  vitrailPositions[start.y + number] = vitrailAskPosition(draw, size.w + instance, number - instance * vertices);
+  uint number = (group - start.x) * (VITRAIL_RASTER_GROUP * VITRAIL_RASTER_VERTICES) + gl_LocalInvocationIndex;
+  for (uint i = 0u; i < VITRAIL_RASTER_VERTICES && number < vertices * size.y; ++i) {
+    uint instance = number < vertices ? 0u : number / vertices;
+    vitrailPositions[start.y + number] = vitrailAskPosition(draw, size.w + instance, number - instance * vertices);
+    number += VITRAIL_RASTER_GROUP;
+  }
 }
 
 #endif

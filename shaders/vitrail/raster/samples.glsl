@@ -7,17 +7,12 @@
 
 const uint VITRAIL_RASTER_MOST_SAMPLES = 8u;
 
-// In sixteenths of a pixel from its upper left corner: Vulkan's standard sample locations.
+// In sixteenths of a pixel from its upper left corner: Vulkan's standard sample locations, four bits a number, as
+// arrays with an index that varies lie in memory.
 ivec2 vitrailSamplePlace(uint i) {
-  if (VITRAIL_RASTER_SAMPLES == 2u) return i == 0u ? ivec2(12) : ivec2(4);
-  if (VITRAIL_RASTER_SAMPLES == 4u) {
-    return i == 0u ? ivec2(6, 2) : i == 1u ? ivec2(14, 6) : i == 2u ? ivec2(2, 10) : ivec2(10, 14);
-  }
-  if (VITRAIL_RASTER_SAMPLES == 8u) {
-    const ivec2 places[8] = ivec2[](ivec2(9, 5), ivec2(7, 11), ivec2(13, 9), ivec2(5, 3), ivec2(3, 13), ivec2(1, 7),
-                                    ivec2(11, 15), ivec2(15, 1));
-    return places[i];
-  }
+  if (VITRAIL_RASTER_SAMPLES == 2u) return ivec2(uvec2(0x4cu) >> 4u * i & 15u);
+  if (VITRAIL_RASTER_SAMPLES == 4u) return ivec2(uvec2(0xa2e6u, 0xea62u) >> 4u * i & 15u);
+  if (VITRAIL_RASTER_SAMPLES == 8u) return ivec2(uvec2(0xfb135d79u, 0x1f7d39b5u) >> 4u * i & 15u);
   return ivec2(8);
 }
 
@@ -30,19 +25,15 @@ ivec2 vitrailSamplePlace(uint i) {
 #endif
 
 #ifdef VITRAIL_MULTISAMPLED
-// Keeps the pixels whose samples a record covers: of each sample the tile's upper and lower half.
-void vitrailKeepSamples(uint record, uvec2 m[VITRAIL_RASTER_MOST_SAMPLES]) {
+// Keeps the pixels of which a record covers samples: of each of four samples, or two, from `first` on the tile's upper
+// and lower half.
+void vitrailKeepSamples(uint record, uint first, uvec4 upper, uvec4 lower) {
   uint at = record * (VITRAIL_RASTER_SAMPLES / 2u);
-  if (VITRAIL_RASTER_SAMPLES == 2u) vitrailSampleMasks[at] = uvec4(m[0].x, m[1].x, m[0].y, m[1].y);
-  if (VITRAIL_RASTER_SAMPLES == 4u) {
-    vitrailSampleMasks[at] = uvec4(m[0].x, m[1].x, m[2].x, m[3].x);
-    vitrailSampleMasks[at + 1u] = uvec4(m[0].y, m[1].y, m[2].y, m[3].y);
-  }
-  if (VITRAIL_RASTER_SAMPLES == 8u) {
-    vitrailSampleMasks[at] = uvec4(m[0].x, m[1].x, m[2].x, m[3].x);
-    vitrailSampleMasks[at + 1u] = uvec4(m[4].x, m[5].x, m[6].x, m[7].x);
-    vitrailSampleMasks[at + 2u] = uvec4(m[0].y, m[1].y, m[2].y, m[3].y);
-    vitrailSampleMasks[at + 3u] = uvec4(m[4].y, m[5].y, m[6].y, m[7].y);
+  if (VITRAIL_RASTER_SAMPLES == 2u) {
+    vitrailSampleMasks[at] = uvec4(upper.xy, lower.xy);
+  } else {
+    vitrailSampleMasks[at + first / 4u] = upper;
+    vitrailSampleMasks[at + VITRAIL_RASTER_SAMPLES / 4u + first / 4u] = lower;
   }
 }
 

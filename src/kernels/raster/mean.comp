@@ -1,4 +1,5 @@
-// The picture without what is transparent: the mean of each pixel's samples.
+// The picture where there is nothing transparent: the mean of each pixel's samples, in tiles without records. A work
+// group is a tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -12,6 +13,8 @@ layout(VITRAIL_RASTER_BOUND(9), VITRAIL_COLOR_FORMAT) uniform writeonly image2D 
 layout(VITRAIL_RASTER_BOUND(18)) uniform texture2DMS opaqueImage;
 
 void main() {
+  uint tile = gl_WorkGroupID.y * vitrailRaster.tilesX + gl_WorkGroupID.x;
+  if (vitrailTileRecords[tile].x != 0u) return; // blended
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, vitrailRaster.top);
   if (pixel.x >= int(vitrailRaster.width) || pixel.y >= int(vitrailRaster.bottom)) return;
   vec4 sum = vec4(0.0);

@@ -16,7 +16,10 @@ layout(VITRAIL_RASTER_BOUND(30), std430) buffer TotalBlock { VitrailRasterTotals
   }
 
 void main() {
-  RAISE(totals.records, totals.recordsHigh, vitrailRasterControl.records, vitrailRasterControl.recordsHigh)
+  // Medium triangles were listed where there is room for as many records.
+  uint records_ = vitrailRasterControl.records;
+  if (vitrailRasterControl.recordsHigh == 0u) records_ = max(records_, vitrailRasterControl.medium);
+  RAISE(totals.records, totals.recordsHigh, records_, vitrailRasterControl.recordsHigh)
   RAISE(totals.fragments, totals.fragmentsHigh, vitrailRasterControl.fragments, vitrailRasterControl.fragmentsHigh)
   totals.large = max(totals.large, vitrailRasterControl.large);
   totals.deep = max(totals.deep, vitrailRasterControl.deep.count);

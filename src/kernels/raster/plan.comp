@@ -19,12 +19,21 @@ void main() {
   if (thread == VITRAIL_RASTER_CLASSES) groupPairs = 0u;
   barrier();
   uint tile = vitrailFlatGroup() * 256u + thread;
-  bool isRead = tile < vitrailRaster.tilesX * vitrailRaster.tilesY && vitrailHasRecords();
+  uint tiles = vitrailRaster.tilesX * vitrailRaster.tilesY;
+  bool isRead = tile < tiles && vitrailHasRecords();
   uint count = isRead ? vitrailTileRecords[tile].x : 0u;
+  if (!vitrailHasRecords() && tile < tiles) vitrailTileRecords[tile].x = 0u; // mean.comp
   uint place = 0u;
   uint number = 0u;
+  // Of the pixels that some of the records cover: triangles.glsl.
+  uint depth = isRead ? vitrailTileRecords[tile].y * VITRAIL_RASTER_SHARE / VITRAIL_RASTER_PIXELS : 0u;
+  uint most = VITRAIL_RASTER_SAMPLES > 1u      ? VITRAIL_RASTER_SEVERAL_DEPTH
+              : count <= VITRAIL_RASTER_PIXELS ? VITRAIL_RASTER_FLAT_DEPTH
+                                               : VITRAIL_RASTER_MORE_DEPTH;
   uint kind = count <= VITRAIL_RASTER_FEW       ? 0u
+              : depth > most                    ? 5u
               : count <= VITRAIL_RASTER_PIXELS  ? 1u
+              : depth > VITRAIL_RASTER_DEPTH    ? 4u
               : count <= VITRAIL_RASTER_SHALLOW ? 2u
                                                 : 3u;
   if (count > 0u) {

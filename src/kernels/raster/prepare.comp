@@ -70,8 +70,10 @@ void main() {
         atomicMax(wrongBlend, first + thread + 1u);
         triangles = vertices = place.size.x = place.size.y = 0u;
       }
-      mine = uvec4((triangles + VITRAIL_RASTER_GROUP - 1u) / VITRAIL_RASTER_GROUP, triangles > 0u ? draw.instances : 0u,
-                   (vertices + VITRAIL_RASTER_GROUP - 1u) / VITRAIL_RASTER_GROUP, vertices);
+      const uint taken = VITRAIL_RASTER_SET_UP * VITRAIL_RASTER_TURNS; // triangles by a work group
+      const uint asked = VITRAIL_RASTER_GROUP * VITRAIL_RASTER_VERTICES;
+      mine = uvec4((triangles + taken - 1u) / taken, triangles > 0u ? draw.instances : 0u,
+                   (vertices + asked - 1u) / asked, vertices);
       if (triangles == 0u) mine.zw = uvec2(0u);
       place.lookup = uvec4(draw.firstIndex, draw.vertices, 0u, draw.firstInstance);
       place.rest = uvec4(uint(draw.vertexOffset), draw.flags, draw.blend, draw.word);
@@ -80,7 +82,7 @@ void main() {
     barrier(); // all have read the last turn's sums
     sums[thread] = mine;
     barrier();
-    for (uint step = 1u; step < VITRAIL_RASTER_TABLE; step *= 2u) { // as set_up.glsl
+    for (uint step = 1u; step < VITRAIL_RASTER_TABLE; step *= 2u) { // as set_up_large.glsl
       uvec4 other = thread >= step ? sums[thread - step] : uvec4(0u);
       barrier();
       sums[thread] += other;

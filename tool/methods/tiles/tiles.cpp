@@ -8,7 +8,7 @@
 // takes the next. Tiles with very many records collect their fragments and sort them all.
 //
 // Cost: nothing is stored per fragment but in such deep tiles, and no fragment that is hidden is shaded. Memory: 52
-// bytes for a triangle in a tile, 24 bytes a tile; 16 bytes a fragment in deep tiles. A picture that needs more than
+// bytes for a triangle in a tile, 32 bytes a tile; 16 bytes a fragment in deep tiles. A picture that needs more than
 // the last ones had room for is drawn again, in bands of tiles where the device cannot hold all of it. With several
 // samples 8 bytes more for each of them and each triangle in a tile. Beside that 32 bytes for a vertex of an instance.
 //

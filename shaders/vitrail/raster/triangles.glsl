@@ -1,0 +1,195 @@
+// Triangles of the picture, from their corners on: where they are, which tiles they may touch, what their records have
+// in common.
+#ifndef VITRAIL_RASTER_TRIANGLES_GLSL
+#define VITRAIL_RASTER_TRIANGLES_GLSL
+
+#include "clip.glsl"
+#include "edges.glsl"
+#include "samples.glsl"
+#include "surface.glsl"
+
+struct VitrailTriangle {
+  ivec2 p0;
+  ivec2 p1;
+  ivec2 p2;
+  vec3 depths;
+  uint primitive;
+  uint item;
+};
+
+VitrailViewport vitrailViewportOf() {
+  VitrailViewport viewport = vitrailViewport(vec2(vitrailRaster.width, vitrailRaster.height));
+#if VITRAIL_CLIP_PLANES > 0
+  for (int i = 0; i < VITRAIL_CLIP_PLANES; ++i) viewport.planes[i] = vitrailRaster.clipPlanes[i];
+#endif
+  return viewport;
+}
+
+VitrailTriangle vitrailTriangleOf(VitrailViewport viewport, vec4 a, vec4 b, vec4 c, uvec2 source) {
+  VitrailTriangle t;
+  t.p0 = vitrailSnap(vitrailPixels(viewport, a, t.depths.x));
+  t.p1 = vitrailSnap(vitrailPixels(viewport, b, t.depths.y));
+  t.p2 = vitrailSnap(vitrailPixels(viewport, c, t.depths.z));
+  t.primitive = source.x;
+  t.item = source.y;
+  return t;
+}
+
+// One of the two triangles of a line, a pixel wide across the axis along which it is longer, or of a point, where both
+// ends are the same.
+VitrailTriangle vitrailHalfOf(VitrailViewport viewport, vec4 a, vec4 b, uint corners, uvec2 source) {
+  float depthA, depthB;
+  vec2 from = vitrailPixels(viewport, a, depthA);
+  vec2 to = vitrailPixels(viewport, b, depthB);
+  bool isSteep = abs(to.y - from.y) > abs(to.x - from.x);
+  vec2 across = isSteep ? vec2(0.5, 0.0) : vec2(0.0, 0.5);
+  vec2 along = vec2(0.0);
+  if (corners == 1u) {
+    across = vec2(0.0, 0.5 * vitrailRaster.pointSize);
+    along = vec2(0.5 * vitrailRaster.pointSize, 0.0);
+  }
+  bool second = (source.x & 1u) != 0u;
+  VitrailTriangle t;
+  t.p0 = vitrailSnap(from - along - across);
+  t.p1 = vitrailSnap(to + along + (second ? across : -across));
+  t.p2 = vitrailSnap((second ? from - along : to + along) + across);
+  t.depths = vec3(depthA, depthB, second ? depthA : depthB);
+  t.primitive = source.x;
+  t.item = source.y;
+  return t;
+}
+
+// The corners of a triangle, line or point in clip space.
+VitrailPolygon vitrailPolygonOf(uint draw, uint corners, uvec2 source) {
+  uint first = vitrailFirstIndex(draw, corners, source.x);
+  VitrailPolygon polygon;
+  for (uint i = 0u; i < corners; ++i) {
+    polygon.corners[i] = vitrailClipPosition(draw, source.y, vitrailIndex(draw, first + i));
+  }
+  polygon.count = int(corners);
+  return polygon;
+}
+
+bool vitrailPolygonNeedsClipping(VitrailViewport viewport, VitrailPolygon polygon) {
+  bool needs = false;
+  for (int i = 0; i < polygon.count; ++i) needs = needs || vitrailNeedsClipping(viewport, polygon.corners[i]);
+  return needs;
+}
+
+// The pixels from `first` to `last` of which a triangle may cover something, within the band.
+void vitrailBoundsOf(VitrailTriangle t, out ivec2 first, out ivec2 last) {
+  const int middle = VITRAIL_RASTER_SAMPLES == 1u ? VITRAIL_SUBPIXELS / 2 : 0; // samples are anywhere
+  const int behind = VITRAIL_RASTER_SAMPLES == 1u ? VITRAIL_SUBPIXELS / 2 - 1 : 0;
+  first = (min(t.p0, min(t.p1, t.p2)) + behind) >> 8;
+  last = (max(t.p0, max(t.p1, t.p2)) - middle) >> 8;
+  first = max(first, ivec2(0, int(vitrailRaster.top)));
+  last = min(last, ivec2(vitrailRaster.width, vitrailRaster.bottom) - 1);
+}
+
+// How many tiles it may touch, from `low` up to and without `high`, within the given ones.
+uint vitrailCandidates(ivec2 first, ivec2 last, ivec2 least, ivec2 most, out ivec2 low, out ivec2 high) {
+  low = max(first >> 3, least);
+  high = min((last >> 3) + 1, most);
+  if (any(greaterThan(first, last)) || any(greaterThanEqual(low, high))) return 0u;
+  return uint(high.x - low.x) * uint(high.y - low.y);
+}
+
+// What a triangle's records have in common.
+struct VitrailSource {
+  uint primitive; // and in the highest bit whether its front shows
+  uint item;
+  uint draw;
+  VitrailPlane plane;
+  float nearest; // of its corners
+};
+
+// Which side shows of one whose corners run clockwise in the picture, or not. False: that is culled.
+bool vitrailSideOf(uint draw, bool isClockwise, out bool front) {
+  uint flags = vitrailFlagsOf(draw);
+  front = isClockwise == ((flags & VITRAIL_RASTER_FRONT_CLOCKWISE) != 0u);
+  if (vitrailCornersOf(flags) < 3u) {
+    front = true;
+    return true;
+  }
+  return (flags & (front ? VITRAIL_RASTER_CULL_FRONT : VITRAIL_RASTER_CULL_BACK)) == 0u;
+}
+
+VitrailSource vitrailSourceOf(VitrailTriangle t, uint draw, bool front, float area) {
+  VitrailSource source;
+  source.primitive = t.primitive | (front ? 0x80000000u : 0u);
+  source.item = t.item;
+  source.draw = draw;
+  source.plane = vitrailPlane(t.p0, t.p1, t.p2, t.depths, area);
+  source.nearest = max(t.depths.x, max(t.depths.y, t.depths.z));
+  return source;
+}
+
+// False: it covers nothing, or is culled. Otherwise its corners run clockwise in the picture.
+bool vitrailOrientTriangle(inout VitrailTriangle t, uint draw, out VitrailSource source) {
+  float area = vitrailArea(t.p0, t.p1, t.p2);
+  bool front;
+  if (area == 0.0 || !vitrailSideOf(draw, area > 0.0, front)) return false;
+  source = vitrailSourceOf(t, draw, front, area);
+  if (area < 0.0) {
+    ivec2 other = t.p1;
+    t.p1 = t.p2;
+    t.p2 = other;
+  }
+  return true;
+}
+
+// The indices of a triangle, line or point.
+uvec3 vitrailIndicesAt(uint draw, uint corners, uint primitive) {
+  uint first = vitrailFirstIndex(draw, corners, primitive);
+  return uvec3(vitrailIndex(draw, first), vitrailIndex(draw, first + (corners > 1u ? 1u : 0u)),
+               vitrailIndex(draw, first + (corners > 2u ? 2u : 0u)));
+}
+
+// The triangle of a source, half of a line or point. False: it covers nothing, or has no such vertices.
+bool vitrailTriangleAt(uint draw, uint corners, uvec2 source, uvec3 indices, out VitrailTriangle t, out bool isWhole) {
+  VitrailViewport viewport = vitrailViewportOf();
+  if (corners == 3u) { // without arrays, which are slow
+    if (!vitrailHasVertex(draw, max(indices.x, max(indices.y, indices.z)))) return false;
+    vec4 a = vitrailClipPosition(draw, source.y, indices.x);
+    vec4 b = vitrailClipPosition(draw, source.y, indices.y);
+    vec4 c = vitrailClipPosition(draw, source.y, indices.z);
+    isWhole = !vitrailNeedsClipping(viewport, a) && !vitrailNeedsClipping(viewport, b) &&
+              !vitrailNeedsClipping(viewport, c);
+    t = vitrailTriangleOf(viewport, a, b, c, source);
+    return isWhole || !vitrailIsOutside(a, b, c);
+  }
+  if (!vitrailHasVertex(draw, max(indices.x, indices.y))) return false;
+  VitrailPolygon p = vitrailPolygonOf(draw, corners, source);
+  isWhole = !vitrailPolygonNeedsClipping(viewport, p);
+  t = vitrailHalfOf(viewport, p.corners[0], p.corners[corners - 1u], corners, source);
+  return true;
+}
+
+uint vitrailTileNumber(ivec2 tile) {
+  return uint(tile.y - int(vitrailRaster.top) / VITRAIL_TILE_SIDE) * vitrailRaster.tilesX + uint(tile.x);
+}
+
+// Makes the record of a triangle in a tile: of the pixels that it covers there, or none. It is the tile's `number`-th.
+void vitrailMakeRecord(uint place, ivec2 tile, uint number, uvec2 covered, VitrailSource source) {
+  uint at = VITRAIL_NO_TILE;
+  if ((covered.x | covered.y) != 0u) {
+    at = vitrailTileNumber(tile);
+    if (place * 0x9e3779b9u < 0xffffffffu / VITRAIL_RASTER_SHARE) { // some, of any tile and triangle
+      atomicAdd(vitrailTileRecords[at].y, uint(bitCount(covered.x) + bitCount(covered.y)));
+    }
+    ivec2 middle = tile * (VITRAIL_TILE_SIDE * VITRAIL_SUBPIXELS) + VITRAIL_SUBPIXELS / 2;
+    vec3 depth = vitrailPlaneAt(source.plane, middle);
+    float steps = float(VITRAIL_TILE_SIDE - 1);
+    // At the middle of a pixel of which another part is covered a plane may be nearer than any corner.
+    float nearest = depth.x + (max(depth.y, 0.0) + max(depth.z, 0.0)) * steps;
+    if (VITRAIL_RASTER_SAMPLES == 1u) nearest = min(source.nearest, nearest);
+    vitrailRecords[2u * place] = uvec4(covered, source.primitive, source.item);
+    vitrailRecords[2u * place + 1u] = floatBitsToUint(vec4(depth, nearest));
+    vitrailRecordPlaces[3u * place + 1u] = number;
+    vitrailRecordPlaces[3u * place + 2u] = source.draw;
+  }
+  vitrailRecordPlaces[3u * place] = at;
+}
+
+
+#endif
