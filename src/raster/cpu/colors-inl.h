@@ -42,9 +42,9 @@ class TileColors {
     return drawn.number;
   }
 
-  // Red, green, blue and alpha of number i are at 4 * i.
-  const float* pairs() const { return pairs_.front().data(); }
-  const float* filters() const { return filters_.front().data(); }
+  // Red, green, blue and alpha of number i are at 4 * i; null where nothing was begun.
+  const float* pairs() const { return pairs_.empty() ? nullptr : pairs_.front().data(); }
+  const float* filters() const { return filters_.empty() ? nullptr : filters_.front().data(); }
   float alphaOf(std::int32_t number) const { return pairs_[static_cast<std::uint32_t>(number)][3]; }
 
   // Whether lookUp() finds all of them.
