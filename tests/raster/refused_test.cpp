@@ -137,6 +137,23 @@ TEST(RefusedTest, TheSecondDrawByItsNumber) {
   EXPECT_EQ(raster.takeLog(), std::vector<std::string>{"draw 1: components is neither 3 nor 4"});
 }
 
+// Indices that the draw before it has, too, are looked at once, but each draw has vertices of its own.
+TEST(RefusedTest, IndicesOfFewerVerticesThanTheDrawBefore) {
+  static constexpr std::uint32_t kIndices[3] = {0, 1, 2};
+  Raster raster(VITRAIL_CPU_BEST);
+  Described described;
+  std::vector<float> positions(12, 0.5F);
+  described.draw.positions = positions.data();
+  described.draw.vertexCount = 3;
+  described.draw.indices = kIndices;
+  described.draw.indexCount = 3;
+  std::vector<VitrailCpuDraw> draws(2, described.draw);
+  EXPECT_EQ(raster.render(described.frame, draws), VITRAIL_SUCCESS);
+  draws[1].vertexCount = 2;
+  EXPECT_EQ(raster.render(described.frame, draws), VITRAIL_ERROR_INVALID);
+  EXPECT_EQ(raster.takeLog(), std::vector<std::string>{"draw 1: an index is not below vertexCount"});
+}
+
 TEST(RefusedTest, NullArguments) {
   Raster raster(VITRAIL_CPU_BEST);
   Described d;

@@ -112,11 +112,27 @@ const char* whatIsWrongWith(const VitrailCpuFrame& frame) {
   return nullptr;
 }
 
-bool hasIndicesOutside(const VitrailCpuDraw& draw) {
-  if (draw.indices == nullptr) return false;
-  std::uint32_t largest = 0;
-  for (std::uint32_t i = 0; i < draw.indexCount; ++i) largest = std::max(largest, draw.indices[i]);
-  return draw.indexCount > 0 && largest >= draw.vertexCount;
+// The largest index of draws, of those that follow each other with the same ones once: a frame may draw a mesh many
+// times.
+class LargestIndex {
+ public:
+  std::uint32_t of(const VitrailCpuDraw& draw) {
+    if (draw.indices == indices_ && draw.indexCount == count_) return largest_;
+    indices_ = draw.indices;
+    count_ = draw.indexCount;
+    largest_ = 0;
+    for (std::uint32_t i = 0; i < count_; ++i) largest_ = std::max(largest_, indices_[i]);
+    return largest_;
+  }
+
+ private:
+  const std::uint32_t* indices_ = nullptr;
+  std::uint32_t count_ = 0;
+  std::uint32_t largest_ = 0;
+};
+
+bool hasIndicesOutside(const VitrailCpuDraw& draw, LargestIndex& largest) {
+  return draw.indices != nullptr && draw.indexCount > 0 && largest.of(draw) >= draw.vertexCount;
 }
 
 void setDefaults(VitrailCpuFrame& info) {
@@ -209,10 +225,11 @@ VitrailResult checkFrame(const Log& log, const VitrailCpuFrame* frame, const Vit
   if (draws == nullptr && count > 0) return invalid(log, "draws is null");
   if (const char* wrong = whatIsWrongWith(*frame)) return invalid(log, wrong);
   std::uint64_t jobs = 0;
+  LargestIndex largest;
   for (std::uint32_t i = 0; i < count; ++i) {
     const VitrailCpuDraw& draw = draws[i];
     if (const char* wrong = whatIsWrongWith(draw)) return invalidDraw(log, i, wrong);
-    if (hasIndicesOutside(draw)) return invalidDraw(log, i, "an index is not below vertexCount");
+    if (hasIndicesOutside(draw, largest)) return invalidDraw(log, i, "an index is not below vertexCount");
     const std::uint32_t corners = draw.indices == nullptr ? draw.vertexCount : draw.indexCount;
     jobs += (corners / cornersOf(draw.topology) + kJobTriangles - 1) / kJobTriangles;
   }
