@@ -2,10 +2,9 @@
 // device at a time.
 #include <volk.h>
 
-#include <vulkan/vk_layer.h>
-
 #include <cstring>
 
+#include "../layer_chain.h"
 #include "kept_pipelines.h"
 
 namespace {
@@ -14,35 +13,16 @@ PFN_vkGetInstanceProcAddr nextInstanceProc = nullptr;
 PFN_vkGetDeviceProcAddr nextDeviceProc = nullptr;
 VkInstance theInstance = VK_NULL_HANDLE;
 
-// The loader's chain of layers: this one's link, which is moved on for the next.
-template <typename Link, typename Info>
-Link* linkOf(const Info* info, VkStructureType type) {
-  auto* link = const_cast<Link*>(static_cast<const Link*>(info->pNext));
-  while (link != nullptr && !(link->sType == type && link->function == VK_LAYER_LINK_INFO)) {
-    link = const_cast<Link*>(static_cast<const Link*>(link->pNext));
-  }
-  return link;
-}
-
 VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* allocator,
                                               VkInstance* instance) {
-  auto* link = linkOf<VkLayerInstanceCreateInfo>(info, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO);
-  nextInstanceProc = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
-  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
-  const auto create = reinterpret_cast<PFN_vkCreateInstance>(nextInstanceProc(VK_NULL_HANDLE, "vkCreateInstance"));
-  const VkResult result = create(info, allocator, instance);
+  const VkResult result = vitrail::tests::createBehind(info, allocator, instance, nextInstanceProc);
   if (result == VK_SUCCESS) theInstance = *instance;
   return result;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
                                             const VkAllocationCallbacks* allocator, VkDevice* device) {
-  auto* link = linkOf<VkLayerDeviceCreateInfo>(info, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO);
-  const PFN_vkGetInstanceProcAddr instanceProc = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
-  nextDeviceProc = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
-  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
-  const auto create = reinterpret_cast<PFN_vkCreateDevice>(instanceProc(theInstance, "vkCreateDevice"));
-  const VkResult result = create(physical, info, allocator, device);
+  const VkResult result = vitrail::tests::createBehind(theInstance, physical, info, allocator, device, nextDeviceProc);
   if (result == VK_SUCCESS) vitrail::tests::keepPipelinesOf(*device, nextDeviceProc);
   return result;
 }

@@ -1,6 +1,5 @@
 // A Vulkan layer whose devices are lost as soon as the file that VITRAIL_TEST_LOSE names is there: each such device
 // then refuses all work, and the file is taken away, so that the next device works.
-#include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
 #include <atomic>
@@ -9,6 +8,8 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+
+#include "../layer_chain.h"
 
 namespace {
 
@@ -54,36 +55,17 @@ VKAPI_ATTR void VKAPI_CALL destroyDevice(VkDevice device, const VkAllocationCall
   state.destroy(device, allocator);
 }
 
-// The loader's chain of layers: this one's link, which is moved on for the next.
-template <typename Link, typename Info>
-Link* linkOf(const Info* info, VkStructureType type) {
-  auto* link = const_cast<Link*>(static_cast<const Link*>(info->pNext));
-  while (link != nullptr && !(link->sType == type && link->function == VK_LAYER_LINK_INFO)) {
-    link = const_cast<Link*>(static_cast<const Link*>(link->pNext));
-  }
-  return link;
-}
-
 VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* allocator,
                                               VkInstance* instance) {
-  auto* link = linkOf<VkLayerInstanceCreateInfo>(info, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO);
-  nextInstanceProc = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
-  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
-  const auto create = reinterpret_cast<PFN_vkCreateInstance>(nextInstanceProc(VK_NULL_HANDLE, "vkCreateInstance"));
-  const VkResult result = create(info, allocator, instance);
+  const VkResult result = vitrail::tests::createBehind(info, allocator, instance, nextInstanceProc);
   if (result == VK_SUCCESS) theInstance = *instance;
   return result;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
                                             const VkAllocationCallbacks* allocator, VkDevice* device) {
-  auto* link = linkOf<VkLayerDeviceCreateInfo>(info, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO);
-  const PFN_vkGetInstanceProcAddr instanceProc = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
   DeviceState state;
-  state.next = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
-  link->u.pLayerInfo = link->u.pLayerInfo->pNext;
-  const auto create = reinterpret_cast<PFN_vkCreateDevice>(instanceProc(theInstance, "vkCreateDevice"));
-  const VkResult result = create(physical, info, allocator, device);
+  const VkResult result = vitrail::tests::createBehind(theInstance, physical, info, allocator, device, state.next);
   if (result != VK_SUCCESS) return result;
   state.submit = reinterpret_cast<PFN_vkQueueSubmit2>(state.next(*device, "vkQueueSubmit2"));
   state.destroy = reinterpret_cast<PFN_vkDestroyDevice>(state.next(*device, "vkDestroyDevice"));

@@ -41,7 +41,7 @@ struct Batch {
   const StagedPieces* pieces;               // null: whole triangles
   alignas(64) std::int32_t number[kBatch];  // with kFrontBit
   alignas(64) std::int32_t big[kBatch];     // not 0: edges need more than 16 bits
-  alignas(64) std::int32_t careful[kBatch]; // not 0: so thin that its depth as a plane would be far off, or big
+  alignas(64) std::int32_t careful[kBatch]; // not 0: its depth as a plane could be too far off (setUpDepth())
 
   alignas(64) std::int32_t a[3][kBatch];
   alignas(64) std::int32_t b[3][kBatch];
