@@ -266,7 +266,8 @@ typedef struct VitrailCpuFrame {
   uint64_t memoryBudget;
 } VitrailCpuFrame;
 
-/* Draws a frame. `stats` is optional: `exact` and `complete` are 1 for every frame that was not given up,
+/* Draws a frame. `stats` is optional, and a frame without it is faster where much is hidden, which then need not be
+ * counted; the picture is the same. `exact` and `complete` are 1 for every frame that was not given up,
  * fragmentsRequested counts the transparent fragments in front of opaque surfaces (as far as they are known: those
  * behind what is nearly opaque may be left out before they are counted; layersMax and coveredPixels likewise),
  * fragmentsMissing is 0.

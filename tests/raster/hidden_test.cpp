@@ -144,6 +144,9 @@ TEST_P(HiddenTest, FlatPanesAreAllCountedInWhateverOrderTheyCome) {
     EXPECT_EQ(stats.layersMax, kPanes);
     if (round == 0) first = picture;
     EXPECT_TRUE(picture.pixels == first.pixels) << "round " << round;
+    Picture uncounted(kSide, kSide);
+    ASSERT_EQ(raster.render(uncounted.frame(), ordered), VITRAIL_SUCCESS);
+    EXPECT_TRUE(uncounted.pixels == first.pixels) << "round " << round;
     if (round == 0) std::reverse(order.begin(), order.end());
     if (round > 0) std::shuffle(order.begin(), order.end(), Random(3 + static_cast<std::uint64_t>(round)).engine());
   }
@@ -159,6 +162,31 @@ TEST_P(HiddenTest, FlatPanesAreAllCountedInWhateverOrderTheyCome) {
       through *= 1.0 - double{draws[i].color[3]};
     }
     EXPECT_NEAR(first.at(x, 17)[0], red, 2e-5) << "column " << x;
+  }
+}
+
+// Many triangles of which little is seen, in all depth orders, some of them clipped: what is behind all that shows of a
+// tile is not even rasterised where nobody counts it.
+TEST_P(HiddenTest, WhatIsNotCountedIsNotMissed) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Random random(seed);
+    SceneOptions options;
+    options.draws = 60;
+    options.primitives = 64;
+    options.isFlat = true;
+    options.depthOrder = seed % 2 == 0 ? VITRAIL_DEPTH_NEAREST_IS_ONE : VITRAIL_DEPTH_NEAREST_IS_ZERO;
+    options.isClipped = seed % 3 == 0;
+    options.hasOpaque = seed % 4 == 0;
+    options.hasOtherTopologies = seed % 5 == 0;
+    Scene scene = randomScene(random, options);
+    for (const auto& each : scene.draws) each->desc.color[3] = 0.5F + 0.5F * each->desc.color[3];
+    Raster raster(GetParam());
+    const Drawn expected = draw(raster, scene);
+    const Drawn uncounted = draw(raster, scene, 0, false);
+    EXPECT_TRUE(uncounted.pixels == expected.pixels && uncounted.depth == expected.depth) << "seed " << seed;
+    EXPECT_TRUE(draw(raster, scene, 65536, false).pixels == expected.pixels) << "little memory, seed " << seed;
+    std::reverse(scene.draws.begin(), scene.draws.end());
+    EXPECT_TRUE(draw(raster, scene, 0, false).pixels == expected.pixels) << "reversed, seed " << seed;
   }
 }
 
@@ -183,6 +211,7 @@ TEST_P(HiddenTest, RandomFramesAreThoseOfAnyOrder) {
     Raster raster(GetParam());
     const Drawn expected = draw(raster, scene);
     shown = std::max<std::uint64_t>(shown, expected.stats.layersMax);
+    EXPECT_TRUE(draw(raster, scene, 0, false).pixels == expected.pixels) << "not counted, seed " << seed;
     std::reverse(scene.draws.begin(), scene.draws.end());
     EXPECT_TRUE(draw(raster, scene).pixels == expected.pixels) << "reversed, seed " << seed;
     std::shuffle(scene.draws.begin(), scene.draws.end(), random.engine());

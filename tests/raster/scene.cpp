@@ -165,19 +165,20 @@ bool Drawn::operator==(const Drawn& other) const {
          (depth.empty() || std::memcmp(depth.data(), other.depth.data(), depth.size() * sizeof(float)) == 0);
 }
 
-Drawn draw(Raster& raster, const Scene& scene, const std::vector<VitrailCpuDraw>& draws, std::uint64_t memoryBudget) {
+Drawn draw(Raster& raster, const Scene& scene, const std::vector<VitrailCpuDraw>& draws, std::uint64_t memoryBudget,
+           bool counts) {
   Drawn drawn{scene.background, scene.depth, {}};
   VitrailCpuFrame frame = scene.frame;
   frame.color = drawn.pixels.data();
   frame.depth = drawn.depth.empty() ? nullptr : drawn.depth.data();
   frame.sampleColors = scene.sampleColors.empty() ? nullptr : scene.sampleColors.data();
   frame.memoryBudget = memoryBudget;
-  EXPECT_EQ(raster.render(frame, draws, &drawn.stats), VITRAIL_SUCCESS);
+  EXPECT_EQ(raster.render(frame, draws, counts ? &drawn.stats : nullptr), VITRAIL_SUCCESS);
   return drawn;
 }
 
-Drawn draw(Raster& raster, const Scene& scene, std::uint64_t memoryBudget) {
-  return draw(raster, scene, scene.descs(), memoryBudget);
+Drawn draw(Raster& raster, const Scene& scene, std::uint64_t memoryBudget, bool counts) {
+  return draw(raster, scene, scene.descs(), memoryBudget, counts);
 }
 
 } // namespace vitrail::tests::raster

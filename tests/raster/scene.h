@@ -103,8 +103,10 @@ struct Drawn {
 
   bool operator==(const Drawn& other) const; // the same bits
 };
-Drawn draw(Raster& raster, const Scene& scene, std::uint64_t memoryBudget = 0);
-Drawn draw(Raster& raster, const Scene& scene, const std::vector<VitrailCpuDraw>& draws,
-           std::uint64_t memoryBudget = 0);
+
+// `counts`: asks for statistics, which are 0 else.
+Drawn draw(Raster& raster, const Scene& scene, std::uint64_t memoryBudget = 0, bool counts = true);
+Drawn draw(Raster& raster, const Scene& scene, const std::vector<VitrailCpuDraw>& draws, std::uint64_t memoryBudget = 0,
+           bool counts = true);
 
 } // namespace vitrail::tests::raster

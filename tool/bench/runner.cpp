@@ -109,6 +109,7 @@ void drawRounds(std::vector<WarmScene>& scenes) {
     if (first.progress) first.progress(fmt::format("round {} of {}", round + 1, first.repeats));
     for (std::size_t i = 0; i < all.size(); ++i) {
       Contender& contender = *all[(round + i) % all.size()];
+      contender.picture.counts = false;
       contender.frames.push_back(contender.renderer->measure(contender.picture).passesMs);
     }
   }

@@ -172,14 +172,18 @@ struct CpuStillRenderer::Totals {
   FrameReport report;
   std::uint64_t coveredPixels = 0;
 
-  Totals() {
+  explicit Totals(bool counts) {
     report.complete = true;
-    report.counted = true;
+    report.counted = counts;
     report.errorBound = 0.0;
     report.tiles = 0;
   }
 
-  void add(const VitrailStats& band) {
+  void draw(Rasterizer& rasterizer, const VitrailCpuFrame& frame, std::span<const VitrailCpuDraw> draws) {
+    ++report.tiles;
+    VitrailStats band{};
+    rasterizer.render(frame, draws, report.counted ? &band : nullptr);
+    if (!report.counted) return;
     report.fragmentsRequested += band.fragmentsRequested;
     report.fragmentsStored += band.fragmentsStored;
     report.fragmentsMissing += band.fragmentsMissing;
@@ -187,7 +191,6 @@ struct CpuStillRenderer::Totals {
     report.complete = report.complete && band.complete != 0;
     report.errorBound = std::max(report.errorBound, static_cast<double>(band.errorBound));
     coveredPixels += band.coveredPixels;
-    ++report.tiles;
   }
 };
 
@@ -233,7 +236,7 @@ FrameReport CpuStillRenderer::Impl::draw(const RenderOptions& picture, Encoded* 
     throw GpuError(fmt::format("a picture of {}x{} is too large: the processor draws at most {}x{}", picture.width,
                                picture.height, kMaxProcessorSide, kMaxProcessorSide));
   }
-  Totals totals;
+  Totals totals(picture.counts);
   VitrailCpuFrame frame = frameOf(picture);
   draws = scene.draws(picture.view, picture.width, picture.height);
   totals.clock.end("vertices");
@@ -265,9 +268,7 @@ void CpuStillRenderer::Impl::drawCodes(const RenderOptions& picture, VitrailCpuF
   frame.clear = linear.data();
   frame.colorFormat = VITRAIL_CPU_RGBA8_SRGB;
   frame.color = encoded.shallow.data();
-  VitrailStats stats{};
-  rasterizer.render(frame, draws, stats);
-  totals.add(stats);
+  totals.draw(rasterizer, frame, draws);
   totals.clock.end("draw");
 }
 
@@ -298,9 +299,7 @@ void CpuStillRenderer::Impl::drawBands(const RenderOptions& picture, VitrailCpuF
       fillBackground(picture, frame.originY, frame.height, pixels);
       totals.clock.end("background");
     }
-    VitrailStats stats{};
-    rasterizer.render(frame, draws, stats);
-    totals.add(stats);
+    totals.draw(rasterizer, frame, draws);
     totals.clock.end("draw");
     if (encoded == nullptr) continue;
     encoded->set(frame.originY, frame.height, pixels);

@@ -103,8 +103,7 @@ std::vector<PickedLayer> Picker::at(const View& view, std::uint32_t width, std::
   frame.color = color.data();
   frame.list = keepLayers;
   frame.listUser = &layers;
-  VitrailStats stats{};
-  impl_->rasterizer.render(frame, draws, stats);
+  impl_->rasterizer.render(frame, draws, nullptr);
 
   std::vector<bool> opaqueLayers;
   for (const VitrailLayer& layer : layers) opaqueLayers.push_back(isOpaque[layer.word]);

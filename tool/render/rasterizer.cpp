@@ -37,8 +37,8 @@ Rasterizer::Rasterizer(std::uint32_t threads) {
 
 Rasterizer::~Rasterizer() { vitrailCpuDestroyContext(context_); }
 
-void Rasterizer::render(const VitrailCpuFrame& frame, std::span<const VitrailCpuDraw> draws, VitrailStats& stats) {
-  check(vitrailCpuRender(context_, &frame, draws.data(), static_cast<std::uint32_t>(draws.size()), &stats));
+void Rasterizer::render(const VitrailCpuFrame& frame, std::span<const VitrailCpuDraw> draws, VitrailStats* stats) {
+  check(vitrailCpuRender(context_, &frame, draws.data(), static_cast<std::uint32_t>(draws.size()), stats));
   fragmentBytes_ = std::max(fragmentBytes_, vitrailCpuFragmentBytes(context_));
 }
 

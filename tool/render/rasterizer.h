@@ -18,7 +18,7 @@ class Rasterizer {
   Rasterizer(const Rasterizer&) = delete;
   Rasterizer& operator=(const Rasterizer&) = delete;
 
-  void render(const VitrailCpuFrame& frame, std::span<const VitrailCpuDraw> draws, VitrailStats& stats);
+  void render(const VitrailCpuFrame& frame, std::span<const VitrailCpuDraw> draws, VitrailStats* stats);
 
   [[nodiscard]] std::uint32_t threads() const;
   // The most that the fragments of a frame have taken so far.

@@ -24,6 +24,8 @@ struct RenderOptions {
   // The nearest transparent surfaces of each pixel (with several samples, of each sample) that are left out. Of the
   // methods linked-list and cpu.
   std::uint32_t peel = 0;
+  // Whether fragments are counted also where that takes time: of a frame that is only timed nobody asks.
+  bool counts = true;
   std::function<void(std::uint32_t tiles)> onTile; // told how many tiles are done, for people who wait
 };
 

@@ -131,7 +131,6 @@ VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
   forAll(workers, frame.jobs.size(), [&](std::uint32_t worker, std::uint64_t i) {
     stages.binJob(frame, static_cast<std::uint32_t>(i), frame.bins[worker]);
   });
-  frame.rankJobs();
 
   Progress progress(frame.info, frame.tiles());
   // Those of the frame before, where they fit; where this one fails, none are kept.
@@ -242,7 +241,8 @@ VitrailResult vitrailCpuRender(VitrailCpuContext context, const VitrailCpuFrame*
     return result;
   }
   return guarded(context->log, "the frame", [&] {
-    raster::prepareFrame(context->frame, *frame, {draws, drawCount}, context->workers->count());
+    raster::prepareFrame(context->frame, *frame, {draws, drawCount}, context->workers->count(),
+                         stats != nullptr);
     return drawFrame(*context, stats);
   });
 }

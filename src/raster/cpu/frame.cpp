@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 namespace vitrail::raster {
 
@@ -25,20 +24,6 @@ void Bins::copy(std::size_t tile, std::uint32_t* to) const {
     to += count;
     left -= count;
   }
-}
-
-void Frame::rankJobs() {
-  ranks.clear();
-  if (!isFlat() || jobs.size() < 2) return;
-  std::vector<std::uint32_t> order(jobs.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const bool nearestIsOne = info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
-  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
-    if (jobs[a].nearest != jobs[b].nearest) return (jobs[a].nearest < jobs[b].nearest) != nearestIsOne;
-    return a < b;
-  });
-  ranks.resize(jobs.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) ranks[order[i]] = i;
 }
 
 void TileCounts::add(const TileCounts& other) {

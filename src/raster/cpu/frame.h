@@ -39,7 +39,7 @@ struct Job {
   std::uint32_t draw;
   std::uint32_t first;
   std::uint32_t count;
-  float nearest = 0.0F; // about its smallest depth, or its largest one where that is the nearest
+  std::uint64_t firstNearest; // in Frame::nearest, where that is there
 };
 
 // Triangle numbers in chunks, of one thread and one tile; in the order in which they were added.
@@ -118,7 +118,8 @@ struct Frame {
   float leastTransmittance = 0.0F; // what is behind less than that does not count
   std::vector<DrawInfo> draws;
   std::vector<Job> jobs;
-  std::vector<std::uint32_t> ranks; // of jobs, about from near to far; empty: their order does not matter
+  // Of each job's primitives a depth, nearer than all that it covers. Empty: their order does not matter.
+  std::vector<float> nearest;
   std::vector<VertexChunk> vertexChunks;
   std::vector<Corner> corners;
   // Of draws without a shade function: what they do to the light behind them (below); after them, one that does
@@ -127,13 +128,15 @@ struct Frame {
   std::vector<std::array<float, 4>> flatFilters; // where needs.filters
   std::uint32_t tilesX = 0;
   std::uint32_t tilesY = 0;
+  bool counts = false;          // the host asks how many fragments there are, hidden or not
   std::uint64_t budget = 0;     // bytes of one thread's fragments
   std::vector<ThreadBins> bins; // one for each thread
 
   std::uint32_t tiles() const { return tilesX * tilesY; }
 
-  // Works out the ranks of jobs, all of which were binned.
-  void rankJobs();
+  float nearestOf(std::uint32_t number) const {
+    return nearest[jobs[number >> kJobBits].firstNearest + (number & (kJobTriangles - 1))];
+  }
   // Whether what hides fragments is known when they come: each has the colour of its draw.
   bool isFlat() const { return !needs.shaded && !needs.filters && leastTransmittance > 0.0F; }
 };

@@ -213,8 +213,24 @@ void addWork(Frame& frame, std::uint32_t draw, std::uint64_t& vertices) {
   }
   for (std::uint64_t i = 0; i < info.primitives; i += kJobTriangles) {
     const auto first = static_cast<std::uint32_t>(i);
-    frame.jobs.push_back({draw, first, std::min(kJobTriangles, info.primitives - first), 0.0F});
+    frame.jobs.push_back({draw, first, std::min(kJobTriangles, info.primitives - first), 0});
   }
+}
+
+// Makes room for how near primitives come, where what is near may hide what is behind it, and that is known when it
+// comes.
+void addNearest(Frame& frame) {
+  frame.nearest.clear();
+  if (!frame.isFlat()) return;
+  float through = 1.0F; // one layer of each job: a guess, as for each tile later
+  std::uint64_t primitives = 0;
+  for (Job& job : frame.jobs) {
+    job.firstNearest = primitives;
+    if (frame.draws[job.draw].draw.surface != VITRAIL_CPU_TRANSPARENT) continue;
+    primitives += job.count;
+    through *= 1.0F - frame.flatPairs[job.draw][3];
+  }
+  if (through < 0.5F * frame.leastTransmittance) frame.nearest.resize(primitives);
 }
 
 } // namespace
@@ -242,8 +258,9 @@ VitrailResult checkFrame(const Log& log, const VitrailCpuFrame* frame, const Vit
 }
 
 void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const VitrailCpuDraw> draws,
-                  std::uint32_t threads) {
+                  std::uint32_t threads, bool counts) {
   frame.info = info;
+  frame.counts = counts;
   setDefaults(frame.info);
   frame.viewport = {frame.info.pictureWidth,
                     frame.info.pictureHeight,
@@ -288,6 +305,7 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
   frame.flatFilters.push_back({1.0F, 1.0F, 1.0F, 0.0F});
   frame.leastTransmittance = info.list != nullptr || isBrightened ? 0.0F : kLeastTransmittance / brightest;
   frame.corners.resize(vertices);
+  addNearest(frame);
 }
 
 } // namespace vitrail::raster

@@ -196,16 +196,25 @@ inline void binPieces(const Frame& frame, const DrawInfo& info, std::uint32_t pr
   addTo(bins, frame, {ranges.x0[0], ranges.y0[0], ranges.x1[0], ranges.y1[0]}, number);
 }
 
-// Up to sixteen triangles of a job, from its `first`th on, in any order, but always the same. Returns about how near
-// they come.
-HWY_INLINE float binSixteen(const Frame& frame, const DrawInfo& info, std::uint32_t jobNumber, std::uint32_t first,
-                            std::uint32_t count, bool nearestIsOne, Bins& bins) {
+// A little nearer than what triangles cover whose corners have these depths: it may be off by 2^-20 of the way between
+// them.
+HWY_INLINE F nearestOfDepths(const F& a, const F& b, const F& c, bool nearestIsOne) {
+  const F least = min(a, min(b, c));
+  const F most = max(a, max(b, c));
+  const F margin = fma(set(1.0F / 65536.0F), most - least, set(1.0F / 1048576.0F) * most);
+  return nearestIsOne ? most + margin : least - margin;
+}
+
+// Up to sixteen triangles of a job, from its `first`th on, in any order, but always the same. `nearest`: null, or takes
+// how near each comes.
+HWY_INLINE void binSixteen(const Frame& frame, const DrawInfo& info, std::uint32_t jobNumber, std::uint32_t first,
+                            std::uint32_t count, float* nearest, Bins& bins) {
   const VitrailCpuDraw& draw = info.draw;
   const Job& job = frame.jobs[jobNumber];
   const Corner* const base = frame.corners.data() + info.firstVertex;
   I x[3];
   I y[3];
-  F nearest;
+  F z[3];
   for (std::uint32_t c = 0; c < 3; ++c) {
     F column[4];
     const auto load = [&](auto cornerOf) HWY_ATTR { loadFours(cornerOf, column[0], column[1], column[2], column[3]); };
@@ -220,7 +229,7 @@ HWY_INLINE float binSixteen(const Frame& frame, const DrawInfo& info, std::uint3
     }
     x[c] = bitsOf(column[0]);
     y[c] = bitsOf(column[1]);
-    if (c == 0) nearest = column[2]; // one corner tells enough
+    z[c] = column[2];
   }
   const I left = min(x[0], min(x[1], x[2]));
   const std::uint32_t here = 0xffffU >> (kLanes - count);
@@ -242,28 +251,32 @@ HWY_INLINE float binSixteen(const Frame& frame, const DrawInfo& info, std::uint3
       addTo(bins, frame, {ranges.x0[lane], ranges.y0[lane], ranges.x1[lane], ranges.y1[lane]}, number + lane);
     }
   }
-  const F farthest = set(nearestIsOne ? 0.0F : 1.0F);
-  const F depths = select(maskOf(here & ~clipped), nearest, farthest);
-  return nearestIsOne ? mostOf(depths) : leastOf(depths);
+  if (nearest == nullptr) return;
+  const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
+  const F known = nearestOfDepths(z[0], z[1], z[2], nearestIsOne);
+  alignas(64) float depths[kLanes];
+  store(depths, select(maskOf(clipped), set(nearestIsOne ? 1.0F : 0.0F), known));
+  std::memcpy(nearest, depths, count * sizeof(float));
 }
 
 inline void binJob(Frame& frame, std::uint32_t jobNumber, ThreadBins& threadBins) {
-  Job& job = frame.jobs[jobNumber];
+  const Job& job = frame.jobs[jobNumber];
   const DrawInfo& info = frame.draws[job.draw];
   const VitrailCpuDraw& draw = info.draw;
   Bins& bins = draw.surface == VITRAIL_CPU_OPAQUE ? threadBins.opaque : threadBins.transparent;
-  const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
-  job.nearest = nearestIsOne ? 0.0F : 1.0F;
+  const bool isOrdered = !frame.nearest.empty() && draw.surface == VITRAIL_CPU_TRANSPARENT;
+  float* const nearest = isOrdered ? frame.nearest.data() + job.firstNearest : nullptr;
   if (draw.topology != VITRAIL_CPU_TRIANGLES) {
     for (std::uint32_t i = 0; i < job.count; ++i) {
       binPieces(frame, info, job.first + i, jobNumber << kJobBits | i, bins);
     }
+    const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
+    if (nearest != nullptr) std::fill_n(nearest, job.count, nearestIsOne ? 1.0F : 0.0F);
     return;
   }
   for (std::uint32_t i = 0; i < job.count; i += kLanes) {
     const std::uint32_t count = std::min<std::uint32_t>(kLanes, job.count - i);
-    const float nearest = binSixteen(frame, info, jobNumber, i, count, nearestIsOne, bins);
-    job.nearest = nearestIsOne ? std::max(job.nearest, nearest) : std::min(job.nearest, nearest);
+    binSixteen(frame, info, jobNumber, i, count, nearest == nullptr ? nullptr : nearest + i, bins);
   }
 }
 

@@ -292,6 +292,11 @@ HWY_INLINE F toFloat(const D& a) {
   return r;
 }
 // Of numbers within the range.
+HWY_INLINE I toInt(const F& a) {
+  I r;
+  VITRAIL_EACH r.v[i] = hn::ConvertTo(kI, a.v[i]);
+  return r;
+}
 HWY_INLINE I toInt(const D& a) {
   I r;
   const hn::Half<TagI> half;

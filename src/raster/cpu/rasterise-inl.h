@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <numeric>
+#include <utility>
 
 #include "raster/cpu/worker-inl.h"
 
@@ -36,26 +38,48 @@ inline void TileWorker::merge(const Frame& frame, std::uint32_t tile, bool opaqu
 }
 
 // Puts the tile's flat triangles about from near to far, where there is so much of them that blocks may become opaque
-// before most have come.
+// before most have come: by counting, in steps of the nearest depths that they reach.
 inline void TileWorker::orderByDepth(const Frame& frame) {
-  tracksHidden_ = false;
-  if (frame.ranks.empty()) return;
-  runs_.clear();
-  for (std::uint32_t i = 0; i < numbers_.size(); ++i) {
-    const std::uint32_t job = numbers_[i] >> kJobBits;
-    if (i == 0 || job != numbers_[i - 1] >> kJobBits) runs_.push_back({frame.ranks[job], i, 0});
-    ++runs_.back().count;
-  }
+  if (frame.nearest.empty()) return;
   // What comes through one layer of each job: a guess.
   float through = 1.0F;
-  for (const Run& run : runs_) through *= 1.0F - frame.flatPairs[frame.jobs[numbers_[run.first] >> kJobBits].draw][3];
+  for (std::size_t i = 0; i < numbers_.size(); ++i) {
+    const std::uint32_t job = numbers_[i] >> kJobBits;
+    if (i == 0 || job != numbers_[i - 1] >> kJobBits) through *= 1.0F - frame.flatPairs[frame.jobs[job].draw][3];
+  }
   tracksHidden_ = through < 0.5F * frame.leastTransmittance;
   if (!tracksHidden_) return;
-  std::sort(runs_.begin(), runs_.end(), [](const Run& a, const Run& b) { return a.rank < b.rank; });
-  ordered_.resize(numbers_.size());
-  std::uint32_t* to = ordered_.data();
-  for (const Run& run : runs_) to = std::copy_n(numbers_.data() + run.first, run.count, to);
+  const std::size_t total = numbers_.size();
+  nearest_.resize(total / kLanes + 1);
+  float* const depths = nearest_.front().depth;
+  for (std::size_t i = 0; i < total; ++i) depths[i] = frame.nearestOf(numbers_[i]);
+  std::fill_n(depths + total, kLanes - total % kLanes, depths[0]);
+  F least = load(depths);
+  F most = least;
+  for (const Nearest& each : nearest_) {
+    least = min(least, load(each.depth));
+    most = max(most, load(each.depth));
+  }
+  steps_ = DepthSteps(leastOf(least), mostOf(most), frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE);
+  for (Nearest& each : nearest_) store(each.step, steps_.of(load(each.depth)));
+  std::array<std::uint32_t, DepthSteps::kCount> place{};
+  const std::int32_t* const steps = nearest_.front().step;
+  for (std::size_t i = 0; i < total; ++i) ++place[static_cast<std::uint32_t>(steps[i])];
+  std::exclusive_scan(place.begin(), place.end(), place.begin(), 0U);
+  ordered_.resize(total);
+  for (std::size_t i = 0; i < total; ++i) ordered_[place[static_cast<std::uint32_t>(steps[i])]++] = numbers_[i];
   numbers_.swap(ordered_);
+}
+
+// Whether all of numbers_ from one on are behind what shows of some blocks, and need not be counted.
+inline bool TileWorker::areBehind(const Frame& frame, std::size_t first, std::uint64_t blocks) const {
+  if (!tracksHidden_ || frame.counts || (blocks & ~saturated_) != 0) return false;
+  I until = set(0);
+  for (std::uint32_t b = 0; b < kBlocks; b += kLanes) {
+    until = max(until, keep(maskOf(static_cast<std::uint32_t>(blocks >> b) & 0xffffU), load(allUntil_.data() + b)));
+  }
+  const F nearest = steps_.nearestFrom(set(frame.nearestOf(numbers_[first])));
+  return mostOf(until) <= mostOf(keyOf(nearest, frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE));
 }
 
 // Corners of what is no triangle, or not there.
@@ -81,9 +105,10 @@ HWY_INLINE void TileWorker::stage(const Frame& frame, std::size_t first, std::ui
   std::uint32_t drawNumber = 0;
   std::uint32_t firstPrimitive = 0;
   staged.count = count;
+  const bool isMixed = tracksHidden_; // jobs change all the time: no branch could foresee it
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t number = numbers_[first + i];
-    if (number >> kJobBits != jobNumber) {
+    if (isMixed || number >> kJobBits != jobNumber) {
       jobNumber = number >> kJobBits;
       const Job& job = frame.jobs[jobNumber];
       const DrawInfo& info = frame.draws[job.draw];
@@ -156,7 +181,7 @@ inline bool TileWorker::rasterise(const Frame& frame, std::uint64_t blocks, bool
   };
   std::size_t turn = 0;
   stage(frame, 0, countAt(0), isShaded, staged_[turn]);
-  for (std::size_t i = 0; i < total; i += kBatch, turn ^= 1U) {
+  for (std::size_t i = 0; i < total && !areBehind(frame, i, blocks); i += kBatch, turn ^= 1U) {
     stage(frame, i + kBatch, countAt(i + kBatch), isShaded, staged_[turn ^ 1U]);
     std::uint64_t clipped = 0;
     if (!drawBatch(frame, staged_[turn], nullptr, isShaded, clipped, emit)) return false;
@@ -203,7 +228,7 @@ HWY_INLINE std::uint32_t TileWorker::cover(std::uint32_t items) {
     const Work work{pair | mask << 16U};
     work_[count] = work;
     if constexpr (kHides) {
-      const auto isHidden = static_cast<std::uint32_t>(nearest_[t] >= allUntil_[block]);
+      const auto isHidden = static_cast<std::uint32_t>(batchNearest_[t] >= allUntil_[block]);
       hiddenWork_[hidden] = work;
       hidden += isThere & isHidden;
       count += isThere & (isHidden ^ 1U);
@@ -268,7 +293,7 @@ inline bool TileWorker::drawBatch(const Frame& frame, const Staged& staged, cons
   } else {
     const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
     for (std::uint32_t i = 0; i < triangles; i += kLanes) {
-      store(nearest_.data() + i, nearestOf(batch_, i, nearestIsOne));
+      store(batchNearest_.data() + i, nearestOf(batch_, i, nearestIsOne));
     }
     count = batch_.isBig ? cover<true, true>(items) : cover<false, true>(items);
   }

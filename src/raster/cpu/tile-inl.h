@@ -31,6 +31,7 @@ inline void TileWorker::draw(const Frame& frame, std::uint32_t tile, TileCounts&
     if (tile_.pixels[b] != 0) blocks |= std::uint64_t{1} << b;
   }
   demand_ = {};
+  tracksHidden_ = false;
   if (!frame.needs.shaded) colors_.begin(frame);
   drawOpaque(frame, tile);
   merge(frame, tile, false);

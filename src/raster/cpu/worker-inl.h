@@ -101,6 +101,31 @@ struct OpaqueTile {
   std::uint64_t drawn = 0; // blocks in which something is shown
 };
 
+// Equal parts of the depths of a tile's triangles, from near to far.
+class DepthSteps {
+ public:
+  static constexpr std::uint32_t kCount = 1024;
+
+  DepthSteps() = default;
+  DepthSteps(float least, float most, bool nearestIsOne) : first_(nearestIsOne ? most : least) {
+    const float range = std::max(most - least, 1e-30F);
+    scale_ = (nearestIsOne ? -1.0F : 1.0F) * (kCount - 1.0F) / range;
+    size_ = (nearestIsOne ? -1.0F : 1.0F) * range / (kCount - 1.0F);
+  }
+  HWY_INLINE I of(const F& depth) const {
+    return toInt(max(set(0.0F), min(set(kCount - 1.0F), (depth - set(first_)) * set(scale_))));
+  }
+  // Nearer than all that is in the step of a depth or in those behind it.
+  HWY_INLINE F nearestFrom(const F& depth) const {
+    return fma(toFloat(of(depth)) - set(0.01F), set(size_), set(first_)); // a little for what rounds
+  }
+
+ private:
+  float first_ = 0.0F;
+  float scale_ = 0.0F; // steps of a depth
+  float size_ = 0.0F;  // of a step
+};
+
 class TileWorker final : public TileWorkspace {
  public:
   explicit TileWorker(const Frame& frame)
@@ -150,6 +175,7 @@ class TileWorker final : public TileWorkspace {
   static RowShape shapeOf(const Frame& frame) { return {frame.needs, frame.info.samples > 1}; }
   void merge(const Frame& frame, std::uint32_t tile, bool opaque);
   void orderByDepth(const Frame& frame);
+  bool areBehind(const Frame& frame, std::size_t first, std::uint64_t blocks) const;
   void stage(const Frame& frame, std::size_t first, std::uint32_t count, bool isShaded, Staged& staged);
   template <class Emit>
   bool rasterise(const Frame& frame, std::uint64_t blocks, bool isShaded, Emit emit);
@@ -234,12 +260,12 @@ class TileWorker final : public TileWorkspace {
   TileColors colors_;
   TileBox tile_{};
   std::vector<std::uint32_t> numbers_;
-  struct Run { // of triangles of one job, in numbers_
-    std::uint32_t rank;
-    std::uint32_t first;
-    std::uint32_t count;
+  union Nearest { // of sixteen triangles
+    alignas(64) float depth[kLanes];
+    std::int32_t step[kLanes];
   };
-  std::vector<Run> runs_;
+  std::vector<Nearest> nearest_; // of numbers_, before they were ordered
+  DepthSteps steps_;             // by which they were
   std::vector<std::uint32_t> ordered_;
   std::array<Staged, 2> staged_{};
   StagedPieces pieces_{};
@@ -268,7 +294,7 @@ class TileWorker final : public TileWorkspace {
   std::array<std::uint16_t, kBlocks> opaquePixels_{};
   bool tracksHidden_ = false;
   // Nearer than all that the batch's triangles cover, as keys; where some block is saturated.
-  alignas(64) std::array<std::int32_t, kBatch> nearest_{};
+  alignas(64) std::array<std::int32_t, kBatch> batchNearest_{};
   alignas(64) std::int32_t layers_[kLanes] = {}; // fragments of each pixel of the block that was sorted last
   std::vector<Row> rows_;
   std::vector<double> keyMemory_;
