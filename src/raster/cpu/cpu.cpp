@@ -241,8 +241,7 @@ VitrailResult vitrailCpuRender(VitrailCpuContext context, const VitrailCpuFrame*
     return result;
   }
   return guarded(context->log, "the frame", [&] {
-    raster::prepareFrame(context->frame, *frame, {draws, drawCount}, context->workers->count(),
-                         stats != nullptr);
+    raster::prepareFrame(context->frame, *frame, {draws, drawCount}, context->workers->count(), stats != nullptr);
     return drawFrame(*context, stats);
   });
 }

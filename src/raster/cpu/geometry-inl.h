@@ -208,7 +208,7 @@ HWY_INLINE F nearestOfDepths(const F& a, const F& b, const F& c, bool nearestIsO
 // Up to sixteen triangles of a job, from its `first`th on, in any order, but always the same. `nearest`: null, or takes
 // how near each comes.
 HWY_INLINE void binSixteen(const Frame& frame, const DrawInfo& info, std::uint32_t jobNumber, std::uint32_t first,
-                            std::uint32_t count, float* nearest, Bins& bins) {
+                           std::uint32_t count, float* nearest, Bins& bins) {
   const VitrailCpuDraw& draw = info.draw;
   const Job& job = frame.jobs[jobNumber];
   const Corner* const base = frame.corners.data() + info.firstVertex;
