@@ -208,7 +208,7 @@ TEST_P(ProcessorTest, NeitherDoThreadsNorMemory) {
       frame.color = rgba.data();
       frame.memoryBudget = budget;
       VitrailStats stats{};
-      rasterizer.render(frame, drawn.draws(options.view, options.width, options.height), stats);
+      rasterizer.render(frame, drawn.draws(options.view, options.width, options.height), &stats);
       EXPECT_EQ(stats.complete, 1U);
       if (first.empty()) first = rgba;
       EXPECT_TRUE(rgba == first) << threads << " threads, " << budget << " bytes";

@@ -9,6 +9,9 @@
 #define VITRAIL_TOOL_CPU_CORNERS_INL_H
 #endif
 
+#include <algorithm>
+#include <bit>
+
 #include "lanes-inl.h"
 #include "shade.h"
 
@@ -16,7 +19,8 @@ HWY_BEFORE_NAMESPACE();
 namespace vitrail::tool {
 namespace HWY_NAMESPACE {
 
-constexpr std::size_t kMostCorners = 3 * VITRAIL_CPU_LANES;
+constexpr std::size_t kCornersApart = 4; // those of a triangle, and the third one again
+constexpr std::size_t kMostCorners = kCornersApart * VITRAIL_CPU_LANES;
 
 // One number for each corner.
 struct CornerValues {
@@ -24,12 +28,10 @@ struct CornerValues {
 };
 
 struct Corners {
-  std::size_t count = 0;                             // three for each triangle
-  alignas(64) std::uint32_t vertex[kMostCorners];    // up to a multiple of 16 they are vertices of the draw
+  std::size_t count = 0; // kCornersApart for each triangle
+  alignas(64) std::uint32_t vertex[kMostCorners];
   alignas(64) std::int32_t first[VITRAIL_CPU_LANES]; // by fragment: its triangle's first corner
 };
-
-HWY_INLINE std::size_t paddedCount(const Corners& corners) { return (corners.count + 15U) & ~std::size_t{15}; }
 
 // Finds the triangles of all fragments that are wanted. The others are given the first one.
 HWY_INLINE void findCorners(const VitrailCpuFragments& fragments, const ShadeMesh& mesh, Corners& corners) {
@@ -41,7 +43,7 @@ HWY_INLINE void findCorners(const VitrailCpuFragments& fragments, const ShadeMes
     storeForLanes(hn::LoadU(di, triangles + i), lanes + i);
   }
   std::size_t count = 0;
-  for (std::uint32_t left = fragments.mask; left != 0; count += 3) {
+  for (std::uint32_t left = fragments.mask; left != 0; count += kCornersApart) {
     const auto triangle = static_cast<std::uint32_t>(lanes[hwy::Num0BitsBelowLS1Bit_Nonzero32(left)]);
     std::uint32_t same = 0;
     for (std::size_t i = 0; i < VITRAIL_CPU_LANES; i += kLanes) {
@@ -55,10 +57,9 @@ HWY_INLINE void findCorners(const VitrailCpuFragments& fragments, const ShadeMes
     const std::uint32_t* indices = mesh.indices + std::size_t{triangle} * mesh.corners;
     corners.vertex[count] = indices[0];
     corners.vertex[count + 1] = indices[mesh.corners > 1 ? 1 : 0];
-    corners.vertex[count + 2] = indices[mesh.corners > 2 ? 2 : 0];
+    corners.vertex[count + 2] = corners.vertex[count + 3] = indices[mesh.corners > 2 ? 2 : 0];
   }
   corners.count = count;
-  for (std::size_t i = count; i < paddedCount(corners); ++i) corners.vertex[i] = corners.vertex[0];
 }
 
 // Where the fragments of some lanes are: their triangles and the weights of its corners.
@@ -78,14 +79,14 @@ HWY_INLINE Places placesOf(const VitrailCpuFragments& fragments, const Corners& 
 // What each fragment's triangle has at a corner, 0 to 2.
 HWY_INLINE V valueAt(const Corners& corners, const CornerValues& values, VI first, std::int32_t corner) {
   const Tag d;
-  if (corners.count == 3) return set(values.of[corner]); // of one triangle
+  if (corners.count == kCornersApart) return set(values.of[corner]); // of one triangle
 #if HWY_TARGET == HWY_AVX3
   const __m512i at = (first + setInt(corner)).raw;
   if (HWY_LIKELY(corners.count <= 2 * kLanes)) {
     return V{_mm512_permutex2var_ps(load(values.of).raw, at, load(values.of + kLanes).raw)};
   }
   const __m512 nearer = _mm512_permutex2var_ps(load(values.of).raw, at, load(values.of + kLanes).raw);
-  const __m512 further = _mm512_permutexvar_ps(at, load(values.of + 2 * kLanes).raw);
+  const __m512 further = _mm512_permutex2var_ps(load(values.of + 2 * kLanes).raw, at, load(values.of + 3 * kLanes).raw);
   return V{_mm512_mask_blend_ps(_mm512_test_epi32_mask(at, _mm512_set1_epi32(32)), nearer, further)};
 #elif HWY_TARGET == HWY_AVX2
   // Shuffles of whole vectors: calls have five triangles on average, and their corners fit into one or two.
@@ -98,9 +99,9 @@ HWY_INLINE V valueAt(const Corners& corners, const CornerValues& values, VI firs
   }
   return result;
 #else
-  if (corners.count > 12) return hn::GatherIndex(d, values.of, first + setInt(corner));
+  if (corners.count > 4 * kCornersApart) return hn::GatherIndex(d, values.of, first + setInt(corner));
   V result = set(values.of[corner]);
-  for (std::size_t i = 3; i < corners.count; i += 3) {
+  for (std::size_t i = kCornersApart; i < corners.count; i += kCornersApart) {
     const M own = hn::RebindMask(d, first == setInt(static_cast<std::int32_t>(i)));
     result = select(own, set(values.of[i + static_cast<std::size_t>(corner)]), result);
   }
@@ -120,9 +121,34 @@ HWY_INLINE Float3 interpolate3(const Corners& corners, const CornerValues* value
           interpolate(corners, values[2], places)};
 }
 
+// Numbers of kLanes corners from `first` on, of what `of(vertex)` gives for each; beyond the last triangle that one's
+// again. They are put together in registers: what was stored number by number cannot be loaded as a whole before it has
+// left for the cache, behind all that was stored before it.
+template <class Of>
+HWY_INLINE VI numbersOf(const Corners& corners, std::size_t first, Of of) {
+#if HWY_TARGET == HWY_SCALAR
+  return setInt(of(corners.vertex[first]));
+#else
+  const std::size_t last = corners.count - kCornersApart;
+  const auto triangle = [&](std::size_t i) HWY_ATTR {
+    const std::uint32_t* const vertex = corners.vertex + std::min(first + i * kCornersApart, last);
+    const auto third = of(vertex[2]);
+    return fourOf(of(vertex[0]), of(vertex[1]), third, third);
+  };
+  return blocksOf(triangle);
+#endif
+}
+
 // Fills in one number of each vertex, `values` being those of all vertices, some floats apart.
 HWY_INLINE void fetch(const Corners& corners, const float* values, std::size_t stride, CornerValues& to) {
-  for (std::size_t i = 0; i < corners.count; ++i) to.of[i] = values[corners.vertex[i] * stride];
+  if (corners.count == kCornersApart) { // which is read number by number
+    for (std::size_t i = 0; i < 3; ++i) to.of[i] = values[corners.vertex[i] * stride];
+    return;
+  }
+  const auto bitsOfValue = [&](std::uint32_t vertex) { return std::bit_cast<std::int32_t>(values[vertex * stride]); };
+  for (std::size_t i = 0; i < corners.count; i += kLanes) {
+    hn::Store(hn::BitCast(Tag(), numbersOf(corners, i, bitsOfValue)), Tag(), to.of + i);
+  }
 }
 
 // Unit vectors from their octahedral projections, each a vector of floats.
@@ -136,11 +162,9 @@ HWY_INLINE Float3 fromOctahedral(V x, V y) {
 // Fetches and unpacks what packDirection() has packed.
 HWY_INLINE void fetchDirections(const Corners& corners, const std::uint32_t* packed, CornerValues* to) {
   const Tag d;
-  alignas(64) std::uint32_t words[kMostCorners];
-  const std::size_t count = paddedCount(corners);
-  for (std::size_t i = 0; i < count; ++i) words[i] = packed[corners.vertex[i]];
+  const auto wordOf = [&](std::uint32_t vertex) { return static_cast<std::int32_t>(packed[vertex]); };
   for (std::size_t i = 0; i < corners.count; i += kLanes) {
-    const VI word = loadInt(reinterpret_cast<const std::int32_t*>(words) + i);
+    const VI word = numbersOf(corners, i, wordOf);
     const V scale = set(1.0F / 32767.0F);
     const V x = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(word))) * scale;
     const V y = hn::ConvertTo(d, hn::ShiftRight<16>(word)) * scale;
@@ -155,11 +179,9 @@ HWY_INLINE void fetchDirections(const Corners& corners, const std::uint32_t* pac
 HWY_INLINE void fetchTangents(const Corners& corners, const std::uint32_t* packed, CornerValues* to) {
   const Tag d;
   const IntTag di;
-  alignas(64) std::uint32_t words[kMostCorners];
-  const std::size_t count = paddedCount(corners);
-  for (std::size_t i = 0; i < count; ++i) words[i] = packed[corners.vertex[i]];
+  const auto wordOf = [&](std::uint32_t vertex) { return static_cast<std::int32_t>(packed[vertex]); };
   for (std::size_t i = 0; i < corners.count; i += kLanes) {
-    const VI word = loadInt(reinterpret_cast<const std::int32_t*>(words) + i);
+    const VI word = numbersOf(corners, i, wordOf);
     const V x = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(word))) * set(1.0F / 32767.0F);
     const V y = hn::ConvertTo(d, hn::ShiftRight<17>(word)) * set(1.0F / 16383.0F);
     const Float3 v = fromOctahedral(x, y);
@@ -184,16 +206,12 @@ HWY_INLINE V fromHalf(VI half) {
 // The same for packColor().
 HWY_INLINE void fetchColors(const Corners& corners, const std::uint64_t* packed, CornerValues* to) {
   const Tag d;
-  alignas(64) std::int32_t words[2][kMostCorners];
-  const std::size_t count = paddedCount(corners);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t color = packed[corners.vertex[i]];
-    words[0][i] = static_cast<std::int32_t>(color & 0xffffffffU);
-    words[1][i] = static_cast<std::int32_t>(color >> 32U);
-  }
   for (std::size_t i = 0; i < corners.count; i += kLanes) {
     for (std::size_t half = 0; half < 2; ++half) {
-      const VI word = loadInt(words[half] + i);
+      const auto halfOf = [&](std::uint32_t vertex) {
+        return static_cast<std::int32_t>(packed[vertex] >> 32U * half & 0xffffffffU);
+      };
+      const VI word = numbersOf(corners, i, halfOf);
       hn::Store(fromHalf(word), d, to[2 * half].of + i);
       hn::Store(fromHalf(hn::ShiftRight<16>(word)), d, to[2 * half + 1].of + i);
     }

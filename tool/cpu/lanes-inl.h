@@ -136,6 +136,27 @@ HWY_INLINE Four loadTwos(const std::int32_t* a, const std::int32_t* b) {
   const hn::FixedTag<std::int32_t, 2> two;
   return hn::Combine(FourTag(), hn::LoadU(two, b), hn::LoadU(two, a));
 }
+HWY_INLINE Four fourOf(std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) {
+#if HWY_ARCH_X86
+  return Four{_mm_setr_epi32(a, b, c, d)};
+#else
+  const std::int32_t all[4] = {a, b, c, d};
+  return loadFour(all);
+#endif
+}
+
+// What `of(i)` gives for i = 0, 1, ... side by side.
+template <class Of>
+HWY_INLINE VI blocksOf(Of of) {
+#if HWY_MAX_BYTES == 16
+  return of(0);
+#elif HWY_MAX_BYTES == 32
+  return hn::Combine(IntTag(), of(1), of(0));
+#else
+  const hn::FixedTag<std::int32_t, 8> eight;
+  return hn::Combine(IntTag(), hn::Combine(eight, of(3), of(2)), hn::Combine(eight, of(1), of(0)));
+#endif
+}
 #endif
 
 // The first, second, third and fourth number of what `of(lane)` gives for each lane.
@@ -149,14 +170,7 @@ HWY_INLINE void columnsOf(Of of, VI* to) {
   const hn::Repartition<std::int64_t, IntTag> pairs;
   VI column[4]; // block b of column c: lane 4 b + c
   for (std::size_t c = 0; c < 4; ++c) {
-#if HWY_MAX_BYTES == 16
-    column[c] = of(c);
-#elif HWY_MAX_BYTES == 32
-    column[c] = hn::Combine(di, of(c + 4), of(c));
-#else
-    const hn::FixedTag<std::int32_t, 8> eight;
-    column[c] = hn::Combine(di, hn::Combine(eight, of(c + 12), of(c + 8)), hn::Combine(eight, of(c + 4), of(c)));
-#endif
+    column[c] = blocksOf([&](std::size_t block) HWY_ATTR { return of(c + 4 * block); });
   }
   const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(di, column[0], column[1]));
   const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(di, column[0], column[1]));

@@ -106,7 +106,8 @@ inline void TileWorker::shadeOpaque(const Frame& frame, std::uint32_t block) {
 
 inline void TileWorker::drawOpaque(const Frame& frame, std::uint32_t tile) {
   if (opaque_ == nullptr) return;
-  merge(frame, tile, true);
+  takeNumbers(frame, tile, true);
+  merge();
   hasDepth_ = !numbers_.empty() || frame.info.depth != nullptr;
   opaque_->drawn = 0;
   if (!hasDepth_) return;

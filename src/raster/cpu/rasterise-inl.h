@@ -18,29 +18,35 @@
 HWY_BEFORE_NAMESPACE();
 namespace vitrail::raster::HWY_NAMESPACE {
 
-// The numbers of all threads in one order, that of the draws.
-inline void TileWorker::merge(const Frame& frame, std::uint32_t tile, bool opaque) {
+// The numbers of all threads, those of each in the order of the draws.
+inline void TileWorker::takeNumbers(const Frame& frame, std::uint32_t tile, bool opaque) {
   numbers_.clear();
-  std::size_t lists = 0;
+  lists_.clear();
   for (const ThreadBins& thread : frame.bins) {
     const Bins& bins = opaque ? thread.opaque : thread.transparent;
     const std::uint32_t count = bins.countOf(tile);
     if (count == 0) continue;
-    const std::size_t before = numbers_.size();
-    numbers_.resize(before + count);
-    bins.copy(tile, numbers_.data() + before);
-    // Jobs ascend in each list: threads take them in ascending order.
-    if (lists++ > 0) {
-      std::inplace_merge(numbers_.begin(), numbers_.begin() + static_cast<std::ptrdiff_t>(before), numbers_.end(),
-                         [](std::uint32_t a, std::uint32_t b) { return a >> kJobBits < b >> kJobBits; });
-    }
+    lists_.push_back(numbers_.size());
+    numbers_.resize(numbers_.size() + count);
+    bins.copy(tile, numbers_.data() + lists_.back());
+  }
+}
+
+// Puts them into one order, that of the draws. Jobs ascend in each list: threads take them in ascending order.
+inline void TileWorker::merge() {
+  for (std::size_t i = 1; i < lists_.size(); ++i) {
+    const std::size_t end = i + 1 < lists_.size() ? lists_[i + 1] : numbers_.size();
+    const auto first = numbers_.begin();
+    std::inplace_merge(first, first + static_cast<std::ptrdiff_t>(lists_[i]), first + static_cast<std::ptrdiff_t>(end),
+                       [](std::uint32_t a, std::uint32_t b) { return a >> kJobBits < b >> kJobBits; });
   }
 }
 
 // Puts the tile's flat triangles about from near to far, where there is so much of them that blocks may become opaque
-// before most have come: by counting, in steps of the nearest depths that they reach.
-inline void TileWorker::orderByDepth(const Frame& frame) {
-  if (frame.nearest.empty()) return;
+// before most have come: by counting, in steps of the nearest depths that they reach. In which order they are before
+// does not matter. False: they were left as they are.
+inline bool TileWorker::orderByDepth(const Frame& frame) {
+  if (frame.nearest.empty()) return false;
   // What comes through one layer of each job: a guess.
   float through = 1.0F;
   for (std::size_t i = 0; i < numbers_.size(); ++i) {
@@ -48,7 +54,7 @@ inline void TileWorker::orderByDepth(const Frame& frame) {
     if (i == 0 || job != numbers_[i - 1] >> kJobBits) through *= 1.0F - frame.flatPairs[frame.jobs[job].draw][3];
   }
   tracksHidden_ = through < 0.5F * frame.leastTransmittance;
-  if (!tracksHidden_) return;
+  if (!tracksHidden_) return false;
   const std::size_t total = numbers_.size();
   nearest_.resize(total / kLanes + 1);
   float* const depths = nearest_.front().depth;
@@ -69,6 +75,7 @@ inline void TileWorker::orderByDepth(const Frame& frame) {
   ordered_.resize(total);
   for (std::size_t i = 0; i < total; ++i) ordered_[place[static_cast<std::uint32_t>(steps[i])]++] = numbers_[i];
   numbers_.swap(ordered_);
+  return true;
 }
 
 // Whether all of numbers_ from one on are behind what shows of some blocks, and need not be counted.

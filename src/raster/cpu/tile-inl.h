@@ -34,8 +34,8 @@ inline void TileWorker::draw(const Frame& frame, std::uint32_t tile, TileCounts&
   tracksHidden_ = false;
   if (!frame.needs.shaded) colors_.begin(frame);
   drawOpaque(frame, tile);
-  merge(frame, tile, false);
-  orderByDepth(frame);
+  takeNumbers(frame, tile, false);
+  if (!orderByDepth(frame)) merge();
   if (!numbers_.empty() || (opaque_ != nullptr && opaque_->drawn != 0) || frame.info.sampleColors != nullptr) {
     untouched_ = 0;
     drawParts(frame, blocks, counts);

@@ -173,8 +173,9 @@ class TileWorker final : public TileWorkspace {
   }
 
   static RowShape shapeOf(const Frame& frame) { return {frame.needs, frame.info.samples > 1}; }
-  void merge(const Frame& frame, std::uint32_t tile, bool opaque);
-  void orderByDepth(const Frame& frame);
+  void takeNumbers(const Frame& frame, std::uint32_t tile, bool opaque);
+  void merge();
+  bool orderByDepth(const Frame& frame);
   bool areBehind(const Frame& frame, std::size_t first, std::uint64_t blocks) const;
   void stage(const Frame& frame, std::size_t first, std::uint32_t count, bool isShaded, Staged& staged);
   template <class Emit>
@@ -260,7 +261,8 @@ class TileWorker final : public TileWorkspace {
   TileColors colors_;
   TileBox tile_{};
   std::vector<std::uint32_t> numbers_;
-  union Nearest { // of sixteen triangles
+  std::vector<std::size_t> lists_; // where those of each thread begin
+  union Nearest {                  // of sixteen triangles
     alignas(64) float depth[kLanes];
     std::int32_t step[kLanes];
   };
