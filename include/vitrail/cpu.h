@@ -192,6 +192,10 @@ typedef struct VitrailCpuDraw {
    * ones are clamped to it. It decides how far behind nearly opaque surfaces fragments still count (VitrailStats of
    * vitrailCpuRender). Default: 65504. Not needed where `shade` is null. */
   float brightest;
+  /* A promise: the alpha that `shade` gives is never below this, from 0 (default: nothing is known) to 1. Where it is
+   * told what is hidden is known before it is shaded, and most of it is left alone. 0 with VITRAIL_CPU_SHADE_DISCARD.
+   * Not needed where `shade` is null. */
+  float leastAlpha;
   uint32_t word; /* the host's, for the list hook: object, material */
 } VitrailCpuDraw;
 

@@ -178,6 +178,7 @@ void makeDraw(Bytes& bytes, const VitrailCpuFrame& frame, Draw& draw) {
     desc.shadeFlags |= VITRAIL_CPU_SHADE_FILTER;
   }
   if (bytes.oneIn(2)) desc.brightest = bytes.number();
+  if (bytes.oneIn(4)) desc.leastAlpha = static_cast<float>(bytes.byte()) / 255.0F; // true or not
   const std::uint32_t corners = desc.topology == VITRAIL_CPU_POINTS ? 1 : desc.topology == VITRAIL_CPU_LINES ? 2 : 3;
   draw.shading.frame = &frame;
   draw.shading.primitives = (desc.indices != nullptr ? desc.indexCount : desc.vertexCount) / corners;

@@ -18,6 +18,7 @@ struct Pane {
   float alpha = 0.0F;
   std::uint64_t* shaded = nullptr;
   bool isHole = false;
+  float leastAlpha = 0.0F;
 };
 
 void shadePane(void* user, VitrailCpuFragments* fragments) {
@@ -49,7 +50,8 @@ struct Panes {
       VitrailCpuDraw draw = drawOf(panes[i].corners);
       draw.shade = shadePane;
       draw.shadeUser = &panes[i];
-      draw.shadeFlags = VITRAIL_CPU_SHADE_DISCARD;
+      draw.leastAlpha = panes[i].leastAlpha;
+      if (draw.leastAlpha == 0.0F) draw.shadeFlags = VITRAIL_CPU_SHADE_DISCARD;
       draw.brightest = 1.0F;
       draws.push_back(draw);
     }
@@ -85,6 +87,56 @@ TEST_P(HiddenTest, IsNotShadedInWhateverOrderItComes) {
     EXPECT_TRUE(picture.pixels == first.pixels) << "round " << round;
     if (round == 0) std::reverse(order.begin(), order.end());
     if (round == 1) std::shuffle(order.begin(), order.end(), Random(3).engine());
+  }
+}
+
+// What is hidden is then known without shading, whatever came first. One pane more is shaded than shows something, for
+// what rounds.
+TEST_P(HiddenTest, WhereTheLeastAlphaIsToldLittleThatIsHiddenIsShaded) {
+  constexpr std::uint32_t kPanes = 400;
+  Panes panes(kPanes, 0.9F);
+  std::vector<std::size_t> order = inOrder(kPanes);
+  Picture first(kSide, kSide);
+  panes.draw(GetParam(), order, first);
+  for (Pane& pane : panes.panes) pane.leastAlpha = 0.9F;
+  for (int round = 0; round < 2; ++round) {
+    std::reverse(order.begin(), order.end());
+    Picture picture(kSide, kSide);
+    const VitrailStats stats = panes.draw(GetParam(), order, picture);
+    EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{kPanes} * kSide * kSide);
+    EXPECT_EQ(panes.shaded, std::uint64_t{6} * kSide * kSide) << "round " << round;
+    EXPECT_TRUE(picture.pixels == first.pixels) << "round " << round;
+  }
+}
+
+TEST_P(HiddenTest, TellingTheLeastAlphaChangesNoBit) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Random random(seed);
+    SceneOptions options;
+    options.draws = 60;
+    options.primitives = 64;
+    options.isShaded = seed % 2 == 0;
+    options.depthOrder = seed % 4 < 2 ? VITRAIL_DEPTH_NEAREST_IS_ONE : VITRAIL_DEPTH_NEAREST_IS_ZERO;
+    options.hasDiscards = seed % 3 == 0;
+    options.hasOpaque = seed % 4 == 0;
+    options.hasFilters = seed % 6 == 0;
+    options.samples = seed % 7 == 0 ? 4 : 1;
+    Scene scene = randomScene(random, options);
+    Raster raster(GetParam());
+    const Drawn expected = draw(raster, scene);
+    for (const auto& each : scene.draws) {
+      if ((each->desc.shadeFlags & VITRAIL_CPU_SHADE_DISCARD) != 0) continue;
+      each->desc.leastAlpha = 0.999F * std::min(each->material.color[3], each->material.other[3]);
+    }
+    const Drawn told = draw(raster, scene);
+    EXPECT_TRUE(told.pixels == expected.pixels && told.depth == expected.depth) << "seed " << seed;
+    EXPECT_EQ(told.stats.layersMax, expected.stats.layersMax);
+    EXPECT_EQ(told.stats.fragmentsRequested, expected.stats.fragmentsRequested);
+    EXPECT_TRUE(draw(raster, scene, 0, false).pixels == expected.pixels) << "not counted, seed " << seed;
+    EXPECT_TRUE(draw(raster, scene, 65536, false).pixels == expected.pixels) << "little memory, seed " << seed;
+    std::reverse(scene.draws.begin(), scene.draws.end());
+    const Drawn reversed = draw(raster, scene, 0, false);
+    EXPECT_TRUE(options.hasOpaque || reversed.pixels == expected.pixels) << "reversed, seed " << seed;
   }
 }
 

@@ -108,6 +108,22 @@ const Mistake kMistakes[] = {
      }},
     {"draw 0: brightest", [](Described& d) { d.draw.brightest = -0.5F; }},
     {"draw 0: brightest", [](Described& d) { d.draw.brightest = NAN; }},
+    {"draw 0: leastAlpha",
+     [](Described& d) {
+       d.draw.shade = noShade;
+       d.draw.leastAlpha = 1.5F;
+     }},
+    {"draw 0: leastAlpha",
+     [](Described& d) {
+       d.draw.shade = noShade;
+       d.draw.leastAlpha = NAN;
+     }},
+    {"draw 0: leastAlpha",
+     [](Described& d) {
+       d.draw.shade = noShade;
+       d.draw.leastAlpha = 0.5F;
+       d.draw.shadeFlags = VITRAIL_CPU_SHADE_DISCARD;
+     }},
     {"draw 0: color", [](Described& d) { d.draw.color[2] = NAN; }},
 };
 

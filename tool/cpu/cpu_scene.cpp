@@ -218,6 +218,7 @@ void CpuScene::Impl::describe(Group& group, const Scene& scene, VitrailCpuInstru
   const ShadeFunction function = shadeFunction(group.surface, instructions);
   draw.shade = function.shade;
   draw.shadeFlags = function.flags;
+  if (group.isTransparent) draw.leastAlpha = leastAlphaOf(group.surface);
   const glm::vec4 color = constantColor(group.surface);
   if (function.shade == nullptr) std::copy_n(glm::value_ptr(color), 4, draw.color);
 }

@@ -191,6 +191,16 @@ ShadeFunction shadeFunction(const ShadeSurface& surface, VitrailCpuInstructions 
   return function;
 }
 
+float leastAlphaOf(const ShadeSurface& surface) {
+  constexpr std::uint32_t kVaries = shaders::FEATURE_VERTEX_COLOR | 1U << shaders::SLOT_BASE_COLOR;
+  constexpr std::uint32_t kHidesLess =
+      shaders::FEATURE_MASK | shaders::FEATURE_TRANSMISSION | shaders::FEATURE_ADDITIVE;
+  const shaders::MaterialData& material = surface.material;
+  if ((surface.features & kHidesLess) != 0) return 0.0F;
+  if ((surface.features & kVaries) != 0 && material.alphaFromBase > 0.0F) return 0.0F;
+  return std::clamp(constantAlpha(material) * 0.999999F, 0.0F, 1.0F); // a little less, for what rounds
+}
+
 glm::vec4 constantColor(const ShadeSurface& surface) {
   const shaders::MaterialData& material = surface.material;
   return {glm::vec3(material.baseColor), constantAlpha(material)};

@@ -91,6 +91,7 @@ struct ShadeFunction {
 ShadeFunction shadeFunction(const ShadeSurface& surface, VitrailCpuInstructions instructions);
 
 // The colour of a surface that needs no function, as its blend mode takes it.
+float leastAlphaOf(const ShadeSurface& surface);
 glm::vec4 constantColor(const ShadeSurface& surface);
 
 // Whether the mask leaves nothing of such a surface.

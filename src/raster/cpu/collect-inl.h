@@ -23,7 +23,7 @@ namespace vitrail::raster::HWY_NAMESPACE {
 // Stores the fragments of a triangle in a block.
 template <TileWorker::Kept kKept>
 HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, std::uint32_t item, Window* window) {
-  constexpr bool kShaded = kKept == Kept::Shaded;
+  constexpr bool kShaded = isShaded(kKept);
   const Work work = work_[item];
   const std::uint32_t t = work.triangle();
   const std::uint32_t block = work.block();
@@ -61,12 +61,9 @@ HWY_INLINE TileWorker::Emitted TileWorker::emitTransparent(const Frame& frame, s
   const auto put = [&](std::uint32_t vector, const I& value)
                        HWY_ATTR { store(row + kLanes * vector, select(here, value, load(kept + kLanes * vector))); };
   put(RowShape::kKey, key);
+  if constexpr (isTracked(kKept)) trackHidden(frame, block, here, key, hidingOf<kKept>(frame, batch_.draw[t]));
   if constexpr (!kShaded) {
-    const std::int32_t draw = batch_.draw[t];
-    put(RowShape::kNumber, set(draw));
-    if constexpr (kKept == Kept::FlatTracked) {
-      trackHidden(frame, block, here, key, colors_.alphaOf(draw));
-    }
+    put(RowShape::kNumber, set(batch_.draw[t]));
   } else {
     F weights[6];
     perspective(work, frame.needs.derivatives, weights);
@@ -103,8 +100,8 @@ HWY_INLINE bool TileWorker::emit(const Frame& frame, std::uint32_t item, Window*
 // instructions.
 template <TileWorker::Kept kKept>
 HWY_INLINE std::uint32_t TileWorker::emitPlain(const Frame& frame, std::uint32_t item, std::uint32_t count) {
-  constexpr bool kTracked = kKept == Kept::FlatTracked;
-  constexpr bool kShaded = kKept == Kept::Shaded;
+  constexpr bool kTracked = isTracked(kKept);
+  constexpr bool kShaded = isShaded(kKept);
   const std::uint32_t stride = (kShaded ? shape_.vectors : RowShape::kFlatVectors) * kLanes;
   const bool derivatives = frame.needs.derivatives;
   const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
@@ -134,7 +131,7 @@ HWY_INLINE std::uint32_t TileWorker::emitPlain(const Frame& frame, std::uint32_t
     }
     if constexpr (kTracked) { // as trackHidden()
       const F before = load(through_[block]);
-      const F through = fnma(before, keep(here, set(colors_.alphaOf(draws[t]))), before);
+      const F through = fnma(before, keep(here, set(hidingOf<kKept>(frame, draws[t]))), before);
       if (HWY_UNLIKELY(bitsOf(least > through) != opaquePixels_[block])) break;
       store(through_[block], through);
       store(farthest_[block], max(load(farthest_[block]), keep(here, key)));
@@ -173,7 +170,7 @@ HWY_INLINE bool TileWorker::emitAll(const Frame& frame, std::uint32_t count) {
 // False: the store is full.
 template <TileWorker::Kept kKept>
 inline bool TileWorker::collect(const Frame& frame, std::uint64_t blocks) {
-  return rasterise(frame, blocks, kKept == Kept::Shaded,
+  return rasterise(frame, blocks, isShaded(kKept),
                    [&](std::uint32_t count) HWY_ATTR { return emitAll<kKept>(frame, count); });
 }
 
@@ -187,9 +184,12 @@ inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, Tile
     std::fill_n(farthest_[0], kBlocks * kLanes, 0);
   }
   edges_ = 0;
-  const bool hasFitted = frame.needs.shaded ? collect<Kept::Shaded>(frame, blocks)
-                         : tracksHidden_    ? collect<Kept::FlatTracked>(frame, blocks)
-                                            : collect<Kept::Flat>(frame, blocks);
+  const auto collectAs = [&](auto whole, auto tracked) {
+    return tracksHidden_ ? (this->*tracked)(frame, blocks) : (this->*whole)(frame, blocks);
+  };
+  const bool hasFitted = frame.needs.shaded
+                             ? collectAs(&TileWorker::collect<Kept::Shaded>, &TileWorker::collect<Kept::ShadedTracked>)
+                             : collectAs(&TileWorker::collect<Kept::Flat>, &TileWorker::collect<Kept::FlatTracked>);
   if (hasFitted) {
     for (std::uint64_t left = blocks; left != 0; left &= left - 1) {
       const auto block = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -204,6 +204,7 @@ inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, Tile
       }
       const std::uint64_t next = left & (left - 1);
       if (next != 0) prefetchPixels(frame, static_cast<std::uint32_t>(std::countr_zero(next)));
+      if (tracksHidden_ && frame.needs.shaded && (saturated_ >> block & 1U) != 0) dropTracked(block);
       resolveBlock(frame, block, counts);
     }
     return;

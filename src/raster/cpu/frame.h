@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -126,6 +127,10 @@ struct Frame {
   // nothing.
   std::vector<std::array<float, 4>> flatPairs;
   std::vector<std::array<float, 4>> flatFilters; // where needs.filters
+  // Of draws: how much each of their fragments hides at least of what is behind it, and the same as an optical depth:
+  // how many times the light is halved.
+  std::vector<float> leastAlphas;
+  std::vector<float> opticalDepths;
   std::uint32_t tilesX = 0;
   std::uint32_t tilesY = 0;
   bool counts = false;          // the host asks how many fragments there are, hidden or not
@@ -137,8 +142,12 @@ struct Frame {
   float nearestOf(std::uint32_t number) const {
     return nearest[jobs[number >> kJobBits].firstNearest + (number & (kJobTriangles - 1))];
   }
-  // Whether what hides fragments is known when they come: each has the colour of its draw.
+  // Whether each fragment has the colour of its draw.
   bool isFlat() const { return !needs.shaded && !needs.filters && leastTransmittance > 0.0F; }
+  // The optical depth behind which nothing counts, and half of it for what rounds.
+  float opaqueDepth() const { return 1.0F - std::log2(leastTransmittance); }
+  // Whether what hides others may be known when it comes.
+  bool mayTrackHidden() const { return info.samples == 1 && !needs.filters && leastTransmittance > 0.0F; }
 };
 
 // What tiles counted.

@@ -39,6 +39,10 @@ const char* whatIsWrongWithShading(const VitrailCpuDraw& draw) {
     return "VITRAIL_CPU_SHADE_FILTER is for transparent draws with VITRAIL_BLEND_PREMULTIPLIED";
   }
   if (!(draw.brightest >= 0.0F)) return "brightest is negative or not a number";
+  if (!(draw.leastAlpha >= 0.0F && draw.leastAlpha <= 1.0F)) return "leastAlpha is not between 0 and 1";
+  if (draw.leastAlpha > 0.0F && (draw.shadeFlags & VITRAIL_CPU_SHADE_DISCARD) != 0) {
+    return "leastAlpha is not 0, but VITRAIL_CPU_SHADE_DISCARD says that fragments may hide nothing";
+  }
   if (draw.shade != nullptr) return nullptr;
   for (const float c : draw.color) {
     if (std::isnan(c)) return "color has a component that is not a number";
@@ -184,6 +188,9 @@ void addFlatPair(Frame& frame, const VitrailCpuDraw& draw) {
   }
   frame.flatPairs.push_back(pair);
   frame.flatFilters.push_back(filter);
+  const float hidden = hides && draw.shade != nullptr ? draw.leastAlpha : pair[3];
+  frame.leastAlphas.push_back(hidden);
+  frame.opticalDepths.push_back(hidden < 1.0F ? -std::log2(1.0F - hidden) : 24.0F);
 }
 
 void addNeeds(FrameNeeds& needs, const VitrailCpuDraw& draw) {
@@ -221,16 +228,16 @@ void addWork(Frame& frame, std::uint32_t draw, std::uint64_t& vertices) {
 // comes.
 void addNearest(Frame& frame) {
   frame.nearest.clear();
-  if (!frame.isFlat()) return;
-  float through = 1.0F; // one layer of each job: a guess, as for each tile later
+  if (!frame.mayTrackHidden()) return;
+  float depth = 0.0F; // of one layer of each job: a guess, as for each tile later
   std::uint64_t primitives = 0;
   for (Job& job : frame.jobs) {
     job.firstNearest = primitives;
     if (frame.draws[job.draw].draw.surface != VITRAIL_CPU_TRANSPARENT) continue;
     primitives += job.count;
-    through *= 1.0F - frame.flatPairs[job.draw][3];
+    depth += frame.opticalDepths[job.draw];
   }
-  if (through < 0.5F * frame.leastTransmittance) frame.nearest.resize(primitives);
+  if (depth > frame.opaqueDepth()) frame.nearest.resize(primitives);
 }
 
 } // namespace
@@ -279,6 +286,8 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
   frame.vertexChunks.clear();
   frame.flatPairs.clear();
   frame.flatFilters.clear();
+  frame.leastAlphas.clear();
+  frame.opticalDepths.clear();
   frame.needs = {};
   frame.needs.shaded = frame.info.samples > 1 || info.list != nullptr;
   frame.needs.opaque = info.depth != nullptr;

@@ -129,10 +129,8 @@ inline void TileWorker::hideFrom(std::uint32_t block, const I& until) {
   allUntil_[block] = mostOf(nearer);
 }
 
-// Lets go of a block's fragments that are hidden, all of which are shaded or flat.
-inline void TileWorker::dropHidden(const Frame& frame, std::uint32_t block) {
-  const SortedRows sorted = sortBlock(frame, block);
-  hideFrom(block, saturationOf(frame, sorted));
+// Lets go of what rows_ hold from until_ on, and returns how many rows are kept, the first ones.
+inline std::uint32_t TileWorker::letGo(std::uint32_t block) {
   const I until = load(until_[block]);
   std::uint32_t kept = 0;
   I hiddenCount = load(hidden_[block]);
@@ -147,12 +145,27 @@ inline void TileWorker::dropHidden(const Frame& frame, std::uint32_t block) {
     store(to, select(shown, key, set(kFarKey)));
   }
   store(hidden_[block], hiddenCount);
-  store_.keepFirst(block, kept, limitOf(kept));
+  return kept;
 }
 
-// Of a flat fragment in some pixels of a block: where those that have come, in whatever order, let too little light
-// through, what is behind all of them is hidden. They come about from near to far (orderByDepth()), so that this is
-// not far from the truth.
+// Lets go of a block's fragments that are hidden, all of which are shaded or flat.
+inline void TileWorker::dropHidden(const Frame& frame, std::uint32_t block) {
+  const SortedRows sorted = sortBlock(frame, block);
+  hideFrom(block, saturationOf(frame, sorted));
+  const std::uint32_t kept = letGo(block);
+  store_.keepFirst(block, kept, kept, limitOf(kept));
+}
+
+// The same where what is hidden was found as it came; none of it is shaded.
+inline void TileWorker::dropTracked(std::uint32_t block) {
+  store_.collect(block, rows_);
+  const std::uint32_t kept = letGo(block);
+  store_.keepFirst(block, kept, 0, limitOf(kept));
+}
+
+// Of a fragment in some pixels of a block that hides so much at least: where those that have come, in whatever order,
+// let too little light through, what is behind all of them is hidden. They come about from near to far
+// (orderByDepth()), so that this is not far from the truth.
 HWY_INLINE void TileWorker::trackHidden(const Frame& frame, std::uint32_t block, const M& here, const I& key,
                                         float alpha) {
   const F before = load(through_[block]);
@@ -170,13 +183,13 @@ HWY_INLINE void TileWorker::trackHidden(const Frame& frame, std::uint32_t block,
 // A block has become crowded: looks what of it is hidden, and lets go of that where it is worth it.
 inline void TileWorker::thin(const Frame& frame, std::uint32_t block) {
   if (tracksHidden_) { // what hides was found as it came
-    if ((saturated_ >> block & 1U) != 0) return dropHidden(frame, block);
+    if ((saturated_ >> block & 1U) != 0) return frame.needs.shaded ? dropTracked(block) : dropHidden(frame, block);
     return store_.setLimit(block, limitOf(store_.rows(block)));
   }
   shadeBlock(frame, block);
   if (frame.isFlat() ? mayHideFlat(frame, block) : mayHide(frame)) return dropHidden(frame, block);
   const auto rows = static_cast<std::uint32_t>(rows_.size());
-  store_.keepFirst(block, rows, limitOf(rows));
+  store_.keepFirst(block, rows, rows, limitOf(rows));
 }
 
 } // namespace vitrail::raster::HWY_NAMESPACE

@@ -42,18 +42,18 @@ inline void TileWorker::merge() {
   }
 }
 
-// Puts the tile's flat triangles about from near to far, where there is so much of them that blocks may become opaque
-// before most have come: by counting, in steps of the nearest depths that they reach. In which order they are before
+// Puts the tile's triangles about from near to far, where they hide so much that blocks may become opaque before most
+// have come: by counting, in steps of the nearest depths that they reach. In which order they are before
 // does not matter. False: they were left as they are.
 inline bool TileWorker::orderByDepth(const Frame& frame) {
   if (frame.nearest.empty()) return false;
-  // What comes through one layer of each job: a guess.
-  float through = 1.0F;
+  // Of one layer of each job: a guess.
+  float depth = 0.0F;
   for (std::size_t i = 0; i < numbers_.size(); ++i) {
     const std::uint32_t job = numbers_[i] >> kJobBits;
-    if (i == 0 || job != numbers_[i - 1] >> kJobBits) through *= 1.0F - frame.flatPairs[frame.jobs[job].draw][3];
+    if (i == 0 || job != numbers_[i - 1] >> kJobBits) depth += frame.opticalDepths[frame.jobs[job].draw];
   }
-  tracksHidden_ = through < 0.5F * frame.leastTransmittance;
+  tracksHidden_ = depth > frame.opaqueDepth() && (frame.isFlat() || order_.isWorth(depth));
   if (!tracksHidden_) return false;
   const std::size_t total = numbers_.size();
   nearest_.resize(total / kLanes + 1);
@@ -72,15 +72,15 @@ inline bool TileWorker::orderByDepth(const Frame& frame) {
   const std::int32_t* const steps = nearest_.front().step;
   for (std::size_t i = 0; i < total; ++i) ++place[static_cast<std::uint32_t>(steps[i])];
   std::exclusive_scan(place.begin(), place.end(), place.begin(), 0U);
-  ordered_.resize(total);
-  for (std::size_t i = 0; i < total; ++i) ordered_[place[static_cast<std::uint32_t>(steps[i])]++] = numbers_[i];
-  numbers_.swap(ordered_);
+  inOrder_.resize(total);
+  for (std::size_t i = 0; i < total; ++i) inOrder_[place[static_cast<std::uint32_t>(steps[i])]++] = numbers_[i];
+  numbers_.swap(inOrder_);
   return true;
 }
 
-// Whether all of numbers_ from one on are behind what shows of some blocks, and need not be counted.
+// Whether all of numbers_ from one on are behind what shows of some blocks.
 inline bool TileWorker::areBehind(const Frame& frame, std::size_t first, std::uint64_t blocks) const {
-  if (!tracksHidden_ || frame.counts || (blocks & ~saturated_) != 0) return false;
+  if (!tracksHidden_ || (blocks & ~saturated_) != 0) return false;
   I until = set(0);
   for (std::uint32_t b = 0; b < kBlocks; b += kLanes) {
     until = max(until, keep(maskOf(static_cast<std::uint32_t>(blocks >> b) & 0xffffU), load(allUntil_.data() + b)));
@@ -188,7 +188,10 @@ inline bool TileWorker::rasterise(const Frame& frame, std::uint64_t blocks, bool
   };
   std::size_t turn = 0;
   stage(frame, 0, countAt(0), isShaded, staged_[turn]);
-  for (std::size_t i = 0; i < total && !areBehind(frame, i, blocks); i += kBatch, turn ^= 1U) {
+  shownTriangles_ = total;
+  for (std::size_t i = 0; i < total; i += kBatch, turn ^= 1U) {
+    if (shownTriangles_ == total && areBehind(frame, i, blocks)) shownTriangles_ = i;
+    if (shownTriangles_ < total && !frame.counts) break;
     stage(frame, i + kBatch, countAt(i + kBatch), isShaded, staged_[turn ^ 1U]);
     std::uint64_t clipped = 0;
     if (!drawBatch(frame, staged_[turn], nullptr, isShaded, clipped, emit)) return false;

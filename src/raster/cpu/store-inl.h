@@ -203,8 +203,8 @@ class Store {
     heads_[block].filled = kFull; // nothing is added to a row that was shaded
   }
 
-  // Keeps the first `rows` rows of a block, all of them shaded; `limit`: how many make it crowded.
-  void keepFirst(std::uint32_t block, std::uint32_t rows, std::uint32_t limit) {
+  // Keeps the first `rows` rows of a block, the first `shaded` of them shaded; `limit`: how many make it crowded.
+  void keepFirst(std::uint32_t block, std::uint32_t rows, std::uint32_t shaded, std::uint32_t limit) {
     Head& head = heads_[block];
     const std::uint32_t chunks = (rows + kChunkRows - 1) / kChunkRows;
     for (; head.chunks > chunks; --head.chunks) {
@@ -213,7 +213,7 @@ class Store {
       free_ = head.chunk;
       head.chunk = before;
     }
-    head.shaded = rows;
+    head.shaded = shaded;
     head.limit = limit;
     head.filled = kFull;
     head.row = rows == 0 ? arena_.get() : rowAt(head.chunk, (rows - 1) % kChunkRows);

@@ -126,6 +126,27 @@ class DepthSteps {
   float size_ = 0.0F;  // of a step
 };
 
+// In which tiles shaded triangles are drawn in the order of depth. Shading takes longer in it, since neighbours come
+// apart, so that it pays only where it spares an eighth of the triangles: at the optical depths at which it did, and in
+// one of 32 tiles it is tried.
+class OrderTrial {
+ public:
+  bool isWorth(float depth) {
+    depth_ = depth;
+    return depth >= paysFrom_ || asked_++ % 32 == 0;
+  }
+  // Of the tile that was asked for last.
+  void learn(bool pays) {
+    if (pays) paysFrom_ = std::min(paysFrom_, depth_);
+    if (!pays) paysFrom_ = std::max(paysFrom_, depth_ * 1.05F);
+  }
+
+ private:
+  std::uint32_t asked_ = 0;
+  float depth_ = 0.0F;
+  float paysFrom_ = 3.0e38F;
+};
+
 class TileWorker final : public TileWorkspace {
  public:
   explicit TileWorker(const Frame& frame)
@@ -136,6 +157,7 @@ class TileWorker final : public TileWorkspace {
   void draw(const Frame& frame, std::uint32_t tile, TileCounts& counts);
   bool begin(const Frame& frame) override {
     if (needs_ != frame.needs || samples_ != frame.info.samples) return false;
+    order_ = {};
     shape_ = shapeOf(frame);
     return store_.begin(shape_, frame.budget);
   }
@@ -201,7 +223,14 @@ class TileWorker final : public TileWorkspace {
   HWY_INLINE void perspective(const Work& work, bool derivatives, F* weights) const;
   HWY_INLINE void countHidden(std::uint32_t block, std::uint32_t mask);
   // What is kept of a fragment: its triangle and place, its draw, or that and what light is left behind it.
-  enum class Kept { Shaded, Flat, FlatTracked };
+  enum class Kept { Shaded, ShadedTracked, Flat, FlatTracked };
+  static constexpr bool isShaded(Kept kept) { return kept == Kept::Shaded || kept == Kept::ShadedTracked; }
+  static constexpr bool isTracked(Kept kept) { return kept == Kept::ShadedTracked || kept == Kept::FlatTracked; }
+  // What a fragment hides at least, by its draw's number in the batch.
+  template <Kept kKept>
+  HWY_INLINE float hidingOf(const Frame& frame, std::int32_t draw) const {
+    return isShaded(kKept) ? frame.leastAlphas[static_cast<std::uint32_t>(draw)] : colors_.alphaOf(draw);
+  }
   enum class Emitted { IsStored, IsCrowded, IsFull };
   template <Kept kKept>
   Emitted emitTransparent(const Frame& frame, std::uint32_t item, Window* window);
@@ -223,6 +252,8 @@ class TileWorker final : public TileWorkspace {
   void shrink(Window& window, std::uint32_t block);
   void thin(const Frame& frame, std::uint32_t block);
   void dropHidden(const Frame& frame, std::uint32_t block);
+  std::uint32_t letGo(std::uint32_t block);
+  void dropTracked(std::uint32_t block);
   HWY_INLINE void trackHidden(const Frame& frame, std::uint32_t block, const M& here, const I& key, float alpha);
   void hideFrom(std::uint32_t block, const I& until);
   bool mayHide(const Frame& frame) const;
@@ -268,7 +299,8 @@ class TileWorker final : public TileWorkspace {
   };
   std::vector<Nearest> nearest_; // of numbers_, before they were ordered
   DepthSteps steps_;             // by which they were
-  std::vector<std::uint32_t> ordered_;
+  std::vector<std::uint32_t> inOrder_;
+  std::size_t shownTriangles_ = 0; // of numbers_: those behind them are hidden
   std::array<Staged, 2> staged_{};
   StagedPieces pieces_{};
   std::unique_ptr<OpaqueTile> opaque_;
@@ -280,11 +312,12 @@ class TileWorker final : public TileWorkspace {
   std::array<std::array<std::uint16_t, kBatch * kBlocks + 64>, kMaxSamples> sampleMasks_{};
   // Blocks in which what is far away is known to be hidden: from which depth on, and how many fragments were left out.
   std::uint64_t saturated_ = 0;
-  struct Demand { // of the tile
+  struct Trial {
     std::uint32_t asked = 0;
     bool pays = false;
   };
-  Demand demand_;
+  Trial demand_; // blocks of the tile that are shaded in the order of depth
+  OrderTrial order_;
   std::uint64_t edges_ = 0; // blocks in which a fragment does not cover all samples of its pixel
   alignas(64) std::int32_t until_[kBlocks][kLanes];
   alignas(64) std::int32_t hidden_[kBlocks][kLanes];
