@@ -10,7 +10,7 @@ namespace vitrail {
 
 namespace {
 
-constexpr double kPicture = 0.5; // an 8-bit picture rounds, too
+constexpr double kPictureRounding = 0.5; // an 8-bit picture rounds, too
 constexpr double kSteps = 255.0;
 
 double srgb(double linear) {
@@ -21,14 +21,14 @@ double srgb(double linear) {
 // light, and the curve is steepest in the dark.
 double ofSteps(double alphaSteps, double colorSteps, std::uint32_t layers) {
   const double light = std::min(1.0, layers * 0.5 / alphaSteps);
-  return kPicture + kSteps * (srgb(light) + 0.5 / colorSteps);
+  return kPictureRounding + kSteps * (srgb(light) + 0.5 / colorSteps);
 }
 
 } // namespace
 
 float nodeErrorBound(std::uint32_t format, std::uint32_t samples, std::uint32_t layers) {
   if (maxNodeIndexCount(format, samples) == 0) return static_cast<float>(kSteps);
-  double bound = kPicture;
+  double bound = kPictureRounding;
   if (layers > 0 && format == layout::VITRAIL_FORMAT_HDR) bound += 0.06 + 0.007 * std::sqrt(layers);
   // Fragments that are rounded to nothing are not counted: where there seem to be none, there may be one.
   const std::uint32_t least = std::max(layers, 1U);

@@ -25,7 +25,7 @@ struct RasterConstants {
   VkBool32 nearestIsZero = VK_FALSE;
   std::uint32_t indexBytes = 4;
 };
-constexpr std::uint32_t kConstants = sizeof(RasterConstants) / sizeof(std::uint32_t);
+constexpr std::uint32_t kConstantCount = sizeof(RasterConstants) / sizeof(std::uint32_t);
 
 RasterConstants constantsOf(const VitrailVkRaster_T& raster) {
   RasterConstants constants;
@@ -74,7 +74,7 @@ VkResult createPipeline(const VitrailVkRaster_T& raster, VkPipelineLayout layout
   std::vector<VkSpecializationMapEntry> entries = stage.entries;
   std::vector<std::uint8_t> data = stage.data;
   data.resize((data.size() + 3) / 4 * 4);
-  for (std::uint32_t i = 0; i < kConstants; ++i) {
+  for (std::uint32_t i = 0; i < kConstantCount; ++i) {
     entries.push_back({kFirstRasterConstant + i, static_cast<std::uint32_t>(data.size() + i * sizeof(std::uint32_t)),
                        sizeof(std::uint32_t)});
   }
