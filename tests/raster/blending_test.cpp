@@ -286,7 +286,9 @@ TEST(StridesTest, KeepOffWhatIsBetweenRows) {
 
 // ---- sRGB
 
-long double srgbOf(long double v) { return v <= 0.0031308L ? 12.92L * v : 1.055L * std::pow(v, 1.0L / 2.4L) - 0.055L; }
+long double exactSrgb(long double v) {
+  return v <= 0.0031308L ? 12.92L * v : 1.055L * std::pow(v, 1.0L / 2.4L) - 0.055L;
+}
 
 // A row of opaque colours, which become codes without anything between.
 TEST(SrgbTest, RoundsToTheNearestCode) {
@@ -298,7 +300,7 @@ TEST(SrgbTest, RoundsToTheNearestCode) {
     long double high = 1.0L;
     for (int i = 0; i < 80; ++i) {
       const long double middle = (low + high) / 2.0L;
-      (srgbOf(middle) * 255.0L < code + 0.5L ? low : high) = middle;
+      (exactSrgb(middle) * 255.0L < code + 0.5L ? low : high) = middle;
     }
     const auto border = static_cast<float>(low);
     const float below = std::nextafterf(border, 0.0F);
@@ -330,7 +332,7 @@ TEST(SrgbTest, RoundsToTheNearestCode) {
     for (std::size_t c = 0; c < 3; ++c) {
       const float v = values[(x + c) % kWidth];
       const long double clamped = v > 0.0F ? std::min(v, 1.0F) : 0.0F;
-      const long double steps = srgbOf(clamped) * 255.0L;
+      const long double steps = exactSrgb(clamped) * 255.0L;
       // Where the border itself is no float, one of its neighbours is as near as rounding of the border lets it be.
       EXPECT_NEAR(static_cast<double>(steps), pixels[4 * x + c], 0.5 + 1e-5) << v;
     }

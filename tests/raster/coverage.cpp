@@ -65,10 +65,10 @@ void addCovered(const CoverageFrame& frame, std::uint32_t number, const std::arr
 // ---- Kinds. Places are in pixels from the frame's corner, and reach out of it, but not out of the picture, where
 // drivers clip. Those that are multiples of 1/256 stay so in clip space, since sides are powers of 2.
 
-constexpr std::uint32_t kSide = 128;
+constexpr std::uint32_t kCoverageSide = 128;
 
 CoverageFrame empty(std::uint32_t samples, std::uint32_t picture = 1024) {
-  return {kSide, kSide, samples, {}, picture, (picture - kSide) / 2};
+  return {kCoverageSide, kCoverageSide, samples, {}, picture, (picture - kCoverageSide) / 2};
 }
 
 void addAt(CoverageFrame& frame, double x, double y, float w = 1.0F) {
@@ -80,11 +80,11 @@ double onGrid(double v) { return std::nearbyint(v * 256.0) / 256.0; }
 // Three corners within `size` of a random place.
 CoverageFrame around(Random& random, std::uint32_t samples, std::size_t count, double size, double step) {
   // Off the grid, how a driver rounds depends on where its coordinates begin: then the frame is the picture.
-  CoverageFrame frame = step == 0.0 ? empty(samples, kSide) : empty(samples);
+  CoverageFrame frame = step == 0.0 ? empty(samples, kCoverageSide) : empty(samples);
   const double margin = step == 0.0 ? -size : 4.0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double x = random.real(-margin, kSide + margin);
-    const double y = random.real(-margin, kSide + margin);
+    const double x = random.real(-margin, kCoverageSide + margin);
+    const double y = random.real(-margin, kCoverageSide + margin);
     const auto place = [&](double v) {
       const double p = v + random.real(-size, size);
       return step == 0.0 ? p : std::nearbyint(p / step) * step;
@@ -111,8 +111,8 @@ CoverageFrame onCentres(Random& random, std::uint32_t samples) { return around(r
 CoverageFrame slivers(Random& random, std::uint32_t samples) {
   CoverageFrame frame = empty(samples);
   for (std::size_t i = 0; i < 8000; ++i) {
-    const double x = onGrid(random.real(-8.0, kSide + 8.0));
-    const double y = onGrid(random.real(-8.0, kSide + 8.0));
+    const double x = onGrid(random.real(-8.0, kCoverageSide + 8.0));
+    const double y = onGrid(random.real(-8.0, kCoverageSide + 8.0));
     const double length = random.below(4) == 0 ? 200.0 : 20.0;
     addAt(frame, x, y);
     addAt(frame, x + random.whole(-3, 3) / 256.0, y + random.whole(-3, 3) / 256.0);
@@ -125,8 +125,8 @@ CoverageFrame slivers(Random& random, std::uint32_t samples) {
 CoverageFrame degenerate(Random& random, std::uint32_t samples) {
   CoverageFrame frame = empty(samples);
   for (std::size_t i = 0; i < 20000; ++i) {
-    const double x = random.whole(0, kSide * 16) / 16.0;
-    const double y = random.whole(0, kSide * 16) / 16.0;
+    const double x = random.whole(0, kCoverageSide * 16) / 16.0;
+    const double y = random.whole(0, kCoverageSide * 16) / 16.0;
     const int dx = random.whole(-64, 64);
     const int dy = random.whole(-64, 64);
     const int times = random.whole(-3, 3);
@@ -143,8 +143,8 @@ CoverageFrame hugeOf(Random& random, std::uint32_t samples, std::uint32_t pictur
   for (std::size_t i = 0; i < 120; ++i) {
     const double reach = std::pow(10.0, random.real(2.0, exponent));
     for (int corner = 0; corner < 3; ++corner) {
-      const double x = kSide / 2.0 + random.real(-reach, reach);
-      addAt(frame, onGrid(x), onGrid(kSide / 2.0 + random.real(-reach, reach)));
+      const double x = kCoverageSide / 2.0 + random.real(-reach, reach);
+      addAt(frame, onGrid(x), onGrid(kCoverageSide / 2.0 + random.real(-reach, reach)));
     }
   }
   return frame;
@@ -159,8 +159,8 @@ CoverageFrame farSlivers(Random& random, std::uint32_t samples) {
   for (std::size_t i = 0; i < 1000; ++i) {
     const double angle = random.real(0.0, 6.283185307179586);
     const double reach = random.real(200.0, 8000.0);
-    const double x = random.real(0.0, kSide);
-    const double y = random.real(0.0, kSide);
+    const double x = random.real(0.0, kCoverageSide);
+    const double y = random.real(0.0, kCoverageSide);
     const double thin = random.real(0.0, 2.0);
     addAt(frame, onGrid(x + reach * std::cos(angle)), onGrid(y + reach * std::sin(angle)));
     addAt(frame, onGrid(x - reach * std::cos(angle)), onGrid(y - reach * std::sin(angle)));
@@ -171,10 +171,10 @@ CoverageFrame farSlivers(Random& random, std::uint32_t samples) {
 
 // Different w at the corners, places that are not on the grid.
 CoverageFrame inPerspective(Random& random, std::uint32_t samples) {
-  CoverageFrame frame = empty(samples, kSide);
+  CoverageFrame frame = empty(samples, kCoverageSide);
   for (std::size_t i = 0; i < 15000; ++i) {
-    const double x = random.real(7.0, kSide - 7.0);
-    const double y = random.real(7.0, kSide - 7.0);
+    const double x = random.real(7.0, kCoverageSide - 7.0);
+    const double y = random.real(7.0, kCoverageSide - 7.0);
     for (int corner = 0; corner < 3; ++corner) {
       const double cornerX = x + random.real(-6.0, 6.0);
       addAt(frame, cornerX, y + random.real(-6.0, 6.0), static_cast<float>(std::exp(random.real(-8.0, 8.0))));
@@ -187,8 +187,8 @@ CoverageFrame inPerspective(Random& random, std::uint32_t samples) {
 CoverageFrame boxes(Random& random, std::uint32_t samples) {
   CoverageFrame frame = empty(samples);
   for (std::size_t i = 0; i < 6000; ++i) {
-    const double x = random.whole(-32, kSide * 16) / 16.0;
-    const double y = random.whole(-32, kSide * 16) / 16.0;
+    const double x = random.whole(-32, kCoverageSide * 16) / 16.0;
+    const double y = random.whole(-32, kCoverageSide * 16) / 16.0;
     const double right = x + random.whole(0, 100) / 16.0;
     const double bottom = y + random.whole(0, 100) / 16.0;
     const std::array<std::array<double, 2>, 6> corners{

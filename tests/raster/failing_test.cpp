@@ -60,9 +60,9 @@ void expectOutOfMemory(VitrailCpuContextDesc desc, bool allAfter) {
     Drawn drawn{scene.background, scene.depth, {}};
     failAllocation(n, allAfter);
     const VitrailResult result = tryDraw(context, scene, draws, drawn);
-    const bool hasFailed = stopFailingAllocations();
+    const bool failed = stopFailingAllocations();
     // Where less memory does as well (std::inplace_merge), the frame is drawn all the same.
-    EXPECT_TRUE(result == VITRAIL_SUCCESS ? drawn == expected : hasFailed && result == VITRAIL_ERROR_OUT_OF_MEMORY)
+    EXPECT_TRUE(result == VITRAIL_SUCCESS ? drawn == expected : failed && result == VITRAIL_ERROR_OUT_OF_MEMORY)
         << "allocation " << n;
     EXPECT_EQ(lines.count.exchange(0), result == VITRAIL_SUCCESS ? 0U : 1U) << "allocation " << n;
     // The same context draws the same frame once there is memory.
@@ -71,12 +71,12 @@ void expectOutOfMemory(VitrailCpuContextDesc desc, bool allAfter) {
     EXPECT_TRUE(drawn == expected) << "after allocation " << n << " failed";
     vitrailCpuDestroyContext(context);
     failures += static_cast<std::uint32_t>(result != VITRAIL_SUCCESS);
-    if (!hasFailed) break;
+    if (!failed) break;
   }
   EXPECT_GT(failures, 10U);
 }
 
-void onThreads(void* /*user*/, std::uint32_t count, void (*task)(void* data, std::uint32_t i), void* data) {
+void inTurn(void* /*user*/, std::uint32_t count, void (*task)(void* data, std::uint32_t i), void* data) {
   for (std::uint32_t i = 0; i < count; ++i) task(data, i);
 }
 
@@ -89,7 +89,7 @@ TEST(OutOfMemoryTest, IsAnErrorOnOneThread) {
 TEST(OutOfMemoryTest, IsAnErrorOnTheHostsThreads) {
   VitrailCpuContextDesc desc{};
   desc.threads = 3;
-  desc.parallel = onThreads;
+  desc.parallel = inTurn;
   expectOutOfMemory(desc, false);
   expectOutOfMemory(desc, true);
 }

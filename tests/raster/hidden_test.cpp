@@ -10,7 +10,7 @@
 namespace vitrail::tests::raster {
 namespace {
 
-constexpr std::uint32_t kSide = 64;
+constexpr std::uint32_t kHiddenSide = 64;
 
 // Panes over the whole picture, each a draw with a shade function that counts.
 struct Pane {
@@ -38,8 +38,11 @@ struct Panes {
   Panes(std::uint32_t count, float alpha) : panes(count) {
     for (std::uint32_t i = 0; i < count; ++i) {
       const float depth = (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
-      const auto at = [&](double x, double y) { return inPixels(kSide, kSide, x, y, depth); };
-      panes[i] = {{at(0, 0), at(kSide, 0), at(0, kSide), at(kSide, 0), at(kSide, kSide), at(0, kSide)}, alpha, &shaded};
+      const auto at = [&](double x, double y) { return inPixels(kHiddenSide, kHiddenSide, x, y, depth); };
+      panes[i] = {{at(0, 0), at(kHiddenSide, 0), at(0, kHiddenSide), at(kHiddenSide, 0), at(kHiddenSide, kHiddenSide),
+                   at(0, kHiddenSide)},
+                  alpha,
+                  &shaded};
     }
   }
 
@@ -74,15 +77,15 @@ TEST_P(HiddenTest, IsNotShadedInWhateverOrderItComes) {
   constexpr std::uint32_t kPanes = 48;
   Panes panes(kPanes, 0.9F);
   std::vector<std::size_t> order = inOrder(kPanes);
-  Picture first(kSide, kSide);
+  Picture first(kHiddenSide, kHiddenSide);
   panes.draw(GetParam(), order, first);
   for (int round = 0; round < 3; ++round) {
-    Picture picture(kSide, kSide);
+    Picture picture(kHiddenSide, kHiddenSide);
     const VitrailStats stats = panes.draw(GetParam(), order, picture);
-    EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{kPanes} * kSide * kSide);
+    EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{kPanes} * kHiddenSide * kHiddenSide);
     EXPECT_EQ(stats.layersMax, kPanes);
     // 0.1^5 is less than 2^-16.
-    EXPECT_EQ(panes.shaded, std::uint64_t{5} * kSide * kSide) << "round " << round;
+    EXPECT_EQ(panes.shaded, std::uint64_t{5} * kHiddenSide * kHiddenSide) << "round " << round;
     EXPECT_NEAR(picture.at(20, 30)[0], 0.5, 1e-5);
     EXPECT_TRUE(picture.pixels == first.pixels) << "round " << round;
     if (round == 0) std::reverse(order.begin(), order.end());
@@ -144,20 +147,20 @@ TEST_P(HiddenTest, FragmentsThatAreNotThereHideNothing) {
   constexpr std::uint32_t kPanes = 60;
   Panes panes(kPanes, 0.9F);
   for (std::size_t i = 0; i < 30; ++i) panes.panes[i].isHole = true;
-  Picture picture(kSide, kSide);
+  Picture picture(kHiddenSide, kHiddenSide);
   const VitrailStats stats = panes.draw(GetParam(), inOrder(kPanes), picture);
-  EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{30} * kSide * kSide);
+  EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{30} * kHiddenSide * kHiddenSide);
   EXPECT_EQ(stats.layersMax, 30U);
-  EXPECT_EQ(panes.shaded, std::uint64_t{35} * kSide * kSide);
+  EXPECT_EQ(panes.shaded, std::uint64_t{35} * kHiddenSide * kHiddenSide);
   EXPECT_NEAR(picture.at(1, 1)[0], 0.5, 1e-5);
 }
 
 TEST_P(HiddenTest, NothingThatShowsIsLeftOut) {
   constexpr std::uint32_t kPanes = 48;
   Panes panes(kPanes, 0.02F);
-  Picture picture(kSide, kSide, {0.0F, 1.0F, 0.0F, 1.0F});
+  Picture picture(kHiddenSide, kHiddenSide, {0.0F, 1.0F, 0.0F, 1.0F});
   panes.draw(GetParam(), inOrder(kPanes), picture);
-  EXPECT_EQ(panes.shaded, std::uint64_t{kPanes} * kSide * kSide);
+  EXPECT_EQ(panes.shaded, std::uint64_t{kPanes} * kHiddenSide * kHiddenSide);
   const double through = std::pow(0.98, kPanes);
   EXPECT_NEAR(picture.at(5, 5)[0], 0.5 * (1.0 - through), 1e-6);
   EXPECT_NEAR(picture.at(5, 5)[1], 0.5 * (1.0 - through) + through, 1e-6);
@@ -173,8 +176,9 @@ TEST_P(HiddenTest, FlatPanesAreAllCountedInWhateverOrderTheyCome) {
     const float left = (static_cast<float>(i) + 0.5F) / kPanes;
     const float right =
         0.9731F * (static_cast<float>(i * 7 % kPanes) + 0.25F) / kPanes; // no two meet in a pixel's middle
-    const auto at = [&](double x, double y) { return inPixels(kSide, kSide, x, y, x > 0 ? right : left); };
-    corners[i] = {at(0, 0), at(kSide, 0), at(0, kSide), at(kSide, 0), at(kSide, kSide), at(0, kSide)};
+    const auto at = [&](double x, double y) { return inPixels(kHiddenSide, kHiddenSide, x, y, x > 0 ? right : left); };
+    corners[i] = {at(0, 0),           at(kHiddenSide, 0),           at(0, kHiddenSide),
+                  at(kHiddenSide, 0), at(kHiddenSide, kHiddenSide), at(0, kHiddenSide)};
     ends[i] = {left, right};
   }
   for (std::uint32_t i = 0; i < kPanes; ++i) {
@@ -184,15 +188,15 @@ TEST_P(HiddenTest, FlatPanesAreAllCountedInWhateverOrderTheyCome) {
     std::copy(color.begin(), color.end(), draws[i].color);
   }
   std::vector<std::size_t> order = inOrder(kPanes);
-  Picture first(kSide, kSide);
+  Picture first(kHiddenSide, kHiddenSide);
   for (int round = 0; round < 4; ++round) {
     std::vector<VitrailCpuDraw> ordered;
     for (const std::size_t i : order) ordered.push_back(draws[i]);
     Raster raster(GetParam());
-    Picture picture(kSide, kSide);
+    Picture picture(kHiddenSide, kHiddenSide);
     VitrailStats stats{};
     ASSERT_EQ(raster.render(picture.frame(), ordered, &stats), VITRAIL_SUCCESS);
-    EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{kPanes} * kSide * kSide) << "round " << round;
+    EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{kPanes} * kHiddenSide * kHiddenSide) << "round " << round;
     EXPECT_EQ(stats.layersMax, kPanes);
     if (round == 0) first = picture;
     EXPECT_TRUE(picture.pixels == first.pixels) << "round " << round;
@@ -202,8 +206,8 @@ TEST_P(HiddenTest, FlatPanesAreAllCountedInWhateverOrderTheyCome) {
     if (round == 0) std::reverse(order.begin(), order.end());
     if (round > 0) std::shuffle(order.begin(), order.end(), Random(3 + static_cast<std::uint64_t>(round)).engine());
   }
-  for (std::uint32_t x = 0; x < kSide; x += 3) {
-    const double share = (x + 0.5) / kSide;
+  for (std::uint32_t x = 0; x < kHiddenSide; x += 3) {
+    const double share = (x + 0.5) / kHiddenSide;
     std::vector<std::size_t> byDepth = inOrder(kPanes);
     const auto depthOf = [&](std::size_t i) { return ends[i][0] + share * (ends[i][1] - ends[i][0]); };
     std::ranges::sort(byDepth, {}, depthOf);

@@ -11,7 +11,7 @@ namespace {
 using vitrail::raster::Corner;
 using vitrail::raster::Edges;
 
-constexpr std::uint32_t kSide = 128;
+constexpr std::uint32_t kWeightsSide = 128;
 
 struct Values {
   long double depth = 0.0L;
@@ -92,7 +92,7 @@ struct Errors {
 };
 
 void Errors::add(const VitrailCpuFragments& f, std::size_t i) {
-  const vitrail::raster::Viewport viewport{kSide, kSide, 0, 0, false, false};
+  const vitrail::raster::Viewport viewport{kWeightsSide, kWeightsSide, 0, 0, false, false};
   const Position* p = &(*positions)[std::size_t{3} * f.triangle[i]];
   const TrueValues truth({vitrail::raster::placed(viewport, p[0]), vitrail::raster::placed(viewport, p[1]),
                           vitrail::raster::placed(viewport, p[2])});
@@ -130,7 +130,7 @@ void expectValues(const std::vector<Position>& positions, const std::string& wha
     Raster raster(instructions);
     Errors errors;
     errors.positions = &positions;
-    Picture picture(kSide, kSide);
+    Picture picture(kWeightsSide, kWeightsSide);
     const VitrailCpuFrame frame = picture.frame();
     VitrailCpuDraw draw = drawOf(positions);
     draw.blend = VITRAIL_BLEND_ADDITIVE;
@@ -152,12 +152,13 @@ void expectValues(const std::vector<Position>& positions, const std::string& wha
 std::vector<Position> triangles(Random& random, std::size_t count, double size, double wExponent) {
   std::vector<Position> positions;
   for (std::size_t i = 0; i < count; ++i) {
-    const double x = random.real(0.0, kSide);
-    const double y = random.real(0.0, kSide);
+    const double x = random.real(0.0, kWeightsSide);
+    const double y = random.real(0.0, kWeightsSide);
     for (int corner = 0; corner < 3; ++corner) {
       const double cornerX = x + random.real(-size, size);
       const float w = static_cast<float>(std::exp2(random.real(-wExponent, wExponent)));
-      positions.push_back(inPixels(kSide, kSide, cornerX, y + random.real(-size, size), random.single(0.0, 1.0), w));
+      positions.push_back(
+          inPixels(kWeightsSide, kWeightsSide, cornerX, y + random.real(-size, size), random.single(0.0, 1.0), w));
     }
   }
   return positions;
@@ -169,7 +170,9 @@ std::vector<Position> slivers(Random& random, std::size_t count, double length, 
   for (std::size_t i = 0; i < positions.size(); i += 3) {
     const Position& p = positions[i];
     Position& q = positions[i + 1];
-    const auto moved = [&](float v) { return (v / p[3] + random.single(-16.0, 16.0) / (kSide * 128.0F)) * q[3]; };
+    const auto moved = [&](float v) {
+      return (v / p[3] + random.single(-16.0, 16.0) / (kWeightsSide * 128.0F)) * q[3];
+    };
     q[0] = moved(p[0]);
     q[1] = moved(p[1]);
   }

@@ -208,7 +208,7 @@ TEST(SameBitsOfFramesTest, HoweverManyDrawsThereWere) {
   }
 }
 
-double srgbOf(double v) {
+double srgbOfDrawn(double v) {
   const double clamped = std::clamp(v, 0.0, 1.0);
   return clamped <= 0.0031308 ? 12.92 * clamped : 1.055 * std::pow(clamped, 1.0 / 2.4) - 0.055;
 }
@@ -239,7 +239,7 @@ TEST_P(SameBitsTest, ButForRoundingWithOtherInstructions) {
     const Drawn drawn = draw(raster, made);
     double most = 0.0;
     for (std::size_t i = 0; i < drawn.pixels.size(); ++i) {
-      most = std::max(most, std::fabs(srgbOf(drawn.pixels[i]) - srgbOf(expected.pixels[i])));
+      most = std::max(most, std::fabs(srgbOfDrawn(drawn.pixels[i]) - srgbOfDrawn(expected.pixels[i])));
     }
     EXPECT_LT(most, 1.0 / 255.0) << nameOf(instructions);
     EXPECT_EQ(drawn.stats.fragmentsRequested, expected.stats.fragmentsRequested) << nameOf(instructions);
