@@ -50,8 +50,8 @@ class InteractiveTest : public GpuTest {
 };
 
 TEST_F(InteractiveTest, PicturesInFlightAreThoseOfTheStillRenderer) {
-  const Scene scene = makeBuiltinScene("spheres", {});
-  const std::vector<RenderOptions> views = turned(scene, 160, 90);
+  const Scene scene = makeBuiltinScene("spheres", {48, 1});
+  const std::vector<RenderOptions> views = turned(scene, 96, 54);
   for (const MethodOptions& method : methodVariety(gpu())) {
     if (!InteractiveRenderer::draws(method)) continue;
     SCOPED_TRACE(describe(method));
@@ -72,7 +72,7 @@ TEST_F(InteractiveTest, PicturesInFlightAreThoseOfTheStillRenderer) {
       EXPECT_EQ(picture.report.passesMs.front().first, "opaque");
     };
     for (const RenderOptions& view : views) {
-      ASSERT_TRUE(renderer.draw(view, {160, 90}, true));
+      ASSERT_TRUE(renderer.draw(view, {96, 54}, true));
       if (renderer.pending() == InteractiveRenderer::kFramesInFlight) finish();
     }
     EXPECT_EQ(renderer.pending(), 1U);

@@ -175,16 +175,25 @@ TestScene onePane() {
   return straightOn("one pane", std::move(scene));
 }
 
-// Beside each other at depths of their own; one covers all that is behind it, one nearly nothing, one adds light.
+// Beside each other at depths of their own; one covers all that is behind it, one nearly nothing, one adds light, one
+// is tinted glass.
 TestScene disjointPanes() {
   Scene scene;
-  const std::array<glm::vec4, 4> colors{glm::vec4(0.9F, 0.1F, 0.2F, 0.5F), glm::vec4(0.1F, 0.8F, 0.3F, 1.0F),
-                                        glm::vec4(0.2F, 0.3F, 0.9F, 0.02F), glm::vec4(0.4F, 0.3F, 0.2F, 0.7F)};
+  const std::array<glm::vec4, 5> colors{glm::vec4(0.9F, 0.1F, 0.2F, 0.5F), glm::vec4(0.1F, 0.8F, 0.3F, 1.0F),
+                                        glm::vec4(0.2F, 0.3F, 0.9F, 0.02F), glm::vec4(0.4F, 0.3F, 0.2F, 0.7F),
+                                        glm::vec4(0.7F, 0.5F, 0.9F, 1.0F)};
   for (std::size_t i = 0; i < colors.size(); ++i) {
-    const float left = -1.4F + 0.7F * static_cast<float>(i);
+    const float left = -1.4F + 0.57F * static_cast<float>(i);
     Material material = unlitMaterial(colors[i]);
     if (i == 3) material.blend = BlendMode::Additive;
-    addRectangle(scene, {glm::vec2(left, -0.8F), glm::vec2(left + 0.6F, 0.7F), i % 2 == 0 ? 3.0F : -3.0F}, material);
+    if (i == 4) {
+      material = {};
+      material.baseColor = colors[i];
+      material.metallic = 0.0F;
+      material.roughness = 0.6F;
+      material.transmission = 0.8F;
+    }
+    addRectangle(scene, {glm::vec2(left, -0.8F), glm::vec2(left + 0.5F, 0.7F), i % 2 == 0 ? 3.0F : -3.0F}, material);
   }
   return straightOn("disjoint panes", std::move(scene));
 }

@@ -66,7 +66,8 @@ Gpu& checked(Gpu& gpu) {
 class SurfaceConstants {
  public:
   explicit SurfaceConstants(const TilesGeometry& geometry)
-      : data_{geometry.anyFeatures(), geometry.allFeatures(), geometry.textureCount()} {
+      // Where there is no draw, every feature is one that all have: those kernels would be others.
+      : data_{geometry.anyFeatures(), geometry.anyFeatures() & geometry.allFeatures(), geometry.textureCount()} {
     for (std::uint32_t i = 0; i < data_.size(); ++i) {
       entries_.at(i) = {i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)), sizeof(std::uint32_t)};
     }
