@@ -99,15 +99,15 @@ TEST_P(HiddenTest, WhereTheLeastAlphaIsToldLittleThatIsHiddenIsShaded) {
   constexpr std::uint32_t kPanes = 400;
   Panes panes(kPanes, 0.9F);
   std::vector<std::size_t> order = inOrder(kPanes);
-  Picture first(kSide, kSide);
+  Picture first(kHiddenSide, kHiddenSide);
   panes.draw(GetParam(), order, first);
   for (Pane& pane : panes.panes) pane.leastAlpha = 0.9F;
   for (int round = 0; round < 2; ++round) {
     std::reverse(order.begin(), order.end());
-    Picture picture(kSide, kSide);
+    Picture picture(kHiddenSide, kHiddenSide);
     const VitrailStats stats = panes.draw(GetParam(), order, picture);
-    EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{kPanes} * kSide * kSide);
-    EXPECT_EQ(panes.shaded, std::uint64_t{6} * kSide * kSide) << "round " << round;
+    EXPECT_EQ(stats.fragmentsRequested, std::uint64_t{kPanes} * kHiddenSide * kHiddenSide);
+    EXPECT_EQ(panes.shaded, std::uint64_t{6} * kHiddenSide * kHiddenSide) << "round " << round;
     EXPECT_TRUE(picture.pixels == first.pixels) << "round " << round;
   }
 }
@@ -200,7 +200,7 @@ TEST_P(HiddenTest, FlatPanesAreAllCountedInWhateverOrderTheyCome) {
     EXPECT_EQ(stats.layersMax, kPanes);
     if (round == 0) first = picture;
     EXPECT_TRUE(picture.pixels == first.pixels) << "round " << round;
-    Picture uncounted(kSide, kSide);
+    Picture uncounted(kHiddenSide, kHiddenSide);
     ASSERT_EQ(raster.render(uncounted.frame(), ordered), VITRAIL_SUCCESS);
     EXPECT_TRUE(uncounted.pixels == first.pixels) << "round " << round;
     if (round == 0) std::reverse(order.begin(), order.end());
