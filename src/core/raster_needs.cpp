@@ -48,7 +48,7 @@ double rasterExcess(const RasterNeeds& needs, const RasterBounds& bounds) {
   const std::uint64_t masks = rasterMaskBytes(bounds.samples);
   const std::uint64_t states = rasterStateBytes(bounds.samples);
   add(needs.records, std::max(kRasterRecordBytes, masks),
-      kRasterRecordBytes + kRasterPlaceBytes + kRasterPairBytes + masks);
+      kRasterRecordBytes + kRasterAstrayBytes + kRasterMediumBytes + masks);
   add(needs.large, kRasterListedBytes, kRasterListedBytes);
   add(needs.deep, states, kRasterDeepTileBytes + kRasterDeepPixelsBytes + states);
   add(needs.blocks, kRasterListedBytes, kRasterListedBytes);

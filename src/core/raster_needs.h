@@ -8,7 +8,7 @@ namespace vitrail {
 
 // What a band needs of what grows with what is drawn.
 struct RasterNeeds {
-  std::uint64_t records = 0; // triangles in tiles
+  std::uint64_t records = 0; // places on the pages of tiles, for triangles there
   std::uint64_t large = 0;   // triangles that are set up in a pass of their own
   std::uint64_t deep = 0;    // tiles whose fragments are collected
   std::uint64_t blocks = 0;  // of their records
@@ -38,11 +38,11 @@ struct RasterBounds {
 };
 
 // Bytes of what a frame's passes keep.
-constexpr std::uint64_t kRasterTileBytes = 8;      // of each of two arrays, the other with kRasterTileListBytes
+constexpr std::uint64_t kRasterTileBytes = 128;    // of each of two arrays, the other with kRasterTileListBytes
 constexpr std::uint64_t kRasterTileListBytes = 24; // a place in each class
 constexpr std::uint64_t kRasterRecordBytes = 32;
-constexpr std::uint64_t kRasterPlaceBytes = 12; // of a record
-constexpr std::uint64_t kRasterPairBytes = 8;
+constexpr std::uint64_t kRasterAstrayBytes = 3; // for a record; one in four at most is listed, in three words
+constexpr std::uint64_t kRasterMediumBytes = 4; // one medium triangle for two records, in two words
 constexpr std::uint64_t kRasterFragmentBytes = 8; // in each of two arrays
 constexpr std::uint64_t kRasterDeepTileBytes = 16;
 constexpr std::uint64_t kRasterDeepPixelsBytes = 64 * 16; // of a deep tile

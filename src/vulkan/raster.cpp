@@ -274,8 +274,13 @@ void warnOfBands(const VitrailVkRaster_T& raster) {
 VkResult makeRoom(VitrailVkRaster_T& raster, const RasterNeeds& guess, const RasterNeeds& had) {
   std::uint32_t rows = raster.tilesY();
   RasterNeeds room;
-  while (planRasterRoom(guess, had, raster.bounds(rows), room) > 1.0 &&
-         planRasterRoom(kLeast, {}, raster.bounds(rows), room) > 1.0) {
+  const auto plan = [&](RasterNeeds needs, const RasterNeeds& before) {
+    const RasterBounds bounds = raster.bounds(rows);
+    const std::uint64_t first = std::uint64_t{bounds.tiles} << raster::VITRAIL_RASTER_LEAST_PAGE;
+    needs.records = std::max(needs.records, first);
+    return planRasterRoom(needs, before, bounds, room);
+  };
+  while (plan(guess, had) > 1.0 && plan(kLeast, {}) > 1.0) {
     if (rows == 1) {
       return raster.context->log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY,
                                       "%s: a memoryBudget of %llu bytes has no room for a row of tiles, %u pixels wide",
@@ -423,7 +428,7 @@ void decode(const raster::VitrailRasterTotals& totals, const RasterFacts& facts,
   stats.instances = totals.start.items;
   stats.vertices = totals.start.vertexCount;
   const RasterNeeds needs = needsOf(totals);
-  stats.records = needs.records;
+  stats.records = totals.recordsHigh == 0 ? totals.inTiles : needs.records;
   stats.largeTriangles = totals.large;
   stats.deepTiles = totals.deep;
   stats.deepFragments = needs.fragments;
@@ -498,6 +503,14 @@ VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
   return growWithoutMemory(raster, needs);
 }
 
+// What is enough for the frame: where there is less room, tiles begin with smaller pages.
+RasterNeeds leastOf(const VitrailVkRaster_T& raster, RasterNeeds needs, std::uint64_t inTiles) {
+  const std::uint64_t first = (std::uint64_t{raster.tilesX()} * raster.bandRows)
+                              << raster::VITRAIL_RASTER_LEAST_PAGE;
+  needs.records = std::min(needs.records, first + 4 * inTiles);
+  return needs;
+}
+
 // Less memory, or fewer bands, where frames have needed little for long. What cannot be made then stays as it is.
 void shrink(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
   const bool splits = raster.bandRows < raster.tilesY();
@@ -530,7 +543,7 @@ VkResult follow(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals& to
   // Draws are those of any extent. What their triangles need in another one says little.
   if (facts.extent.width != raster.extent.width || facts.extent.height != raster.extent.height) return VK_SUCCESS;
   if (needs.fitInto(raster.room)) {
-    shrink(raster, needs);
+    shrink(raster, leastOf(raster, needs, totals.inTiles));
     return VK_SUCCESS;
   }
   raster.low.forget();

@@ -20,11 +20,11 @@ namespace vitrail {
 enum class RasterBuffer : std::uint8_t {
   Counts, // what frames always have: control, classes of tiles, totals and the frame's data
   Start,
-  TileRecords, // tiles
+  Tiles, // tiles
   TileList,
   Records, // records
-  RecordPlaces,
-  Pairs,
+  Astray,
+  Medium,
   SampleMasks,
   Large, // and what else a band counts
   DeepTiles,

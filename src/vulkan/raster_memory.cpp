@@ -32,11 +32,11 @@ struct BufferKind {
 constexpr std::array<BufferKind, kRasterBuffers> kKinds = {
     BufferKind{kControlBinding, "counts"}, // and others
     {22, "start"},
-    {2, "records of tiles"},
+    {2, "tiles"},
     {7, "lists of tiles"},
     {3, "records"},
-    {4, "places of records"},
-    {5, "pairs"},
+    {4, "records astray"},
+    {5, "medium triangles"},
     {19, "samples of records"},
     {6, "large triangles"},
     {8, "deep tiles"},
@@ -134,11 +134,11 @@ VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, st
   larger.tiles *= kLarger;
   std::uint64_t times = rasterExcess(room, larger) <= 1.0 ? kLarger : 1;
   if (keepsTiles) times = std::numeric_limits<std::uint32_t>::max();
-  made.make(RasterBuffer::TileRecords, tiles * kRasterTileBytes, times);
+  made.make(RasterBuffer::Tiles, tiles * kRasterTileBytes, times);
   made.make(RasterBuffer::TileList, tiles * kRasterTileListBytes, times);
   made.make(RasterBuffer::Records, room.records * kRasterRecordBytes);
-  made.make(RasterBuffer::RecordPlaces, room.records * kRasterPlaceBytes);
-  made.make(RasterBuffer::Pairs, room.records * kRasterPairBytes);
+  made.make(RasterBuffer::Astray, room.records * kRasterAstrayBytes);
+  made.make(RasterBuffer::Medium, room.records * kRasterMediumBytes);
   made.make(RasterBuffer::SampleMasks, room.records * rasterMaskBytes(raster.samples));
   made.make(RasterBuffer::Large, room.large * kRasterListedBytes);
   made.make(RasterBuffer::DeepTiles, room.deep * kRasterDeepTileBytes);
@@ -203,7 +203,7 @@ bool hasRasterBinding(RasterSet set, std::uint32_t samples, std::uint32_t bindin
   };
   constexpr std::uint32_t kGeometry = kBits({0, 1, 2, 3, 4, 5, 6, 17, 19, 21, 22, 23, 24, 25, 26, 27});
   constexpr std::uint32_t kBlend =
-      kBits({0, 1, 2, 3, 5, 7, 8, 9, 10, 11, 12, 13, 14, 16, 17, 18, 19, 21, 25, 26, 27, 28});
+      kBits({0, 1, 2, 3, 7, 8, 9, 10, 11, 12, 13, 14, 16, 17, 18, 19, 21, 25, 26, 27, 28});
   if (binding == kOpaqueBinding && samples == 1) return false; // there is no such image
   const std::uint32_t has = set == RasterSet::Own ? 0xffffffffU : set == RasterSet::Geometry ? kGeometry : kBlend;
   return (has >> binding & 1U) != 0;

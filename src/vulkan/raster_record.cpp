@@ -76,6 +76,7 @@ class Recording {
   [[nodiscard]] std::uint32_t largeBlocks() const {
     return (raster_.tilesX() + raster::VITRAIL_RASTER_LARGE_BLOCK - 1) / raster::VITRAIL_RASTER_LARGE_BLOCK;
   }
+  [[nodiscard]] std::uint32_t pageBits() const;
   [[nodiscard]] std::uint32_t largeGroups() const;
   [[nodiscard]] raster::VitrailRasterFrame frameOf(const Band& band) const;
   void clear(const Band& band, bool isFirst);
@@ -112,7 +113,7 @@ raster::VitrailRasterFrame Recording::frameOf(const Band& band) const {
   data.tilesY = band.tilesY();
   data.top = band.top;
   data.bottom = band.bottom;
-  data.largeBlocks = largeBlocks();
+  data.pageBits = pageBits();
   data.draws = info_.drawCount;
   const RasterNeeds& room = raster_.room;
   data.recordCapacity = static_cast<std::uint32_t>(room.records);
@@ -160,6 +161,16 @@ std::uint32_t Recording::largeGroups() const {
   const auto shares = static_cast<std::uint32_t>(
       std::min(raster_.room.large / (raster::VITRAIL_RASTER_GROUP * kTurns) + 2, kMostGroups / blocks));
   return blocks * shares;
+}
+
+// The first pages of all tiles take at most half of what there is room for. Where there can be no more bands they are
+// small.
+std::uint32_t Recording::pageBits() const {
+  const std::uint64_t tiles = std::uint64_t{raster_.tilesX()} * raster_.bandRows;
+  std::uint32_t bits = raster::VITRAIL_RASTER_LEAST_PAGE;
+  if (raster_.bandRows == 1) return bits;
+  while (bits < raster::VITRAIL_RASTER_MOST_PAGE && tiles << (bits + 2) <= raster_.room.records) ++bits;
+  return bits;
 }
 
 // A dispatch takes less time than clearing by transfers, and it runs beside the one for positions.
@@ -223,7 +234,7 @@ void Recording::setUp() {
            kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, medium));
   dispatch(raster_.setUpLarge, RasterBuffer::Counts,
            kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, large));
-  // Tiles counted their records -> they are given room.
+  // Tiles counted their records -> they are listed; records have pages -> they are brought there.
   passBarrier();
 }
 
@@ -233,12 +244,9 @@ void Recording::bin(const Band& band) {
   bind(RasterSet::Own);
   dispatch(raster_.kernel(RasterKernel::Plan), std::min(groups, raster::VITRAIL_RASTER_ROW),
            (groups + raster::VITRAIL_RASTER_ROW - 1) / raster::VITRAIL_RASTER_ROW);
-  // Tiles have room -> records go there.
-  passBarrier();
-  // As many work groups as have something to do if all that there is room for is there, but no more than the device
-  // holds at once, as they go on.
-  constexpr std::uint64_t kTaken = raster::VITRAIL_RASTER_SCATTER * raster::VITRAIL_RASTER_TOGETHER;
-  constexpr std::uint64_t kMostGroups = 2048;
+  // Few records come before their pages, most often.
+  constexpr std::uint64_t kTaken = raster::VITRAIL_RASTER_SCATTER * raster::VITRAIL_RASTER_ASTRAY_SHARE;
+  constexpr std::uint64_t kMostGroups = 256;
   dispatch(raster_.kernel(RasterKernel::Scatter),
            static_cast<std::uint32_t>(std::min(raster_.room.records / kTaken + 1, kMostGroups)), 1);
   // Records and lists of tiles -> they are blended, and the counts say how many.

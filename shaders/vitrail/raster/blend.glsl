@@ -11,6 +11,7 @@
 #include "nearest.glsl"
 #include "deep.glsl"
 #include "light.glsl"
+#include "pages.glsl"
 
 layout(local_size_x = VITRAIL_RASTER_PIXELS) in;
 
@@ -25,7 +26,7 @@ shared uint vitrailKeptOrder[VITRAIL_RASTER_KEEP / 2u * VITRAIL_RASTER_PIXELS];
 shared uint vitrailGoesOn[2]; // in turns
 shared uint vitrailTooShort;
 
-uint vitrailFirstPair; // of the tile
+uint vitrailTile; // which it is
 uint vitrailAlikeFirst; // of the fragments that are blended
 ivec2 vitrailInTile;
 
@@ -38,12 +39,11 @@ void vitrailSetOrder(uint i, uint number) {
   vitrailKeptOrder[at] = (vitrailKeptOrder[at] & ~(0xffffu << shift)) | number << shift;
 }
 
-uint vitrailRecordAt(uint number) { return vitrailPairs[vitrailFirstPair + number].y; }
+uint vitrailRecordAt(uint number) { return vitrailRecordOf(vitrailTile, number); }
 uint vitrailAlikeRecord(uint i) { return vitrailRecordAt(vitrailOrderAt(vitrailAlikeFirst + i)); }
 VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel) {
-  uint number = vitrailOrderAt(vitrailAlikeFirst + i);
-  uvec2 pair = vitrailPairs[vitrailFirstPair + number];
-  return vitrailSurfaceOf(vitrailRecords[2u * pair.y].zw, pair.x, pixel);
+  uvec2 source = vitrailRecords[2u * vitrailAlikeRecord(i)].zw;
+  return vitrailSurfaceOf(source, vitrailDrawOfItem[source.y], pixel);
 }
 
 uint vitrailExactKey(uint number) {
@@ -199,8 +199,8 @@ void main() {
   uint place = vitrailFlatGroup();
   if (place >= vitrailTileClasses.of[vitrailClass].count) return;
   uint tile = vitrailTileList[vitrailClass * vitrailRaster.tilesX * vitrailRaster.tilesY + place];
-  uint count = vitrailTileRecords[tile].x;
-  vitrailFirstPair = vitrailTileRecords[tile].y;
+  uint count = vitrailCountIn(tile);
+  vitrailTile = tile;
   vitrailInTile = ivec2(vitrailThread & 7u, vitrailThread >> 3);
   ivec2 corner = vitrailFirstPixel(tile);
   ivec2 pixel = corner + vitrailInTile;

@@ -20,26 +20,34 @@ layout(constant_id = 1717) const bool VITRAIL_RASTER_ONLY_TRIANGLES = false;
 layout(constant_id = 1718) const bool VITRAIL_RASTER_NEAREST_IS_ZERO = false;
 layout(constant_id = 1719) const uint VITRAIL_RASTER_INDEX_BYTES = 4u; // 2, 4, or 0: there are none
 
+#define VITRAIL_TILES_ARE
+#ifdef VITRAIL_RASTER_STAGE
+#if VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_SET_UP || VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_SET_UP_LARGE
+#undef VITRAIL_TILES_ARE
+#define VITRAIL_TILES_ARE coherent
+#endif
+#endif
+
 #define VITRAIL_RASTER_BOUND(number) set = VITRAIL_SET, binding = number
 
 layout(VITRAIL_RASTER_BOUND(0), std140) uniform VitrailRasterFrameBlock { VitrailRasterFrame vitrailRaster; };
 layout(VITRAIL_RASTER_BOUND(1), std430) buffer VitrailRasterControlBlock { VitrailRasterControl vitrailRasterControl; };
-// Of each tile: how many records it has; the pixels that one in VITRAIL_RASTER_SHARE of them cover, and then where its
-// pairs begin.
-layout(VITRAIL_RASTER_BOUND(2), std430) buffer VitrailTileRecordBlock { uvec2 vitrailTileRecords[]; };
+// Of each tile VITRAIL_RASTER_TILE_WORDS: how many records it has; the pixels that one in VITRAIL_RASTER_SHARE of them
+// cover; where its pages begin (pages.glsl). Setting up reads of a dispatch what it has written.
+layout(VITRAIL_RASTER_BOUND(2), std430) VITRAIL_TILES_ARE buffer VitrailTileBlock { uint vitrailTiles[]; };
 // Two for a record, which is a triangle in a tile: the pixels that it covers, the primitive (and in the highest bit
 // whether its front shows) and the item; the depth at the middle of the first pixel, what pixels to the right and down
 // add, and the nearest depth.
 layout(VITRAIL_RASTER_BOUND(3), std430) buffer VitrailRecordBlock { uvec4 vitrailRecords[]; };
-// Of each record the tile (or VITRAIL_NO_TILE), which one it is there, and its draw.
-layout(VITRAIL_RASTER_BOUND(4), std430) buffer VitrailRecordPlaceBlock { uint vitrailRecordPlaces[]; };
-// The records of each tile: the draw, and the record. While triangles are set up the medium ones: primitive and item.
-layout(VITRAIL_RASTER_BOUND(5), std430) buffer VitrailPairBlock { uvec2 vitrailPairs[]; };
+// Of each record that is not on its page yet the tile, which one it is there, and where it is.
+layout(VITRAIL_RASTER_BOUND(4), std430) buffer VitrailAstrayBlock { uint vitrailAstray[]; };
+layout(VITRAIL_RASTER_BOUND(5), std430) buffer VitrailMediumBlock { uvec2 vitrailMedium[]; }; // primitive and item
 layout(VITRAIL_RASTER_BOUND(6), std430) buffer VitrailLargeBlock { uvec2 vitrailLarge[]; }; // primitive and item
 // Tiles by class: each has room for all.
 layout(VITRAIL_RASTER_BOUND(7), std430) buffer VitrailTileListBlock { uint vitrailTileList[]; };
 // Of each record, where there are several samples, the pixels whose samples the triangle covers: samples.glsl.
 layout(VITRAIL_RASTER_BOUND(19), std430) buffer VitrailSampleBlock { uvec4 vitrailSampleMasks[]; };
+layout(VITRAIL_RASTER_BOUND(19), std430) readonly buffer VitrailSampleWordBlock { uint vitrailSampleWords[]; };
 
 // The draws: places, and of each work group and each item the draw.
 layout(VITRAIL_RASTER_BOUND(21), std430) buffer VitrailDrawPlaceBlock { VitrailRasterPlace vitrailDrawPlaces[]; };
@@ -50,7 +58,6 @@ layout(VITRAIL_RASTER_BOUND(25), std430) buffer VitrailItemBlock { uint vitrailD
 layout(VITRAIL_RASTER_BOUND(26), std430) readonly buffer VitrailIndexBlock { uint vitrailIndices[]; };
 layout(VITRAIL_RASTER_BOUND(28), std430) readonly buffer VitrailOrderBlock { uint vitrailOrders[]; }; // of instances
 
-const uint VITRAIL_NO_TILE = 0xffffffffu;
 const uint VITRAIL_NO_FRAGMENT = 0xffffffffu; // the key of one that is hidden
 
 // Depths to keys that grow away from the viewer. 1 is nearest.
@@ -69,8 +76,11 @@ uint vitrailDistance(float depth) { return 0x3f800000u - floatBitsToUint(min(max
   first = atomicAdd(low, more); \
   if (first + (more) < first) atomicAdd(high, 1u);
 
-// Whether the records can be read: no place of them was given out twice.
-bool vitrailHasRecords() { return vitrailRasterControl.recordsHigh == 0u; }
+// Whether the records can be read: there was room for all.
+bool vitrailHasRecords() {
+  return vitrailRasterControl.recordsHigh == 0u && vitrailRasterControl.records <= vitrailRaster.recordCapacity &&
+         vitrailRasterControl.astray <= vitrailRaster.recordCapacity / VITRAIL_RASTER_ASTRAY_SHARE;
+}
 
 // What fragments are sorted by: a depth on a record's plane in a pixel of its tile.
 float vitrailDepthOn(vec4 plane, ivec2 inTile) {

@@ -34,8 +34,13 @@ const uint VITRAIL_RASTER_MORE_DEPTH = 64u;    // so many, or
 const uint VITRAIL_RASTER_FLAT_DEPTH = 24u;    // so many of no more than VITRAIL_RASTER_PIXELS records, or
 const uint VITRAIL_RASTER_SEVERAL_DEPTH = 12u; // so many with several samples
 const uint VITRAIL_RASTER_SHARE = 8u;          // one record in so many is looked at for that
-const uint VITRAIL_RASTER_SCATTER = 256u;      // threads of a work group that brings records to their tiles,
-const uint VITRAIL_RASTER_TOGETHER = 4u;       // so many at a time each
+const uint VITRAIL_RASTER_TILE_WORDS = 32u;     // of a tile: its records, some of their pixels, and its pages
+const uint VITRAIL_RASTER_FIRST_PAGE = 2u;      // of these the second page of records: 0 while there is none
+const uint VITRAIL_RASTER_LEAST_PAGE = 2u;      // a tile's first page has room for 2 to the power of this, up to
+const uint VITRAIL_RASTER_MOST_PAGE = 8u;
+const uint VITRAIL_RASTER_MEDIUM_SHARE = 2u;    // medium triangles are listed, one for so many records of the room,
+const uint VITRAIL_RASTER_ASTRAY_SHARE = 4u;    // and records that are still to be brought to their pages
+const uint VITRAIL_RASTER_SCATTER = 256u;       // threads of a work group that does so
 const uint VITRAIL_RASTER_BLOCK = 4096u;       // records of a deep tile that a work group looks after
 const uint VITRAIL_RASTER_CHUNK = 1024u;       // fragments that a work group sorts at once
 const uint VITRAIL_RASTER_SLICE = 2048u;       // fragments of a pixel that a dispatch blends
@@ -98,9 +103,9 @@ struct VitrailRasterFrame {
   uint tilesY; // of the band
   uint top;    // the band's first row of pixels, and the one behind its last
   uint bottom;
-  uint largeBlocks; // VITRAIL_RASTER_LARGE_BLOCKs in a row
+  uint pageBits; // of the first page of each tile
   uint draws;
-  uint recordCapacity;
+  uint recordCapacity; // places for records
   uint largeCapacity;
   uint deepCapacity;  // deep tiles
   uint blockCapacity; // VITRAIL_RASTER_BLOCKs of them
@@ -158,9 +163,9 @@ struct VitrailRasterControl {
   VitrailRasterDispatch deep;   // tiles
   VitrailRasterDispatch blocks; // of deep tiles
   VitrailRasterDispatch chunks; // of their fragments
-  uint records;                 // that were wanted
+  uint records;                 // places for them that were wanted
   uint large;                   // triangles
-  uint pairs;                   // records of tiles
+  uint inTiles;                 // records
   uint fragments;               // of deep tiles
   uint mostFragments;           // of a pixel of a deep tile
   uint cutPixels;               // that the driver did not let a pass finish
@@ -168,6 +173,7 @@ struct VitrailRasterControl {
   uint fragmentsHigh;           // the same of `fragments`
   uint wrongVertex;             // one more than the last draw that has an index of no vertex of it
   uint medium;                  // triangles
+  uint astray;                  // records that came before their page
 };
 
 // What a frame wanted: of its bands the most, but cut pixels together. All zero at first.
@@ -184,6 +190,7 @@ struct VitrailRasterTotals {
   uint cutPixels;
   uint bands; // that were drawn
   uint wrongVertex;
+  uint inTiles;
   VitrailRasterStart start;
 };
 
@@ -194,8 +201,8 @@ static_assert(sizeof(VitrailRasterFrame) == 240);
 static_assert(sizeof(VitrailRasterStart) == 72);
 static_assert(offsetof(VitrailRasterFrame, clipPlanes) == VITRAIL_RASTER_FRAME_WORDS * sizeof(uint));
 static_assert(sizeof(VitrailRasterTileClasses) == 128);
-static_assert(sizeof(VitrailRasterControl) == 88);
-static_assert(sizeof(VitrailRasterTotals) == 120);
+static_assert(sizeof(VitrailRasterControl) == 92);
+static_assert(sizeof(VitrailRasterTotals) == 124);
 } // namespace vitrail::raster
 #endif
 

@@ -25,33 +25,56 @@ ivec2 vitrailSamplePlace(uint i) {
 #endif
 
 #ifdef VITRAIL_MULTISAMPLED
-// Keeps the pixels of which a record covers samples: of each of four samples, or two, from `first` on the tile's upper
-// and lower half.
-void vitrailKeepSamples(uint record, uint first, uvec4 upper, uvec4 lower) {
+// Turns four words: bit 4 i + j of word k is bit 4 i + k of word j then.
+void vitrailTurnFour(inout uvec4 words) {
+  uvec2 other = (words.xy >> 2 ^ words.zw) & 0x33333333u;
+  words.zw ^= other;
+  words.xy ^= other << 2;
+  other = (words.xz >> 1 ^ words.yw) & 0x55555555u;
+  words.yw ^= other;
+  words.xz ^= other << 1;
+}
+
+// The same of eight.
+void vitrailTurnEight(inout uvec4 first, inout uvec4 last) {
+  uvec4 other = (first >> 4 ^ last) & 0x0f0f0f0fu;
+  last ^= other;
+  first ^= other << 4;
+  vitrailTurnFour(first);
+  vitrailTurnFour(last);
+}
+
+// Keeps the samples that a record covers, those of a pixel side by side. They are given as the pixels of each sample in
+// the tile's upper and in its lower half: of the last four samples, or two, and of four before.
+void vitrailKeepSamples(uint record, uvec4 upperBefore, uvec4 upper, uvec4 lowerBefore, uvec4 lower) {
   uint at = record * (VITRAIL_RASTER_SAMPLES / 2u);
   if (VITRAIL_RASTER_SAMPLES == 2u) {
-    vitrailSampleMasks[at] = uvec4(upper.xy, lower.xy);
+    uvec2 first = uvec2(upper.z, lower.z);
+    uvec2 last = uvec2(upper.w, lower.w);
+    uvec2 other = (first >> 1 ^ last) & 0x55555555u;
+    last ^= other;
+    first ^= other << 1;
+    vitrailSampleMasks[at] = uvec4(first.x, last.x, first.y, last.y);
+  } else if (VITRAIL_RASTER_SAMPLES == 4u) {
+    vitrailTurnFour(upper);
+    vitrailTurnFour(lower);
+    vitrailSampleMasks[at] = upper;
+    vitrailSampleMasks[at + 1u] = lower;
   } else {
-    vitrailSampleMasks[at + first / 4u] = upper;
-    vitrailSampleMasks[at + VITRAIL_RASTER_SAMPLES / 4u + first / 4u] = lower;
+    vitrailTurnEight(upperBefore, upper);
+    vitrailTurnEight(lowerBefore, lower);
+    vitrailSampleMasks[at] = upperBefore;
+    vitrailSampleMasks[at + 1u] = upper;
+    vitrailSampleMasks[at + 2u] = lowerBefore;
+    vitrailSampleMasks[at + 3u] = lower;
   }
 }
 
 // The samples of a pixel of its tile that a record covers, a bit each.
 uint vitrailCoveredSamples(uint record, uint pixel) {
-  uint lower = pixel >> 5;
-  uint at = record * (VITRAIL_RASTER_SAMPLES / 2u);
-  if (VITRAIL_RASTER_SAMPLES > 2u) at += lower * (VITRAIL_RASTER_SAMPLES / 4u);
-  uvec4 words = vitrailSampleMasks[at];
-  if (VITRAIL_RASTER_SAMPLES == 2u && lower != 0u) words.xy = words.zw;
-  uvec4 bits = (words >> (pixel & 31u) & 1u) << uvec4(0u, 1u, 2u, 3u);
-  uint covered = bits.x | bits.y;
-  if (VITRAIL_RASTER_SAMPLES > 2u) covered |= bits.z | bits.w;
-  if (VITRAIL_RASTER_SAMPLES == 8u) {
-    bits = (vitrailSampleMasks[at + 1u] >> (pixel & 31u) & 1u) << uvec4(4u, 5u, 6u, 7u);
-    covered |= bits.x | bits.y | bits.z | bits.w;
-  }
-  return covered;
+  const uint last = VITRAIL_RASTER_SAMPLES - 1u;
+  uint word = record * (2u * VITRAIL_RASTER_SAMPLES) + (pixel >> 5) * VITRAIL_RASTER_SAMPLES + (pixel & last);
+  return vitrailSampleWords[word] >> (pixel & 31u & ~last) & ((1u << VITRAIL_RASTER_SAMPLES) - 1u);
 }
 #endif
 

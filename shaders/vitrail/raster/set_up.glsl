@@ -24,7 +24,6 @@ shared uint vitrailGroupParts[4u * VITRAIL_RASTER_SET_UP]; // of each record the
 // Of this turn, or of the next one.
 shared uint vitrailGroupRecords[2];
 shared uint vitrailGroupMediums[2];
-shared uint vitrailGroupFirst; // place of the first record
 shared uint vitrailGroupFirstMedium;
 
 // To higher bits, or lower ones where `bits` is negative.
@@ -89,17 +88,14 @@ void vitrailSetUpSmall(VitrailTriangle t, uint draw, ivec2 first, ivec2 last, ui
 
 // The i-th record of the group.
 void vitrailMakePart(uint i, uint draw) {
-  uint place = vitrailGroupFirst + i;
-  if (place >= vitrailRaster.recordCapacity) return; // the frame is drawn again
   uint owner = vitrailGroupParts[i] & 0xffffu;
   uint part = vitrailGroupParts[i] >> 16;
   ivec4 places = vitrailGroupPlaces[owner];
   ivec2 tile = (places.xy >> 3) + ivec2(part & 1u, part >> 1);
-  uint number = atomicAdd(vitrailTileRecords[vitrailTileNumber(tile)].x, 1u);
   uvec2 covered = vitrailCutAtTiles(vitrailGroupMasks[owner], places.xy, part);
   uvec2 source = vitrailGroupSources[owner];
   vec4 plane = vitrailGroupPlanes[owner];
-  vitrailMakeRecord(place, tile, number, covered,
+  vitrailMakeRecord(tile, covered,
                     VitrailSource(source.x, source.y, draw, VitrailPlane(vec2(places.zw), plane.xyz), plane.w));
 }
 
@@ -133,19 +129,14 @@ bool vitrailSetUp(uint draw, uint corners, uvec2 source, uvec3 indices, uint tur
   return true;
 }
 
-// Room in the lists of all groups.
-void vitrailTakeRoom(uint records_, uint mediums) {
-  if (gl_LocalInvocationIndex == 0u && records_ > 0u) {
-    VITRAIL_TAKE_PLACES(vitrailRasterControl.records, vitrailRasterControl.recordsHigh, records_, vitrailGroupFirst)
-  }
-  if (gl_LocalInvocationIndex == VITRAIL_RASTER_SET_UP - 1u && mediums > 0u) {
-    uint first = atomicAdd(vitrailRasterControl.medium, mediums);
-    uint count = first + mediums;
-    uint groups = min((count + VITRAIL_RASTER_FEW_MEDIUM - 1u) / VITRAIL_RASTER_FEW_MEDIUM, VITRAIL_RASTER_MEDIUM);
-    groups = max(groups, (count + VITRAIL_RASTER_GROUP - 1u) / VITRAIL_RASTER_GROUP);
-    atomicMax(vitrailTileClasses.medium.x, min(groups, VITRAIL_RASTER_ROW)); // which go on
-    vitrailGroupFirstMedium = first;
-  }
+// Room in the list of all groups' medium triangles, for those of this one.
+void vitrailTakeMediums(uint mediums) {
+  uint first = atomicAdd(vitrailRasterControl.medium, mediums);
+  uint count = first + mediums;
+  uint groups = min((count + VITRAIL_RASTER_FEW_MEDIUM - 1u) / VITRAIL_RASTER_FEW_MEDIUM, VITRAIL_RASTER_MEDIUM);
+  groups = max(groups, (count + VITRAIL_RASTER_GROUP - 1u) / VITRAIL_RASTER_GROUP);
+  atomicMax(vitrailTileClasses.medium.x, min(groups, VITRAIL_RASTER_ROW)); // which go on
+  vitrailGroupFirstMedium = first;
 }
 
 void main() {
@@ -184,11 +175,13 @@ void main() {
     barrier();
     uint records_ = vitrailGroupRecords[turn];
     uint mediums = vitrailGroupMediums[turn];
-    if (records_ + mediums == 0u) continue;
-    vitrailTakeRoom(records_, mediums);
-    barrier();
-    if (isMedium && vitrailGroupFirstMedium + medium < vitrailRaster.recordCapacity) { // else drawn again
-      vitrailPairs[vitrailGroupFirstMedium + medium] = source;
+    if (mediums > 0u) {
+      if (thread == VITRAIL_RASTER_SET_UP - 1u) vitrailTakeMediums(mediums);
+      barrier();
+      uint place = vitrailGroupFirstMedium + medium;
+      if (isMedium && place < vitrailRaster.recordCapacity / VITRAIL_RASTER_MEDIUM_SHARE) { // else drawn again
+        vitrailMedium[place] = source;
+      }
     }
     for (uint k = thread; k < records_; k += VITRAIL_RASTER_SET_UP) vitrailMakePart(k, draw);
   }

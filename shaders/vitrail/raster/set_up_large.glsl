@@ -19,7 +19,6 @@ shared vec4 vitrailGroupPlanes[VITRAIL_RASTER_GROUP];   // the depths at the fir
 shared uvec4 vitrailGroupSources[VITRAIL_RASTER_GROUP]; // primitive, item; tiles in a row; draw
 shared uint vitrailGroupEnds[VITRAIL_RASTER_GROUP];     // of the candidates of each, among those of all
 shared uint vitrailGroupSums[VITRAIL_RASTER_GROUP];
-shared uint vitrailGroupFirst; // place of the first record
 shared uint vitrailGroupPieces;
 
 // Puts a triangle where all threads find it.
@@ -38,7 +37,7 @@ VitrailSource vitrailSharedSource(uint i, ivec2 corner) {
 }
 
 // A candidate: a tile that a shared triangle may touch. The i-th of the group.
-void vitrailCoverCandidate(uint i, uint place) {
+void vitrailCoverCandidate(uint i) {
   uint owner = 0u; // the first whose end is beyond i
   for (uint step = VITRAIL_RASTER_GROUP / 2u; step > 0u; step /= 2u) {
     if (vitrailGroupEnds[owner + step - 1u] <= i) owner += step;
@@ -60,12 +59,15 @@ void vitrailCoverCandidate(uint i, uint place) {
 #ifdef VITRAIL_MULTISAMPLED
   uvec4 upper = uvec4(0u); // of the last four samples
   uvec4 lower = uvec4(0u);
+  uvec4 upperBefore = uvec4(0u); // of the first four of eight
+  uvec4 lowerBefore = uvec4(0u);
 #define VITRAIL_TAKE_COVERED(sample_, mask_) { \
   uvec2 mask = window & mask_; \
   covered |= mask; \
   upper = uvec4(upper.yzw, mask.x); \
   lower = uvec4(lower.yzw, mask.y); \
-  if ((sample_ & 3u) == 3u) vitrailKeepSamples(place, sample_ - 3u, upper, lower); \
+  if (sample_ == 3u) upperBefore = upper; \
+  if (sample_ == 3u) lowerBefore = lower; \
 }
 #else
 #define VITRAIL_TAKE_COVERED(sample_, mask_) covered = window & mask_;
@@ -83,19 +85,11 @@ void vitrailCoverCandidate(uint i, uint place) {
       VITRAIL_TAKE_COVERED(k, vitrailTileCoverage(edges, vitrailEdgesAt(edges, p0, p1, p2, middle)))
     }
   }
+  if ((covered.x | covered.y) == 0u) return;
+  uint place = vitrailMakeRecord(tile, covered, vitrailSharedSource(owner, corners.xy));
 #ifdef VITRAIL_MULTISAMPLED
-  if (VITRAIL_RASTER_SAMPLES == 2u) vitrailKeepSamples(place, 0u, upper.zwzw, lower.zwzw);
+  if (place < vitrailRaster.recordCapacity) vitrailKeepSamples(place, upperBefore, upper, lowerBefore, lower);
 #endif
-  uint at = 0u;
-  if ((covered.x | covered.y) != 0u) at = atomicAdd(vitrailTileRecords[vitrailTileNumber(tile)].x, 1u);
-  vitrailMakeRecord(place, tile, at, covered, vitrailSharedSource(owner, corners.xy));
-}
-
-// All candidates of the group, a thread each.
-void vitrailCoverCandidates(uint count, uint firstPlace) {
-  for (uint i = gl_LocalInvocationIndex; i < count; i += VITRAIL_RASTER_GROUP) {
-    if (firstPlace + i < vitrailRaster.recordCapacity) vitrailCoverCandidate(i, firstPlace + i); // else drawn again
-  }
 }
 
 // All threads together: the sum of what the threads before this one have, and the sum of all.
@@ -143,16 +137,13 @@ uint vitrailCountCandidates(uint mine) {
 void vitrailCoverAll(uint mine) {
   uint count = vitrailCountCandidates(mine);
   if (count == 0u) return;
-  if (gl_LocalInvocationIndex == 0u) {
-    VITRAIL_TAKE_PLACES(vitrailRasterControl.records, vitrailRasterControl.recordsHigh, count, vitrailGroupFirst)
-  }
   barrier();
-  vitrailCoverCandidates(count, vitrailGroupFirst);
+  for (uint i = gl_LocalInvocationIndex; i < count; i += VITRAIL_RASTER_GROUP) vitrailCoverCandidate(i);
 }
 
 // A work group takes as many as others, and where there are few, few: then all of them wait for fewer tiles.
 void vitrailSetUpMedium() {
-  uint count = min(vitrailRasterControl.medium, vitrailRaster.recordCapacity);
+  uint count = min(vitrailRasterControl.medium, vitrailRaster.recordCapacity / VITRAIL_RASTER_MEDIUM_SHARE);
   uint share_ = (count + gl_NumWorkGroups.x - 1u) / gl_NumWorkGroups.x;
   uint first = gl_WorkGroupID.x * share_;
   uint end = min(first + share_, count);
@@ -160,7 +151,7 @@ void vitrailSetUpMedium() {
     uint i = first + gl_LocalInvocationIndex;
     uint candidates_ = 0u;
     if (i < end) {
-      uvec2 source = vitrailPairs[i];
+      uvec2 source = vitrailMedium[i];
       uint draw = vitrailDrawOfItem[source.y];
       uint corners = vitrailCornersOf(vitrailFlagsOf(draw));
       VitrailTriangle t;
@@ -179,9 +170,14 @@ void vitrailSetUpMedium() {
   }
 }
 
+// In a row of tiles.
+uint vitrailLargeBlocks() {
+  return (vitrailRaster.tilesX + VITRAIL_RASTER_LARGE_BLOCK - 1u) / VITRAIL_RASTER_LARGE_BLOCK;
+}
+
 // The tiles of this work group.
 void vitrailBlockOf(out ivec2 low, out ivec2 high) {
-  int first = int((gl_WorkGroupID.x % vitrailRaster.largeBlocks) * VITRAIL_RASTER_LARGE_BLOCK);
+  int first = int((gl_WorkGroupID.x % vitrailLargeBlocks()) * VITRAIL_RASTER_LARGE_BLOCK);
   int row = int(gl_WorkGroupID.y) + int(vitrailRaster.top) / VITRAIL_TILE_SIDE;
   low = ivec2(first, row);
   high = ivec2(min(first + int(VITRAIL_RASTER_LARGE_BLOCK), int(vitrailRaster.tilesX)), row + 1);
@@ -216,8 +212,8 @@ void vitrailSetUpLarge() {
   ivec2 least, most;
   vitrailBlockOf(least, most);
   uint count = min(vitrailRasterControl.large, vitrailRaster.largeCapacity);
-  uint shares = gl_NumWorkGroups.x / vitrailRaster.largeBlocks; // of them, each by a work group of a block
-  uint share_ = gl_WorkGroupID.x / vitrailRaster.largeBlocks;
+  uint shares = gl_NumWorkGroups.x / vitrailLargeBlocks(); // of them, each by a work group of a block
+  uint share_ = gl_WorkGroupID.x / vitrailLargeBlocks();
   for (uint first = share_ * VITRAIL_RASTER_GROUP; first < count; first += shares * VITRAIL_RASTER_GROUP) {
     bool mine = first + thread < count;
     uvec2 source = mine ? vitrailLarge[first + thread] : uvec2(0u);

@@ -5,6 +5,7 @@
 
 #include "clip.glsl"
 #include "edges.glsl"
+#include "pages.glsl"
 #include "samples.glsl"
 #include "surface.glsl"
 
@@ -169,27 +170,24 @@ uint vitrailTileNumber(ivec2 tile) {
   return uint(tile.y - int(vitrailRaster.top) / VITRAIL_TILE_SIDE) * vitrailRaster.tilesX + uint(tile.x);
 }
 
-// Makes the record of a triangle in a tile: of the pixels that it covers there, or none. It is the tile's `number`-th.
-void vitrailMakeRecord(uint place, ivec2 tile, uint number, uvec2 covered, VitrailSource source) {
-  uint at = VITRAIL_NO_TILE;
-  if ((covered.x | covered.y) != 0u) {
-    at = vitrailTileNumber(tile);
-    if (place * 0x9e3779b9u < 0xffffffffu / VITRAIL_RASTER_SHARE) { // some, of any tile and triangle
-      atomicAdd(vitrailTileRecords[at].y, uint(bitCount(covered.x) + bitCount(covered.y)));
-    }
-    ivec2 middle = tile * (VITRAIL_TILE_SIDE * VITRAIL_SUBPIXELS) + VITRAIL_SUBPIXELS / 2;
-    vec3 depth = vitrailPlaneAt(source.plane, middle);
-    float steps = float(VITRAIL_TILE_SIDE - 1);
-    // At the middle of a pixel of which another part is covered a plane may be nearer than any corner.
-    float nearest = depth.x + (max(depth.y, 0.0) + max(depth.z, 0.0)) * steps;
-    if (VITRAIL_RASTER_SAMPLES == 1u) nearest = min(source.nearest, nearest);
-    vitrailRecords[2u * place] = uvec4(covered, source.primitive, source.item);
-    vitrailRecords[2u * place + 1u] = floatBitsToUint(vec4(depth, nearest));
-    vitrailRecordPlaces[3u * place + 1u] = number;
-    vitrailRecordPlaces[3u * place + 2u] = source.draw;
+// Makes the record of a triangle in a tile, of the pixels that it covers there: its place, or one that there is no room
+// for.
+uint vitrailMakeRecord(ivec2 tile, uvec2 covered, VitrailSource source) {
+  uint at = vitrailTileNumber(tile);
+  uint place = vitrailTakePlace(at);
+  if (place >= vitrailRaster.recordCapacity) return place; // the frame is drawn again
+  if (place * 0x9e3779b9u < 0xffffffffu / VITRAIL_RASTER_SHARE) { // some, of any tile and triangle
+    atomicAdd(vitrailTiles[at * VITRAIL_RASTER_TILE_WORDS + 1u], uint(bitCount(covered.x) + bitCount(covered.y)));
   }
-  vitrailRecordPlaces[3u * place] = at;
+  ivec2 middle = tile * (VITRAIL_TILE_SIDE * VITRAIL_SUBPIXELS) + VITRAIL_SUBPIXELS / 2;
+  vec3 depth = vitrailPlaneAt(source.plane, middle);
+  float steps = float(VITRAIL_TILE_SIDE - 1);
+  // At the middle of a pixel of which another part is covered a plane may be nearer than any corner.
+  float nearest = depth.x + (max(depth.y, 0.0) + max(depth.z, 0.0)) * steps;
+  if (VITRAIL_RASTER_SAMPLES == 1u) nearest = min(source.nearest, nearest);
+  vitrailRecords[2u * place] = uvec4(covered, source.primitive, source.item);
+  vitrailRecords[2u * place + 1u] = floatBitsToUint(vec4(depth, nearest));
+  return place;
 }
-
 
 #endif

@@ -12,13 +12,15 @@ layout(push_constant) uniform BeginBlock {
 };
 
 layout(VITRAIL_RASTER_BOUND(17), std430) buffer VitrailTileClassBlock { uvec4 classes[VITRAIL_RASTER_CLASSES + 2u]; };
+layout(VITRAIL_RASTER_BOUND(2), std430) writeonly buffer TileWordBlock { uvec4 tileWords[]; };
 // Totals, and from 256 bytes on the frame's data: vulkan/raster.h.
 layout(VITRAIL_RASTER_BOUND(30), std430) buffer TotalBlock { uvec4 totals[]; };
 
 void main() {
   uint thread = gl_GlobalInvocationID.x;
   uint tiles = frameWords[0].z * frameWords[0].w;
-  if (thread < tiles) vitrailTileRecords[thread] = uvec2(0u);
+  const uint step = gl_NumWorkGroups.x * VITRAIL_RASTER_TABLE;
+  for (uint i = thread; i < tiles * (VITRAIL_RASTER_TILE_WORDS / 4u); i += step) tileWords[i] = uvec4(0u);
   if (thread < 16u && isFirst != 0u) totals[thread] = uvec4(0u);
   if (thread < VITRAIL_RASTER_FRAME_WORDS / 4u) totals[16u + thread] = frameWords[thread];
   // Of medium triangles only the number of work groups is not known yet.
@@ -26,5 +28,6 @@ void main() {
   if (thread < VITRAIL_RASTER_CLASSES + 2u) classes[thread] = isMedium ? uvec4(0u, 1u, 1u, 0u) : uvec4(0u);
   if (thread > 0u) return;
   const VitrailRasterDispatch none = VitrailRasterDispatch(0u, 0u, 0u, 0u);
-  vitrailRasterControl = VitrailRasterControl(none, none, none, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+  vitrailRasterControl = VitrailRasterControl(none, none, none, tiles << frameWords[1].z, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u,
+                                              0u);
 }

@@ -6,6 +6,7 @@
 #include "vitrail/raster/batch.glsl"
 #include "vitrail/raster/opaque.glsl"
 #include "vitrail/raster/deep.glsl"
+#include "vitrail/raster/pages.glsl"
 
 layout(local_size_x = VITRAIL_RASTER_PIXELS) in;
 
@@ -16,10 +17,9 @@ void main() {
   uint deep = vitrailDeepBlocks[block].x;
   if (deep >= vitrailRaster.deepCapacity) return;
   uint tile = vitrailDeepTiles[deep].x;
-  uint end = vitrailTileRecords[tile].x;
+  uint end = vitrailCountIn(tile);
   uint first = vitrailDeepBlocks[block].y * VITRAIL_RASTER_BLOCK;
   end = min(end, first + VITRAIL_RASTER_BLOCK);
-  uint pairsFirst = vitrailTileRecords[tile].y;
   uint pixelNumber = deep * VITRAIL_RASTER_PIXELS + vitrailThread;
   ivec2 inTile = ivec2(vitrailThread & 7u, vitrailThread >> 3);
   ivec2 pixel = vitrailFirstPixel(tile) + inTile;
@@ -33,7 +33,7 @@ void main() {
   for (uint i = first; i < end; i += VITRAIL_RASTER_PIXELS) {
     bool any_ = i + vitrailThread < end;
     barrier(); // all have left the last batch
-    vitrailLoadBatch(any_, any_ ? vitrailPairs[pairsFirst + i + vitrailThread].y : 0u, vitrailFirstPixel(tile));
+    vitrailLoadBatch(any_, any_ ? vitrailRecordOf(tile, i + vitrailThread) : 0u, vitrailFirstPixel(tile));
     barrier();
     uvec2 bits = vitrailCovering();
     if (!inside) bits = uvec2(0u);
@@ -48,7 +48,7 @@ void main() {
       vec4 plane = vitrailBatchPlanes[k];
       float depth = vitrailDepthOn(plane, inTile);
       bool hidden = vitrailIsHidden(k, depth, farthest);
-      uint record = vitrailPairs[pairsFirst + i + k].y;
+      uint record = vitrailRecordOf(tile, i + k);
       vitrailDeepFragments[at++] = hidden ? uvec2(VITRAIL_NO_FRAGMENT) : uvec2(vitrailDistance(depth), record);
     }
 #endif

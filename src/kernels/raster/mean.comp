@@ -14,7 +14,7 @@ layout(VITRAIL_RASTER_BOUND(18)) uniform texture2DMS opaqueImage;
 
 void main() {
   uint tile = gl_WorkGroupID.y * vitrailRaster.tilesX + gl_WorkGroupID.x;
-  if (vitrailTileRecords[tile].x != 0u) return; // blended
+  if (vitrailTiles[tile * VITRAIL_RASTER_TILE_WORDS] != 0u) return; // blended
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, vitrailRaster.top);
   if (pixel.x >= int(vitrailRaster.width) || pixel.y >= int(vitrailRaster.bottom)) return;
   vec4 sum = vec4(0.0);

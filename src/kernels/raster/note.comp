@@ -16,11 +16,18 @@ layout(VITRAIL_RASTER_BOUND(30), std430) buffer TotalBlock { VitrailRasterTotals
   }
 
 void main() {
-  // Medium triangles were listed where there is room for as many records.
+  // Medium triangles and records astray are listed where there is room for a share of the records.
   uint records_ = vitrailRasterControl.records;
-  if (vitrailRasterControl.recordsHigh == 0u) records_ = max(records_, vitrailRasterControl.medium);
+  const uint most = 0xffffffffu;
+  uint mediums = vitrailRasterControl.medium;
+  uint astray = vitrailRasterControl.astray;
+  if (vitrailRasterControl.recordsHigh == 0u) {
+    records_ = max(records_, min(mediums, most / VITRAIL_RASTER_MEDIUM_SHARE) * VITRAIL_RASTER_MEDIUM_SHARE);
+    records_ = max(records_, min(astray, most / VITRAIL_RASTER_ASTRAY_SHARE) * VITRAIL_RASTER_ASTRAY_SHARE);
+  }
   RAISE(totals.records, totals.recordsHigh, records_, vitrailRasterControl.recordsHigh)
   RAISE(totals.fragments, totals.fragmentsHigh, vitrailRasterControl.fragments, vitrailRasterControl.fragmentsHigh)
+  totals.inTiles = max(totals.inTiles, vitrailRasterControl.inTiles);
   totals.large = max(totals.large, vitrailRasterControl.large);
   totals.deep = max(totals.deep, vitrailRasterControl.deep.count);
   totals.blocks = max(totals.blocks, vitrailRasterControl.blocks.count);
