@@ -276,7 +276,7 @@ VkResult makeRoom(VitrailVkRaster_T& raster, const RasterNeeds& guess, const Ras
   RasterNeeds room;
   const auto plan = [&](RasterNeeds needs, const RasterNeeds& before) {
     const RasterBounds bounds = raster.bounds(rows);
-    const std::uint64_t first = std::uint64_t{bounds.tiles} << raster::VITRAIL_RASTER_LEAST_PAGE;
+    const std::uint64_t first = std::uint64_t{bounds.tiles} << raster.leastPageBits(rows);
     needs.records = std::max(needs.records, first);
     return planRasterRoom(needs, before, bounds, room);
   };
@@ -506,7 +506,7 @@ VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
 // What is enough for the frame: where there is less room, tiles begin with smaller pages.
 RasterNeeds leastOf(const VitrailVkRaster_T& raster, RasterNeeds needs, std::uint64_t inTiles) {
   const std::uint64_t first = (std::uint64_t{raster.tilesX()} * raster.bandRows)
-                              << raster::VITRAIL_RASTER_LEAST_PAGE;
+                              << raster.leastPageBits(raster.bandRows);
   needs.records = std::min(needs.records, first + 4 * inTiles);
   return needs;
 }

@@ -37,7 +37,7 @@ enum class RasterBuffer : std::uint8_t {
   DrawPlaces, // draws
   DrawOfGroup,
   DrawOfVertexGroup,
-  DrawOfItem,
+  Items,
   Positions,
   Count
 };
@@ -224,6 +224,10 @@ struct VitrailVkRaster_T {
   [[nodiscard]] std::uint32_t tilesX() const { return (extent.width + 7) / 8; }
   [[nodiscard]] std::uint32_t tilesY() const { return (extent.height + 7) / 8; }
   [[nodiscard]] std::uint32_t bands() const { return (tilesY() + bandRows - 1) / bandRows; }
+  // How large the first pages of tiles are, of bands of so many rows: 2 to the power of this at least, and with the
+  // room that there is.
+  [[nodiscard]] std::uint32_t leastPageBits(std::uint32_t rows) const;
+  [[nodiscard]] std::uint32_t pageBits() const;
   [[nodiscard]] std::size_t slotOf(std::uint64_t frame) const { return frame % facts.size(); }
   // Bytes of a buffer that a shader can look at.
   [[nodiscard]] std::uint64_t reach() const {

@@ -49,7 +49,7 @@ constexpr std::array<BufferKind, kRasterBuffers> kKinds = {
     {21, "places of draws"},
     {23, "draws of groups"},
     {24, "draws of vertex groups"},
-    {25, "draws of instances"},
+    {25, "instances"},
     {27, "positions"},
 };
 
@@ -117,6 +117,29 @@ class Replacement {
 
 } // namespace
 
+} // namespace vitrail
+
+// Where memory is no matter they are no small ones. Small where there can be no more bands.
+std::uint32_t VitrailVkRaster_T::leastPageBits(std::uint32_t rows) const {
+  using namespace vitrail;
+  constexpr std::uint64_t kOfBudget = 32;
+  const std::uint64_t good = (std::uint64_t{tilesX()} * rows) << raster::VITRAIL_RASTER_GOOD_PAGE;
+  const bool hasMemory = rows > 1 && good * rasterRecordBytes(samples) <= budget / kOfBudget;
+  return hasMemory ? raster::VITRAIL_RASTER_GOOD_PAGE : raster::VITRAIL_RASTER_LEAST_PAGE;
+}
+
+// At most three quarters of what there is room for, so that most tiles have no other page.
+std::uint32_t VitrailVkRaster_T::pageBits() const {
+  using namespace vitrail;
+  const std::uint64_t tiles = std::uint64_t{tilesX()} * bandRows;
+  std::uint32_t bits = leastPageBits(bandRows);
+  if (bandRows == 1) return bits;
+  while (bits < raster::VITRAIL_RASTER_MOST_PAGE && (tiles << (bits + 1)) / 3 * 4 <= room.records) ++bits;
+  return bits;
+}
+
+namespace vitrail {
+
 VkResult createRasterBuffers(VitrailVkRaster_T& raster) {
   Replacement made(raster, raster.context->log);
   made.make(RasterBuffer::Counts, kRasterCountBytes);
@@ -138,7 +161,7 @@ VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, st
   made.make(RasterBuffer::TileList, tiles * kRasterTileListBytes, times);
   made.make(RasterBuffer::Records, room.records * kRasterRecordBytes);
   made.make(RasterBuffer::Astray, room.records * kRasterAstrayBytes);
-  made.make(RasterBuffer::Medium, room.records * kRasterMediumBytes);
+  made.make(RasterBuffer::Medium, room.records * rasterMediumBytes(raster.samples));
   made.make(RasterBuffer::SampleMasks, room.records * rasterMaskBytes(raster.samples));
   made.make(RasterBuffer::Large, room.large * kRasterListedBytes);
   made.make(RasterBuffer::DeepTiles, room.deep * kRasterDeepTileBytes);
@@ -178,7 +201,7 @@ VkResult resizeRasterTables(VitrailVkRaster_T& raster, const RasterTables& table
   made.make(RasterBuffer::DrawPlaces, tables.draws * sizeof(raster::VitrailRasterPlace));
   made.make(RasterBuffer::DrawOfGroup, tables.groups * kWord);
   made.make(RasterBuffer::DrawOfVertexGroup, tables.vertexGroups * kWord);
-  made.make(RasterBuffer::DrawOfItem, tables.items * kWord);
+  made.make(RasterBuffer::Items, tables.items * kRasterItemBytes);
   made.make(RasterBuffer::Positions, tables.vertices * kRasterPositionBytes);
   const VkResult result = made.commit();
   if (result != VK_SUCCESS) return result;

@@ -76,7 +76,6 @@ class Recording {
   [[nodiscard]] std::uint32_t largeBlocks() const {
     return (raster_.tilesX() + raster::VITRAIL_RASTER_LARGE_BLOCK - 1) / raster::VITRAIL_RASTER_LARGE_BLOCK;
   }
-  [[nodiscard]] std::uint32_t pageBits() const;
   [[nodiscard]] std::uint32_t largeGroups() const;
   [[nodiscard]] raster::VitrailRasterFrame frameOf(const Band& band) const;
   void clear(const Band& band, bool isFirst);
@@ -113,7 +112,7 @@ raster::VitrailRasterFrame Recording::frameOf(const Band& band) const {
   data.tilesY = band.tilesY();
   data.top = band.top;
   data.bottom = band.bottom;
-  data.pageBits = pageBits();
+  data.pageBits = raster_.pageBits();
   data.draws = info_.drawCount;
   const RasterNeeds& room = raster_.room;
   data.recordCapacity = static_cast<std::uint32_t>(room.records);
@@ -161,16 +160,6 @@ std::uint32_t Recording::largeGroups() const {
   const auto shares = static_cast<std::uint32_t>(
       std::min(raster_.room.large / (raster::VITRAIL_RASTER_GROUP * kTurns) + 2, kMostGroups / blocks));
   return blocks * shares;
-}
-
-// The first pages of all tiles take at most half of what there is room for. Where there can be no more bands they are
-// small.
-std::uint32_t Recording::pageBits() const {
-  const std::uint64_t tiles = std::uint64_t{raster_.tilesX()} * raster_.bandRows;
-  std::uint32_t bits = raster::VITRAIL_RASTER_LEAST_PAGE;
-  if (raster_.bandRows == 1) return bits;
-  while (bits < raster::VITRAIL_RASTER_MOST_PAGE && tiles << (bits + 2) <= raster_.room.records) ++bits;
-  return bits;
 }
 
 // A dispatch takes less time than clearing by transfers, and it runs beside the one for positions.

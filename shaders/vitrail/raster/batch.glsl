@@ -20,9 +20,9 @@ bool vitrailIsInside(ivec2 pixel) { return pixel.x < int(vitrailRaster.width) &&
 
 // Each vitrailThread loads one, or none, of the tile with that first pixel. A barrier has to come before and after.
 void vitrailLoadBatch(bool any_, uint record, ivec2 corner) {
-  uvec2 mask = any_ ? vitrailRecords[2u * record].xy : uvec2(0u);
+  uvec2 mask = any_ ? vitrailRecords[record].xy : uvec2(0u);
   if (any_) {
-    vec4 plane = uintBitsToFloat(vitrailRecords[2u * record + 1u]);
+    vec4 plane = uintBitsToFloat(vitrailRecords[vitrailRaster.recordCapacity + record]);
     float slack = vitrailDepthSlack(plane, corner + 7);
     if (VITRAIL_RASTER_SAMPLES > 1u) slack += 0.5 * (abs(plane.y) + abs(plane.z));
     vitrailBatchPlanes[vitrailThread] = plane;

@@ -42,12 +42,11 @@ void vitrailSetOrder(uint i, uint number) {
 uint vitrailRecordAt(uint number) { return vitrailRecordOf(vitrailTile, number); }
 uint vitrailAlikeRecord(uint i) { return vitrailRecordAt(vitrailOrderAt(vitrailAlikeFirst + i)); }
 VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel) {
-  uvec2 source = vitrailRecords[2u * vitrailAlikeRecord(i)].zw;
-  return vitrailSurfaceOf(source, vitrailDrawOfItem[source.y], pixel);
+  return vitrailSurfaceOf(vitrailRecords[vitrailAlikeRecord(i)].zw, pixel);
 }
 
 uint vitrailExactKey(uint number) {
-  vec4 plane = uintBitsToFloat(vitrailRecords[2u * vitrailRecordAt(number) + 1u]);
+  vec4 plane = uintBitsToFloat(vitrailRecords[vitrailRaster.recordCapacity + vitrailRecordAt(number)]);
   return vitrailDistance(vitrailDepthOn(plane, vitrailInTile));
 }
 bool vitrailIsBefore(uint a, uint b) {

@@ -28,8 +28,7 @@ uint vitrailAlikeFirst; // of the surfaces that are blended
 uvec2 vitrailFragmentAt(uint i) { return vitrailInSorted != 0u ? vitrailSortedFragments[i] : vitrailDeepFragments[i]; }
 uint vitrailAlikeRecord(uint i) { return vitrailFragmentAt(vitrailAlikeFirst + i).y; }
 VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel) {
-  uvec2 source = vitrailRecords[2u * vitrailAlikeRecord(i)].zw;
-  return vitrailSurfaceOf(source, vitrailDrawOfItem[source.y], pixel);
+  return vitrailSurfaceOf(vitrailRecords[vitrailAlikeRecord(i)].zw, pixel);
 }
 
 void main() {

@@ -36,8 +36,9 @@ layout(VITRAIL_RASTER_BOUND(1), std430) buffer VitrailRasterControlBlock { Vitra
 // cover; where its pages begin (pages.glsl). Setting up reads of a dispatch what it has written.
 layout(VITRAIL_RASTER_BOUND(2), std430) VITRAIL_TILES_ARE buffer VitrailTileBlock { uint vitrailTiles[]; };
 // Two for a record, which is a triangle in a tile: the pixels that it covers, the primitive (and in the highest bit
-// whether its front shows) and the item; the depth at the middle of the first pixel, what pixels to the right and down
-// add, and the nearest depth.
+// whether its front shows) and the item; and behind these of all records the depth at the middle of the first pixel, what
+// pixels to the right and down add, and the nearest depth. Triangles that are side by side are so here, most often, and
+// what GPUs write at once is then side by side as well.
 layout(VITRAIL_RASTER_BOUND(3), std430) buffer VitrailRecordBlock { uvec4 vitrailRecords[]; };
 // Of each record that is not on its page yet the tile, which one it is there, and where it is.
 layout(VITRAIL_RASTER_BOUND(4), std430) buffer VitrailAstrayBlock { uint vitrailAstray[]; };
@@ -49,12 +50,13 @@ layout(VITRAIL_RASTER_BOUND(7), std430) buffer VitrailTileListBlock { uint vitra
 layout(VITRAIL_RASTER_BOUND(19), std430) buffer VitrailSampleBlock { uvec4 vitrailSampleMasks[]; };
 layout(VITRAIL_RASTER_BOUND(19), std430) readonly buffer VitrailSampleWordBlock { uint vitrailSampleWords[]; };
 
-// The draws: places, and of each work group and each item the draw.
+// The draws: places, and of each work group the draw.
 layout(VITRAIL_RASTER_BOUND(21), std430) buffer VitrailDrawPlaceBlock { VitrailRasterPlace vitrailDrawPlaces[]; };
 layout(VITRAIL_RASTER_BOUND(22), std430) buffer VitrailRasterStartBlock { VitrailRasterStart vitrailRasterStart; };
 layout(VITRAIL_RASTER_BOUND(23), std430) buffer VitrailGroupBlock { uint vitrailDrawOfGroup[]; };
 layout(VITRAIL_RASTER_BOUND(24), std430) buffer VitrailVertexGroupBlock { uint vitrailDrawOfVertexGroup[]; };
-layout(VITRAIL_RASTER_BOUND(25), std430) buffer VitrailItemBlock { uint vitrailDrawOfItem[]; };
+// Of each item where the draw's indices begin, and the item's vertices; the draw; its instance. Fragments look it up.
+layout(VITRAIL_RASTER_BOUND(25), std430) buffer VitrailItemBlock { uvec4 vitrailItems[]; };
 layout(VITRAIL_RASTER_BOUND(26), std430) readonly buffer VitrailIndexBlock { uint vitrailIndices[]; };
 layout(VITRAIL_RASTER_BOUND(28), std430) readonly buffer VitrailOrderBlock { uint vitrailOrders[]; }; // of instances
 
@@ -111,8 +113,11 @@ uint vitrailCornersOf(uint flags) {
 }
 
 // Where the indices of one of its triangles begin.
+uint vitrailIndexInDraw(uint corners, uint primitive) {
+  return corners == 3u ? 3u * primitive : corners * (primitive / 2u);
+}
 uint vitrailFirstIndex(uint draw, uint corners, uint primitive) {
-  return vitrailDrawPlaces[draw].lookup.x + (corners == 3u ? 3u * primitive : corners * (primitive / 2u));
+  return vitrailDrawPlaces[draw].lookup.x + vitrailIndexInDraw(corners, primitive);
 }
 
 // An index of a draw, without its vertexOffset.

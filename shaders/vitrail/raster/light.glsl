@@ -88,7 +88,7 @@ VitrailPixelLight vitrailLightBehind(ivec2 pixel) {
 uint vitrailVisibleSamples(VitrailPixelLight light, uint record, ivec2 pixel, uint thread) {
 #ifdef VITRAIL_MULTISAMPLED
   uint visible = vitrailCoveredSamples(record, thread);
-  vec4 plane = uintBitsToFloat(vitrailRecords[2u * record + 1u]);
+  vec4 plane = uintBitsToFloat(vitrailRecords[vitrailRaster.recordCapacity + record]);
   float depth = fma(plane.y, float(thread & 7u), fma(plane.z, float(thread >> 3), plane.x));
   depth += vitrailDepthSlack(plane, pixel);
   if (depth - 0.5 * (abs(plane.y) + abs(plane.z)) >= light.nearest) return visible; // at no sample is it behind another

@@ -10,11 +10,11 @@ uint vitrailOrderOf(uint draw, uint item) {
 }
 
 bool vitrailSourceBefore(uint a, uint b) {
-  uvec2 s = vitrailRecords[2u * a].zw;
-  uvec2 t = vitrailRecords[2u * b].zw;
-  uint draw = vitrailDrawOfItem[s.y];
+  uvec2 s = vitrailRecords[a].zw;
+  uvec2 t = vitrailRecords[b].zw;
+  uint draw = vitrailItems[s.y].z;
   uint orderS = vitrailOrderOf(draw, s.y);
-  uint orderT = vitrailOrderOf(vitrailDrawOfItem[t.y], t.y);
+  uint orderT = vitrailOrderOf(vitrailItems[t.y].z, t.y);
   if (orderS != orderT) return orderS < orderT;
   uint corners = vitrailCornersOf(vitrailFlagsOf(draw)); // of one order is one draw
   uint firstS = vitrailFirstIndex(draw, corners, s.x & 0x7fffffffu);

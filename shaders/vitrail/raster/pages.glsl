@@ -5,6 +5,12 @@
 
 #include "frame.glsl"
 
+// How many medium triangles can be listed.
+uint vitrailMediumCapacity() {
+  return VITRAIL_RASTER_SAMPLES > 1u ? vitrailRaster.recordCapacity
+                                     : vitrailRaster.recordCapacity / VITRAIL_RASTER_MEDIUM_SHARE;
+}
+
 uint vitrailPageOf(uint number) { return uint(findMSB((number >> vitrailRaster.pageBits) + 1u)); }
 uint vitrailFirstOfPage(uint page) { return ((1u << page) - 1u) << vitrailRaster.pageBits; }
 

@@ -179,7 +179,7 @@ void main() {
       if (thread == VITRAIL_RASTER_SET_UP - 1u) vitrailTakeMediums(mediums);
       barrier();
       uint place = vitrailGroupFirstMedium + medium;
-      if (isMedium && place < vitrailRaster.recordCapacity / VITRAIL_RASTER_MEDIUM_SHARE) { // else drawn again
+      if (isMedium && place < vitrailMediumCapacity()) { // else drawn again
         vitrailMedium[place] = source;
       }
     }

@@ -143,7 +143,7 @@ void vitrailCoverAll(uint mine) {
 
 // A work group takes as many as others, and where there are few, few: then all of them wait for fewer tiles.
 void vitrailSetUpMedium() {
-  uint count = min(vitrailRasterControl.medium, vitrailRaster.recordCapacity / VITRAIL_RASTER_MEDIUM_SHARE);
+  uint count = min(vitrailRasterControl.medium, vitrailMediumCapacity());
   uint share_ = (count + gl_NumWorkGroups.x - 1u) / gl_NumWorkGroups.x;
   uint first = gl_WorkGroupID.x * share_;
   uint end = min(first + share_, count);
@@ -152,7 +152,7 @@ void vitrailSetUpMedium() {
     uint candidates_ = 0u;
     if (i < end) {
       uvec2 source = vitrailMedium[i];
-      uint draw = vitrailDrawOfItem[source.y];
+      uint draw = vitrailItems[source.y].z;
       uint corners = vitrailCornersOf(vitrailFlagsOf(draw));
       VitrailTriangle t;
       bool isWhole; // it is
@@ -219,7 +219,7 @@ void vitrailSetUpLarge() {
     uvec2 source = mine ? vitrailLarge[first + thread] : uvec2(0u);
     VitrailPolygon polygon;
     polygon.count = 0;
-    uint draw = mine ? vitrailDrawOfItem[source.y] : 0u;
+    uint draw = mine ? vitrailItems[source.y].z : 0u;
     uint corners = vitrailCornersOf(vitrailFlagsOf(draw));
     if (mine) polygon = vitrailClippedOf(viewport, draw, corners, source);
     int fan = corners == 3u ? polygon.count - 2 : min(polygon.count, 1);

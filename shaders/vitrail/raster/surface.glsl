@@ -70,22 +70,28 @@ void vitrailDerivatives(VitrailSurface surface, out vec3 right, out vec3 down) {
 }
 
 #if VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_BLEND || VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_BLEND_DEEP
-// `source`: the primitive, with the side in its highest bit, and the item, of that draw.
-VitrailSurface vitrailSurfaceOf(uvec2 source, uint draw, ivec2 pixel) {
+// `source`: the primitive, with the side in its highest bit, and the item.
+VitrailSurface vitrailSurfaceOf(uvec2 source, ivec2 pixel) {
+  uvec4 item = vitrailItems[source.y];
+  uint draw = item.z;
   VitrailSurface surface;
   surface.pixel = pixel;
   surface.draw = draw;
-  surface.instance = vitrailInstance(draw, source.y);
+  surface.instance = item.w;
   surface.primitive = source.x & 0x7fffffffu;
   surface.front = (source.x & 0x80000000u) != 0u;
   surface.word = vitrailWordOf(draw);
   surface.corners = vitrailCornersOf(vitrailFlagsOf(draw));
-  uint first = vitrailFirstIndex(draw, surface.corners, surface.primitive);
+  uint first = item.x + vitrailIndexInDraw(surface.corners, surface.primitive);
   for (uint i = 0u; i < 3u; ++i) {
     uint index = vitrailIndex(draw, first + (i < surface.corners ? i : 0u));
     surface.vertices[i] = vitrailVertexOf(draw, index);
-    surface.places[i] = VITRAIL_RASTER_POSITIONS ? vitrailVertexPlace(draw, source.y, index) : VITRAIL_NOT_KEPT;
-    surface.clip[i] = vitrailClipPosition(draw, source.y, index).xyw;
+    surface.places[i] = VITRAIL_RASTER_POSITIONS ? item.y + index : VITRAIL_NOT_KEPT;
+    if (VITRAIL_RASTER_POSITIONS) {
+      surface.clip[i] = vitrailPositions[surface.places[i]].xyw;
+    } else {
+      surface.clip[i] = vitrailAskPosition(draw, source.y, index).xyw;
+    }
   }
   surface.weights = vitrailWeightsAt(surface, vec2(pixel) + 0.5);
   return surface;

@@ -185,8 +185,8 @@ uint vitrailMakeRecord(ivec2 tile, uvec2 covered, VitrailSource source) {
   // At the middle of a pixel of which another part is covered a plane may be nearer than any corner.
   float nearest = depth.x + (max(depth.y, 0.0) + max(depth.z, 0.0)) * steps;
   if (VITRAIL_RASTER_SAMPLES == 1u) nearest = min(source.nearest, nearest);
-  vitrailRecords[2u * place] = uvec4(covered, source.primitive, source.item);
-  vitrailRecords[2u * place + 1u] = floatBitsToUint(vec4(depth, nearest));
+  vitrailRecords[place] = uvec4(covered, source.primitive, source.item);
+  vitrailRecords[vitrailRaster.recordCapacity + place] = floatBitsToUint(vec4(depth, nearest));
   return place;
 }
 

@@ -22,7 +22,8 @@ void main() {
   uint mediums = vitrailRasterControl.medium;
   uint astray = vitrailRasterControl.astray;
   if (vitrailRasterControl.recordsHigh == 0u) {
-    records_ = max(records_, min(mediums, most / VITRAIL_RASTER_MEDIUM_SHARE) * VITRAIL_RASTER_MEDIUM_SHARE);
+    const uint share_ = VITRAIL_RASTER_SAMPLES > 1u ? 1u : VITRAIL_RASTER_MEDIUM_SHARE;
+    records_ = max(records_, min(mediums, most / share_) * share_);
     records_ = max(records_, min(astray, most / VITRAIL_RASTER_ASTRAY_SHARE) * VITRAIL_RASTER_ASTRAY_SHARE);
   }
   RAISE(totals.records, totals.recordsHigh, records_, vitrailRasterControl.recordsHigh)

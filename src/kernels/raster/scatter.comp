@@ -12,8 +12,8 @@ void main() {
   for (uint i = gl_GlobalInvocationID.x; i < count; i += step) {
     uint from = vitrailAstray[3u * i + 2u];
     uint to = vitrailRecordOf(vitrailAstray[3u * i], vitrailAstray[3u * i + 1u]);
-    vitrailRecords[2u * to] = vitrailRecords[2u * from];
-    vitrailRecords[2u * to + 1u] = vitrailRecords[2u * from + 1u];
+    vitrailRecords[to] = vitrailRecords[from];
+    vitrailRecords[vitrailRaster.recordCapacity + to] = vitrailRecords[vitrailRaster.recordCapacity + from];
     if (VITRAIL_RASTER_SAMPLES == 1u) continue;
     const uint words = VITRAIL_RASTER_SAMPLES / 2u;
     for (uint k = 0u; k < words; ++k) vitrailSampleMasks[words * to + k] = vitrailSampleMasks[words * from + k];

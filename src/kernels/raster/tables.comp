@@ -1,4 +1,4 @@
-// Makes the tables of a frame: which draw each work group and each item is of.
+// Makes the tables of a frame: which draw each work group is of, and what fragments look up of each item.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define VITRAIL_SET 0
@@ -22,5 +22,9 @@ void main() {
   uint i = vitrailFlatGroup() * VITRAIL_RASTER_TABLE + gl_LocalInvocationIndex;
   if (i < vitrailRasterStart.groups.count) FIND(size.z, i, vitrailDrawOfGroup[i])
   if (i < vitrailRasterStart.vertices.count) FIND(start.x, i, vitrailDrawOfVertexGroup[i])
-  if (i < vitrailRasterStart.items) FIND(size.w, i, vitrailDrawOfItem[i])
+  if (i >= vitrailRasterStart.items) return;
+  uint draw;
+  FIND(size.w, i, draw)
+  uvec4 lookup = vitrailDrawPlaces[draw].lookup;
+  vitrailItems[i] = uvec4(lookup.x, lookup.z + i * lookup.y, draw, lookup.w + i);
 }
