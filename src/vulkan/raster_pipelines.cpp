@@ -18,7 +18,7 @@ struct RasterConstants {
   VkBool32 shuffles = VK_FALSE;
   VkBool32 positions = VK_FALSE;
   std::uint32_t keep = 16;
-  VkBool32 oneBatch = VK_FALSE;
+  std::uint32_t batches = 1;
   std::uint32_t triangleClass = 0;
   std::uint32_t blends = 0;
   VkBool32 onlyTriangles = VK_FALSE;
@@ -219,12 +219,14 @@ VkResult createGeometryPipeline(VitrailVkRaster_T& raster, const VitrailVkRaster
 // work groups run at a time.
 VkResult createBlends(VitrailVkRaster_T& raster, const VitrailVkRasterStage& given) {
   constexpr std::array<std::uint32_t, kRasterBlends> kKeep = {8, 16, 16, 32};
+  const std::uint32_t atOnce = raster.samples > 1 ? 2 : 1; // batches
+  const std::array<std::uint32_t, kRasterBlends> batches = {0, 0, atOnce, 1};
   RasterStage stage;
   VkResult result = keepStage(raster, given, "blend", stage);
   for (std::uint32_t i = 0; result == VK_SUCCESS && i < kRasterBlends; ++i) {
     RasterConstants constants = constantsOf(raster);
     constants.keep = kKeep[i];
-    constants.oneBatch = i < 2 ? VK_TRUE : VK_FALSE;
+    constants.batches = batches.at(i);
     result = createPipeline(raster, raster.layout(RasterSet::Blend), stage, constants, "blend", &raster.blends[i]);
   }
   destroyStage(*raster.context, stage);

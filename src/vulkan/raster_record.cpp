@@ -233,12 +233,7 @@ void Recording::bin(const Band& band) {
   bind(RasterSet::Own);
   dispatch(raster_.kernel(RasterKernel::Plan), std::min(groups, raster::VITRAIL_RASTER_ROW),
            (groups + raster::VITRAIL_RASTER_ROW - 1) / raster::VITRAIL_RASTER_ROW);
-  // Few records come before their pages, most often.
-  constexpr std::uint64_t kTaken = raster::VITRAIL_RASTER_SCATTER * raster::VITRAIL_RASTER_ASTRAY_SHARE;
-  constexpr std::uint64_t kMostGroups = 256;
-  dispatch(raster_.kernel(RasterKernel::Scatter),
-           static_cast<std::uint32_t>(std::min(raster_.room.records / kTaken + 1, kMostGroups)), 1);
-  // Records and lists of tiles -> they are blended, and the counts say how many.
+  // Records are on their pages, and tiles on lists -> they are blended, and the counts say how many.
   passBarrier();
 }
 

@@ -6,10 +6,11 @@
 
 #include "samples.glsl"
 
-shared uint vitrailBatchMasks[2][VITRAIL_RASTER_PIXELS]; // the pixels that each covers
-shared vec4 vitrailBatchPlanes[VITRAIL_RASTER_PIXELS];
+const uint VITRAIL_BATCHED = VITRAIL_RASTER_BATCHES > 1u ? 2u * VITRAIL_RASTER_PIXELS : VITRAIL_RASTER_PIXELS;
+shared uint vitrailBatchMasks[2u * VITRAIL_BATCHED]; // the pixels that each covers: the upper ones of all, the lower ones
+shared vec4 vitrailBatchPlanes[VITRAIL_BATCHED];
 // How much nearer than on its plane each may be, anywhere in the tile.
-shared float vitrailBatchSlacks[VITRAIL_RASTER_PIXELS];
+shared float vitrailBatchSlacks[VITRAIL_BATCHED];
 
 uint vitrailThread; // set by main()
 
@@ -18,18 +19,19 @@ ivec2 vitrailFirstPixel(uint tile) {
 }
 bool vitrailIsInside(ivec2 pixel) { return pixel.x < int(vitrailRaster.width) && pixel.y < int(vitrailRaster.bottom); }
 
-// Each vitrailThread loads one, or none, of the tile with that first pixel. A barrier has to come before and after.
-void vitrailLoadBatch(bool any_, uint record, ivec2 corner) {
+// Each vitrailThread loads one, or none, of the tile with that first pixel, and of two batches two; the place is the
+// thread's, or in the second batch. A barrier has to come before and after.
+void vitrailLoadBatch(uint place, bool any_, uint record, ivec2 corner) {
   uvec2 mask = any_ ? vitrailRecords[record].xy : uvec2(0u);
   if (any_) {
     vec4 plane = uintBitsToFloat(vitrailRecords[vitrailRaster.recordCapacity + record]);
     float slack = vitrailDepthSlack(plane, corner + 7);
     if (VITRAIL_RASTER_SAMPLES > 1u) slack += 0.5 * (abs(plane.y) + abs(plane.z));
-    vitrailBatchPlanes[vitrailThread] = plane;
-    vitrailBatchSlacks[vitrailThread] = slack;
+    vitrailBatchPlanes[place] = plane;
+    vitrailBatchSlacks[place] = slack;
   }
-  vitrailBatchMasks[0][vitrailThread] = mask.x;
-  vitrailBatchMasks[1][vitrailThread] = mask.y;
+  vitrailBatchMasks[place] = mask.x;
+  vitrailBatchMasks[VITRAIL_BATCHED + place] = mask.y;
 }
 
 // With VITRAIL_RASTER_SHUFFLES threads are side by side in subgroups of at least 32 that can hand each other words.
@@ -50,19 +52,20 @@ bool vitrailIsHidden(uint inBatch, float depth, float farthest) {
   return depth + vitrailBatchSlacks[inBatch] < farthest;
 }
 
-// Those that cover the vitrailThread's pixel, a bit each. All threads together.
-uvec2 vitrailCovering() {
-  uint half_ = vitrailThread >> 5;
+// Those that cover the vitrailThread's pixel, a bit each, of the first batch or of the one that begins there. All threads
+// together.
+uvec2 vitrailCovering(uint begin) {
+  uint first = (vitrailThread >> 5) * VITRAIL_BATCHED + begin;
   if (VITRAIL_RASTER_SHUFFLES) {
     uint lane = vitrailThread & 31u;
-    return uvec2(vitrailTransposed(vitrailBatchMasks[half_][lane]),
-                 vitrailTransposed(vitrailBatchMasks[half_][32u + lane]));
+    return uvec2(vitrailTransposed(vitrailBatchMasks[first + lane]),
+                 vitrailTransposed(vitrailBatchMasks[first + 32u + lane]));
   }
   uint bit = vitrailThread & 31u;
   uvec2 bits = uvec2(0u);
   for (uint i = 0u; i < 32u; ++i) {
-    bits.x |= (vitrailBatchMasks[half_][i] >> bit & 1u) << i;
-    bits.y |= (vitrailBatchMasks[half_][32u + i] >> bit & 1u) << i;
+    bits.x |= (vitrailBatchMasks[first + i] >> bit & 1u) << i;
+    bits.y |= (vitrailBatchMasks[first + 32u + i] >> bit & 1u) << i;
   }
   return bits;
 }

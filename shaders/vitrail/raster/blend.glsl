@@ -60,13 +60,19 @@ uint vitrailDepthPart(uint key) { return key >> vitrailNumberBits; }
 
 // Takes one of a batch's fragments that cover the pixel, or none where there is none any more.
 #define VITRAIL_TAKE_KEY(i) { \
+  if (VITRAIL_RASTER_BATCHES > 1u && (bits.x | bits.y) == 0u) { \
+    bits = more; \
+    more = uvec2(0u); \
+    begin = VITRAIL_RASTER_PIXELS; \
+  } \
   bool isLow = bits.x != 0u; \
   uint word = isLow ? bits.x : bits.y; \
   uint number = uint(findLSB(word)) + (isLow ? 0u : 32u); \
   bool isThere = word != 0u; \
   word &= word - 1u; \
   if (isLow) bits.x = word; else bits.y = word; \
-  uint inBatch = number & (VITRAIL_RASTER_PIXELS - 1u); \
+  if (VITRAIL_RASTER_BATCHES > 1u) number += begin; \
+  uint inBatch = number & (VITRAIL_BATCHED - 1u); \
   float depth = vitrailDepthOn(vitrailBatchPlanes[inBatch], vitrailInTile); \
   uint key = (vitrailDistance(depth) >> (vitrailNumberBits - 2u)) << vitrailNumberBits | (base + number); \
   if (key < from || vitrailIsHidden(inBatch, depth, farthest)) isThere = false; \
@@ -80,19 +86,29 @@ uint vitrailFindNearest(uint count, uint from, ivec2 corner, float farthest, boo
 #define VITRAIL_FORGET(i) vitrailNearestKeys[i] = VITRAIL_NO_FRAGMENT;
   VITRAIL_EACH_KEPT(VITRAIL_FORGET)
   uint base = 0u;
-  for (; base < count; base += VITRAIL_RASTER_PIXELS) {
-    if (isFirst || !VITRAIL_RASTER_ONE_BATCH) {
+  for (; base < count; base += VITRAIL_BATCHED) {
+    if (isFirst || VITRAIL_RASTER_BATCHES > 0u) {
       if (!isFirst || base > 0u) barrier(); // all have left the last batch
       uint number = base + vitrailThread;
-      vitrailLoadBatch(number < count, number < count ? vitrailRecordAt(number) : 0u, corner);
+      vitrailLoadBatch(vitrailThread, number < count, number < count ? vitrailRecordAt(number) : 0u, corner);
+      if (VITRAIL_RASTER_BATCHES > 1u) {
+        number += VITRAIL_RASTER_PIXELS;
+        vitrailLoadBatch(VITRAIL_RASTER_PIXELS + vitrailThread, number < count,
+                         number < count ? vitrailRecordAt(number) : 0u, corner);
+      }
       barrier();
     }
-    uvec2 bits = vitrailCovering();
-    if (ended) bits = uvec2(0u);
-    while ((bits.x | bits.y) != 0u) {
+    uvec2 bits = vitrailCovering(0u);
+    uvec2 more = uvec2(0u); // of the second batch, which begins there
+    uint begin = 0u;
+    if (VITRAIL_RASTER_BATCHES > 1u && base + VITRAIL_RASTER_PIXELS < count) {
+      more = vitrailCovering(VITRAIL_RASTER_PIXELS);
+    }
+    if (ended) bits = more = uvec2(0u);
+    while ((bits.x | bits.y | more.x | more.y) != 0u) {
       VITRAIL_TAKE_KEY(0) VITRAIL_TAKE_KEY(1) VITRAIL_TAKE_KEY(2) VITRAIL_TAKE_KEY(3)
       vitrailNewKeys[4] = vitrailNewKeys[5] = vitrailNewKeys[6] = vitrailNewKeys[7] = VITRAIL_NO_FRAGMENT;
-      if ((bits.x | bits.y) != 0u) {
+      if ((bits.x | bits.y | more.x | more.y) != 0u) {
         VITRAIL_TAKE_KEY(4) VITRAIL_TAKE_KEY(5) VITRAIL_TAKE_KEY(6) VITRAIL_TAKE_KEY(7)
       }
       vitrailSortNewKeys();
@@ -104,7 +120,7 @@ uint vitrailFindNearest(uint count, uint from, ivec2 corner, float farthest, boo
         left = min(left, vitrailMergeNewKeys());
       }
     }
-    if ((bits.x | bits.y) != 0u) vitrailTooShort = 1u; // the driver has ended the loop
+    if ((bits.x | bits.y | more.x | more.y) != 0u) vitrailTooShort = 1u; // the driver has ended the loop
   }
   if (base < count) vitrailTooShort = 1u; // as above
   return left;

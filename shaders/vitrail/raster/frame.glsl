@@ -13,7 +13,7 @@ layout(constant_id = 1710) const uint VITRAIL_RASTER_SAMPLES = 1u;
 layout(constant_id = 1711) const bool VITRAIL_RASTER_SHUFFLES = false; // batch.glsl
 layout(constant_id = 1712) const bool VITRAIL_RASTER_POSITIONS = false; // are kept
 layout(constant_id = 1713) const uint VITRAIL_RASTER_KEEP = 16u; // nearest.glsl: 8, 16, 32
-layout(constant_id = 1714) const bool VITRAIL_RASTER_ONE_BATCH = false; // blend.glsl
+layout(constant_id = 1714) const uint VITRAIL_RASTER_BATCHES = 1u; // at once, 1 or 2; 0: tiles have no more than one
 layout(constant_id = 1715) const uint VITRAIL_RASTER_CLASS = 0u; // of triangles
 layout(constant_id = 1716) const uint VITRAIL_RASTER_BLENDS = 15u; // a bit for each that is drawn
 layout(constant_id = 1717) const bool VITRAIL_RASTER_ONLY_TRIANGLES = false;

@@ -42,7 +42,6 @@ const uint VITRAIL_RASTER_MOST_PAGE = 9u;
 const uint VITRAIL_RASTER_MEDIUM_SHARE = 4u;   // medium triangles are listed, one for so many records of the room, or
                                                // with several samples, where all are, for each;
 const uint VITRAIL_RASTER_ASTRAY_SHARE = 12u;  // and records that are still to be brought to their pages
-const uint VITRAIL_RASTER_SCATTER = 256u;      // threads of a work group that does so
 const uint VITRAIL_RASTER_BLOCK = 4096u;       // records of a deep tile that a work group looks after
 const uint VITRAIL_RASTER_CHUNK = 1024u;       // fragments that a work group sorts at once
 const uint VITRAIL_RASTER_SLICE = 2048u;       // fragments of a pixel that a dispatch blends

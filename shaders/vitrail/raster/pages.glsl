@@ -23,13 +23,13 @@ uint vitrailWordOfPage(uint tile, uint page) {
 
 // The place of a tile's record, when all are there.
 uint vitrailRecordOf(uint tile, uint number) {
+  if (number < 1u << vitrailRaster.pageBits) return (tile << vitrailRaster.pageBits) + number; // as most do
   uint page = vitrailPageOf(number);
-  uint start = page == 0u ? tile << vitrailRaster.pageBits : vitrailTiles[vitrailWordOfPage(tile, page)];
-  return start + number - vitrailFirstOfPage(page);
+  return vitrailTiles[vitrailWordOfPage(tile, page)] + number - vitrailFirstOfPage(page);
 }
 
 // Takes a place for one more record of a tile. Who takes the last quarter of a page gets the next one, so that it is
-// there in time, for most. Who comes too early takes some other place; scatter.comp brings the record to its own. So
+// there in time, for most. Who comes too early takes some other place; plan.comp brings the record to its own. So
 // nobody waits for another, and how much room a frame wants is hardly a matter of chance. The place may be beyond what
 // there is room for: then the frame is drawn again.
 uint vitrailTakePlace(uint tile) {

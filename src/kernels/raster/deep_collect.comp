@@ -33,9 +33,9 @@ void main() {
   for (uint i = first; i < end; i += VITRAIL_RASTER_PIXELS) {
     bool any_ = i + vitrailThread < end;
     barrier(); // all have left the last batch
-    vitrailLoadBatch(any_, any_ ? vitrailRecordOf(tile, i + vitrailThread) : 0u, vitrailFirstPixel(tile));
+    vitrailLoadBatch(vitrailThread, any_, any_ ? vitrailRecordOf(tile, i + vitrailThread) : 0u, vitrailFirstPixel(tile));
     barrier();
-    uvec2 bits = vitrailCovering();
+    uvec2 bits = vitrailCovering(0u);
     if (!inside) bits = uvec2(0u);
 #ifndef VITRAIL_RASTER_FILL
     count += uint(bitCount(bits.x) + bitCount(bits.y));

@@ -1,4 +1,4 @@
-// Puts each tile on the list of its class.
+// Puts each tile on the list of its class, and brings records to their pages that came before these.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define VITRAIL_SET 0
@@ -13,7 +13,22 @@ shared uint groupRecords;
 shared uint groupCount[VITRAIL_RASTER_CLASSES];
 shared uint groupList[VITRAIL_RASTER_CLASSES];
 
+void bringRecords() {
+  uint count = vitrailHasRecords() ? vitrailRasterControl.astray : 0u;
+  uint step = gl_NumWorkGroups.x * gl_NumWorkGroups.y * 256u;
+  for (uint i = vitrailFlatGroup() * 256u + gl_LocalInvocationIndex; i < count; i += step) {
+    uint from = vitrailAstray[3u * i + 2u];
+    uint to = vitrailRecordOf(vitrailAstray[3u * i], vitrailAstray[3u * i + 1u]);
+    vitrailRecords[to] = vitrailRecords[from];
+    vitrailRecords[vitrailRaster.recordCapacity + to] = vitrailRecords[vitrailRaster.recordCapacity + from];
+    if (VITRAIL_RASTER_SAMPLES == 1u) continue;
+    const uint words = VITRAIL_RASTER_SAMPLES / 2u;
+    for (uint k = 0u; k < words; ++k) vitrailSampleMasks[words * to + k] = vitrailSampleMasks[words * from + k];
+  }
+}
+
 void main() {
+  bringRecords();
   uint thread = gl_LocalInvocationIndex;
   if (thread < VITRAIL_RASTER_CLASSES) groupCount[thread] = 0u;
   if (thread == VITRAIL_RASTER_CLASSES) groupRecords = 0u;
