@@ -21,7 +21,7 @@ std::uint64_t leastBytes(const FrameShape& frame) {
 }
 
 std::uint64_t leastRasterBytes(const FrameShape& frame, const RasterCounts& counts) {
-  const std::uint64_t record = 104 + (frame.samples > 1 ? 16 * frame.samples : 0);
+  const std::uint64_t record = 64 + (frame.samples > 1 ? 16 * frame.samples : 0);
   const std::uint64_t depth = kDepthBytes * frame.samples * frame.coveredPixels;
   return 44 * counts.vertices + 12 * counts.triangles + record * counts.records + colorBytes(frame) + depth;
 }

@@ -1,11 +1,9 @@
 // Sets up triangles, a thread each, and makes the records of small ones, for each tile in which one covers a pixel. A
-// small one lies within 8 x 8 pixels: it gets one mask, which may be cut by the borders of tiles. The records of a turn
-// are then made by all threads of the work group: none waits for another's triangle that lies in more tiles, and none
-// is without work because its own covers nothing. Others are put aside: medium ones, which may touch some tiles, and
-// large ones, which may touch very many or need clipping.
+// small one lies within 8 x 8 pixels: it gets one mask, which may be cut by the borders of tiles. Others are put aside:
+// medium ones, which may touch some tiles, and large ones, which may touch very many or need clipping.
 //
-// How many work groups run at a time is what hides waiting, so this has little shared memory, and the indices of the
-// next turn's triangles are asked for before this one's are set up.
+// How many work groups run at a time is what hides waiting, so this has little shared memory, no thread waits for
+// another before the end, and the indices of the next turn's triangles are asked for before this one's are set up.
 #ifndef VITRAIL_RASTER_SET_UP_GLSL
 #define VITRAIL_RASTER_SET_UP_GLSL
 
@@ -15,15 +13,9 @@ layout(local_size_x = VITRAIL_RASTER_SET_UP) in;
 
 layout(VITRAIL_RASTER_BOUND(17), std430) buffer VitrailTileClassBlock { VitrailRasterTileClasses vitrailTileClasses; };
 
-// The small triangles of the work group.
-shared uvec2 vitrailGroupMasks[VITRAIL_RASTER_SET_UP];
-shared ivec4 vitrailGroupPlaces[VITRAIL_RASTER_SET_UP]; // the first pixel of the mask; the first corner
-shared vec4 vitrailGroupPlanes[VITRAIL_RASTER_SET_UP];  // the depths there; the nearest of the corners'
-shared uvec2 vitrailGroupSources[VITRAIL_RASTER_SET_UP];
-shared uint vitrailGroupParts[4u * VITRAIL_RASTER_SET_UP]; // of each record the triangle, and which of its tiles
-// Of this turn, or of the next one.
-shared uint vitrailGroupRecords[2];
-shared uint vitrailGroupMediums[2];
+// The medium triangles of the work group: primitive and item.
+shared uvec2 vitrailGroupMedium[VITRAIL_RASTER_SET_UP * VITRAIL_RASTER_TURNS];
+shared uint vitrailGroupMediums;
 shared uint vitrailGroupFirstMedium;
 
 // To higher bits, or lower ones where `bits` is negative.
@@ -59,8 +51,8 @@ uint vitrailPartsOf(uvec2 mask, ivec2 first) {
          ((b & ~left) != 0u ? 8u : 0u);
 }
 
-// A small triangle: the records that it has.
-void vitrailSetUpSmall(VitrailTriangle t, uint draw, ivec2 first, ivec2 last, uint turn) {
+// Makes the records of a small triangle.
+void vitrailSetUpSmall(VitrailTriangle t, uint draw, ivec2 first, ivec2 last) {
   int area = vitrailLittleArea(t.p0, t.p1, t.p2);
   bool front;
   if (area == 0 || !vitrailSideOf(draw, area > 0, front)) return;
@@ -74,29 +66,12 @@ void vitrailSetUpSmall(VitrailTriangle t, uint draw, ivec2 first, ivec2 last, ui
   }
   if ((covered.x | covered.y) == 0u) return;
   VitrailSource source = vitrailSourceOf(t, draw, front, float(area));
-  uint thread = gl_LocalInvocationIndex;
-  vitrailGroupMasks[thread] = covered;
-  vitrailGroupPlaces[thread] = ivec4(first, t.p0);
-  vitrailGroupPlanes[thread] = vec4(source.plane.depth, source.nearest);
-  vitrailGroupSources[thread] = uvec2(source.primitive, source.item);
   uint parts = vitrailPartsOf(covered, first);
-  uint at = atomicAdd(vitrailGroupRecords[turn], uint(bitCount(parts)));
-  for (uint part = 0u; part < 4u; ++part) {
-    if ((parts >> part & 1u) != 0u) vitrailGroupParts[at++] = thread | part << 16;
+  while (parts != 0u) {
+    uint part = uint(findLSB(parts));
+    parts &= parts - 1u;
+    vitrailMakeRecord((first >> 3) + ivec2(part & 1u, part >> 1), vitrailCutAtTiles(covered, first, part), source);
   }
-}
-
-// The i-th record of the group.
-void vitrailMakePart(uint i, uint draw) {
-  uint owner = vitrailGroupParts[i] & 0xffffu;
-  uint part = vitrailGroupParts[i] >> 16;
-  ivec4 places = vitrailGroupPlaces[owner];
-  ivec2 tile = (places.xy >> 3) + ivec2(part & 1u, part >> 1);
-  uvec2 covered = vitrailCutAtTiles(vitrailGroupMasks[owner], places.xy, part);
-  uvec2 source = vitrailGroupSources[owner];
-  vec4 plane = vitrailGroupPlanes[owner];
-  vitrailMakeRecord(tile, covered,
-                    VitrailSource(source.x, source.y, draw, VitrailPlane(vec2(places.zw), plane.xyz), plane.w));
 }
 
 void vitrailPutAsideLarge(uvec2 source) {
@@ -108,7 +83,7 @@ void vitrailPutAsideLarge(uvec2 source) {
 }
 
 // Whether the triangle of the thread is a medium one.
-bool vitrailSetUp(uint draw, uint corners, uvec2 source, uvec3 indices, uint turn) {
+bool vitrailSetUp(uint draw, uint corners, uvec2 source, uvec3 indices) {
   VitrailTriangle t;
   bool isWhole;
   if (!vitrailTriangleAt(draw, corners, source, indices, t, isWhole)) return false;
@@ -122,7 +97,7 @@ bool vitrailSetUp(uint draw, uint corners, uvec2 source, uvec3 indices, uint tur
   if (count == 0u) return false;
 #ifndef VITRAIL_MULTISAMPLED // to look at each sample takes longer than all else, and is done once for a tile
   if (all(lessThan(last - first, ivec2(VITRAIL_TILE_SIDE))) && vitrailIsLittle(t.p0, t.p1, t.p2)) {
-    vitrailSetUpSmall(t, draw, first, last, turn);
+    vitrailSetUpSmall(t, draw, first, last);
     return false;
   }
 #endif
@@ -143,7 +118,8 @@ void main() {
   uint group = vitrailFlatGroup();
   if (group >= vitrailRasterStart.groups.count) return; // the last row is longer
   uint thread = gl_LocalInvocationIndex;
-  if (thread == 0u) vitrailGroupRecords[0] = vitrailGroupMediums[0] = 0u;
+  if (thread == 0u) vitrailGroupMediums = 0u;
+  barrier();
   uint draw = vitrailDrawOfGroup[group];
   uint corners = vitrailCornersOf(vitrailFlagsOf(draw));
   uvec4 size = vitrailDrawPlaces[draw].size;
@@ -160,7 +136,6 @@ void main() {
   }
   VITRAIL_LOAD_NEXT(first + thread)
   for (uint i = 0u; i < VITRAIL_RASTER_TURNS && first < count; ++i) {
-    uint turn = i & 1u;
     uvec2 source = nextSource;
     uvec3 indices = nextIndices;
     bool isThere = first + thread < count;
@@ -168,22 +143,18 @@ void main() {
     if (i + 1u < VITRAIL_RASTER_TURNS) { // they are there when this turn ends
       VITRAIL_LOAD_NEXT(first + thread)
     }
-    barrier(); // all have left the last turn
-    bool isMedium = isThere && vitrailSetUp(draw, corners, source, indices, turn);
-    uint medium = isMedium ? atomicAdd(vitrailGroupMediums[turn], 1u) : 0u;
-    if (thread == 0u) vitrailGroupRecords[turn ^ 1u] = vitrailGroupMediums[turn ^ 1u] = 0u;
-    barrier();
-    uint records_ = vitrailGroupRecords[turn];
-    uint mediums = vitrailGroupMediums[turn];
-    if (mediums > 0u) {
-      if (thread == VITRAIL_RASTER_SET_UP - 1u) vitrailTakeMediums(mediums);
-      barrier();
-      uint place = vitrailGroupFirstMedium + medium;
-      if (isMedium && place < vitrailMediumCapacity()) { // else drawn again
-        vitrailMedium[place] = source;
-      }
+    if (isThere && vitrailSetUp(draw, corners, source, indices)) {
+      vitrailGroupMedium[atomicAdd(vitrailGroupMediums, 1u)] = source;
     }
-    for (uint k = thread; k < records_; k += VITRAIL_RASTER_SET_UP) vitrailMakePart(k, draw);
+  }
+  barrier();
+  uint mediums = vitrailGroupMediums;
+  if (mediums == 0u) return;
+  if (thread == 0u) vitrailTakeMediums(mediums);
+  barrier();
+  for (uint i = thread; i < mediums; i += VITRAIL_RASTER_SET_UP) {
+    uint place = vitrailGroupFirstMedium + i;
+    if (place < vitrailMediumCapacity()) vitrailMedium[place] = vitrailGroupMedium[i]; // else drawn again
   }
 }
 
