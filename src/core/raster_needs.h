@@ -41,14 +41,14 @@ struct RasterBounds {
 constexpr std::uint64_t kRasterTileBytes = 128;    // of each of two arrays, the other with kRasterTileListBytes
 constexpr std::uint64_t kRasterTileListBytes = 24; // a place in each class
 constexpr std::uint64_t kRasterRecordBytes = 32;
-constexpr std::uint64_t kRasterAstrayBytes = 1; // for a record: one in 12 at most is listed, in three words
+constexpr std::uint64_t kRasterAstrayBytes = 3; // for a record: one in four at most is listed, in three words
 // Of medium triangles, which are in two words: for a record one in four.
 constexpr std::uint64_t rasterMediumBytes(std::uint32_t samples) { return samples > 1 ? 8 : 2; }
 constexpr std::uint64_t kRasterFragmentBytes = 8; // in each of two arrays
 constexpr std::uint64_t kRasterDeepTileBytes = 16;
 constexpr std::uint64_t kRasterDeepPixelsBytes = 64 * 16; // of a deep tile
 constexpr std::uint64_t kRasterListedBytes = 8;           // a block, a chunk, a large triangle
-constexpr std::uint64_t kRasterItemBytes = 16;             // of an instance; no part of the budget
+constexpr std::uint64_t kRasterItemBytes = 16;            // of an instance; no part of the budget
 constexpr std::uint64_t kRasterPositionBytes = 16;        // of a vertex of an instance; no part of the budget
 constexpr std::uint64_t rasterMaskBytes(std::uint32_t samples) { return samples > 1 ? samples * 8 : 0; } // of a record
 constexpr std::uint64_t rasterRecordBytes(std::uint32_t samples) { // of a record in all arrays

@@ -119,12 +119,12 @@ class Replacement {
 
 } // namespace vitrail
 
-// Where memory is no matter they are no small ones. Small where there can be no more bands.
+// Where memory is no matter they are no small ones. Small in bands, which are there because memory is short.
 std::uint32_t VitrailVkRaster_T::leastPageBits(std::uint32_t rows) const {
   using namespace vitrail;
   constexpr std::uint64_t kOfBudget = 32;
   const std::uint64_t good = (std::uint64_t{tilesX()} * rows) << raster::VITRAIL_RASTER_GOOD_PAGE;
-  const bool hasMemory = rows > 1 && good * rasterRecordBytes(samples) <= budget / kOfBudget;
+  const bool hasMemory = rows >= tilesY() && good * rasterRecordBytes(samples) <= budget / kOfBudget;
   return hasMemory ? raster::VITRAIL_RASTER_GOOD_PAGE : raster::VITRAIL_RASTER_LEAST_PAGE;
 }
 
@@ -133,7 +133,7 @@ std::uint32_t VitrailVkRaster_T::pageBits() const {
   using namespace vitrail;
   const std::uint64_t tiles = std::uint64_t{tilesX()} * bandRows;
   std::uint32_t bits = leastPageBits(bandRows);
-  if (bandRows == 1) return bits;
+  if (bandRows < tilesY()) return bits;
   while (bits < raster::VITRAIL_RASTER_MOST_PAGE && (tiles << (bits + 1)) / 3 * 4 <= room.records) ++bits;
   return bits;
 }
@@ -225,8 +225,7 @@ bool hasRasterBinding(RasterSet set, std::uint32_t samples, std::uint32_t bindin
     return bits;
   };
   constexpr std::uint32_t kGeometry = kBits({0, 1, 2, 3, 4, 5, 6, 17, 19, 21, 22, 23, 24, 25, 26, 27});
-  constexpr std::uint32_t kBlend =
-      kBits({0, 1, 2, 3, 7, 8, 9, 10, 11, 12, 13, 14, 16, 17, 18, 19, 21, 25, 26, 27, 28});
+  constexpr std::uint32_t kBlend = kBits({0, 1, 2, 3, 7, 8, 9, 10, 11, 12, 13, 14, 16, 17, 18, 19, 21, 25, 26, 27, 28});
   if (binding == kOpaqueBinding && samples == 1) return false; // there is no such image
   const std::uint32_t has = set == RasterSet::Own ? 0xffffffffU : set == RasterSet::Geometry ? kGeometry : kBlend;
   return (has >> binding & 1U) != 0;

@@ -18,8 +18,8 @@ struct vec4 {
 
 const uint VITRAIL_RASTER_GROUP = 128u;     // threads of a work group of most passes
 const uint VITRAIL_RASTER_VERTICES = 2u;    // vertices for each of those that ask for positions
-const uint VITRAIL_RASTER_SET_UP = 64u;     // of one that sets up triangles, each one of them
-const uint VITRAIL_RASTER_TURNS = 4u;       // so many times
+const uint VITRAIL_RASTER_SET_UP = 128u;    // of one that sets up triangles, each one of them
+const uint VITRAIL_RASTER_TURNS = 2u;       // so many times
 const uint VITRAIL_RASTER_FEW_MEDIUM = 16u; // medium triangles for a work group, at least, up to so many work groups
 const uint VITRAIL_RASTER_MEDIUM = 1024u;
 const uint VITRAIL_RASTER_PIXELS = 64u;        // of a tile, a thread each
@@ -39,16 +39,16 @@ const uint VITRAIL_RASTER_FIRST_PAGE = 2u;     // of these the second page of re
 const uint VITRAIL_RASTER_LEAST_PAGE = 2u;     // a tile's first page has room for 2 to the power of this, up to
 const uint VITRAIL_RASTER_GOOD_PAGE = 6u;      // of this where there is memory, or of this where there are many records
 const uint VITRAIL_RASTER_MOST_PAGE = 9u;
-const uint VITRAIL_RASTER_MEDIUM_SHARE = 4u;   // medium triangles are listed, one for so many records of the room, or
-                                               // with several samples, where all are, for each;
-const uint VITRAIL_RASTER_ASTRAY_SHARE = 12u;  // and records that are still to be brought to their pages
-const uint VITRAIL_RASTER_BLOCK = 4096u;       // records of a deep tile that a work group looks after
-const uint VITRAIL_RASTER_CHUNK = 1024u;       // fragments that a work group sorts at once
-const uint VITRAIL_RASTER_SLICE = 2048u;       // fragments of a pixel that a dispatch blends
-const uint VITRAIL_RASTER_TIES = 16u;          // surfaces at one depth whose order their colours decide
-const uint VITRAIL_RASTER_MOST_KEPT = 32u;     // fragments of a pixel in registers
-const uint VITRAIL_RASTER_TABLE = 256u;        // threads of the work groups that make the tables of a frame
-const float VITRAIL_RASTER_STOP = 0.35f;       // of 1/255: what may be left out of a pixel that hardly shows it
+const uint VITRAIL_RASTER_MEDIUM_SHARE = 4u; // medium triangles are listed, one for so many records of the room, or
+                                             // with several samples, where all are, for each;
+const uint VITRAIL_RASTER_ASTRAY_SHARE = 4u; // and records that are still to be brought to their pages
+const uint VITRAIL_RASTER_BLOCK = 4096u;     // records of a deep tile that a work group looks after
+const uint VITRAIL_RASTER_CHUNK = 1024u;     // fragments that a work group sorts at once
+const uint VITRAIL_RASTER_SLICE = 2048u;     // fragments of a pixel that a dispatch blends
+const uint VITRAIL_RASTER_TIES = 16u;        // surfaces at one depth whose order their colours decide
+const uint VITRAIL_RASTER_MOST_KEPT = 32u;   // fragments of a pixel in registers
+const uint VITRAIL_RASTER_TABLE = 256u;      // threads of the work groups that make the tables of a frame
+const float VITRAIL_RASTER_STOP = 0.35f;     // of 1/255: what may be left out of a pixel that hardly shows it
 
 // What a stage was compiled for: where its numbers begin in the word that the library reads in its SPIR-V, the default
 // of a specialization constant (raster.glsl).
