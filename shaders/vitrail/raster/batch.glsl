@@ -7,7 +7,7 @@
 #include "samples.glsl"
 
 const uint VITRAIL_BATCHED = VITRAIL_RASTER_BATCHES > 1u ? 2u * VITRAIL_RASTER_PIXELS : VITRAIL_RASTER_PIXELS;
-shared uint vitrailBatchMasks[2u * VITRAIL_BATCHED]; // the pixels that each covers: the upper ones of all, the lower ones
+shared uint vitrailBatchMasks[2u * VITRAIL_BATCHED]; // that each covers: upper pixels of all, lower ones
 shared vec4 vitrailBatchPlanes[VITRAIL_BATCHED];
 // How much nearer than on its plane each may be, anywhere in the tile.
 shared float vitrailBatchSlacks[VITRAIL_BATCHED];
@@ -52,8 +52,8 @@ bool vitrailIsHidden(uint inBatch, float depth, float farthest) {
   return depth + vitrailBatchSlacks[inBatch] < farthest;
 }
 
-// Those that cover the vitrailThread's pixel, a bit each, of the first batch or of the one that begins there. All threads
-// together.
+// Those that cover the vitrailThread's pixel, a bit each, of the first batch or of the one that begins there. All
+// threads together.
 uvec2 vitrailCovering(uint begin) {
   uint first = (vitrailThread >> 5) * VITRAIL_BATCHED + begin;
   if (VITRAIL_RASTER_SHUFFLES) {

@@ -36,9 +36,9 @@ layout(VITRAIL_RASTER_BOUND(1), std430) buffer VitrailRasterControlBlock { Vitra
 // cover; where its pages begin (pages.glsl). Setting up reads of a dispatch what it has written.
 layout(VITRAIL_RASTER_BOUND(2), std430) VITRAIL_TILES_ARE buffer VitrailTileBlock { uint vitrailTiles[]; };
 // Two for a record, which is a triangle in a tile: the pixels that it covers, the primitive (and in the highest bit
-// whether its front shows) and the item; and behind these of all records the depth at the middle of the first pixel, what
-// pixels to the right and down add, and the nearest depth. Triangles that are side by side are so here, most often, and
-// what GPUs write at once is then side by side as well.
+// whether its front shows) and the item; and behind these of all records the depth at the middle of the first pixel,
+// what pixels to the right and down add, and the nearest depth. Triangles that are side by side are so here, most
+// often, and what GPUs write at once is then side by side as well.
 layout(VITRAIL_RASTER_BOUND(3), std430) buffer VitrailRecordBlock { uvec4 vitrailRecords[]; };
 // Of each record that is not on its page yet the tile, which one it is there, and where it is.
 layout(VITRAIL_RASTER_BOUND(4), std430) buffer VitrailAstrayBlock { uint vitrailAstray[]; };

@@ -1,4 +1,4 @@
-// Where a tile's records are: on pages, the first of 2 to the power of vitrailRaster.pageBits, each of the next twice as
+// Where a tile's records are: on pages, the first of 2 to the power of vitrailRaster.pageBits, each next one twice as
 // large as the one before. The first pages of all tiles are there from the start.
 #ifndef VITRAIL_RASTER_PAGES_GLSL
 #define VITRAIL_RASTER_PAGES_GLSL

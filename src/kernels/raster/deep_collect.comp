@@ -33,7 +33,8 @@ void main() {
   for (uint i = first; i < end; i += VITRAIL_RASTER_PIXELS) {
     bool any_ = i + vitrailThread < end;
     barrier(); // all have left the last batch
-    vitrailLoadBatch(vitrailThread, any_, any_ ? vitrailRecordOf(tile, i + vitrailThread) : 0u, vitrailFirstPixel(tile));
+    uint record = any_ ? vitrailRecordOf(tile, i + vitrailThread) : 0u;
+    vitrailLoadBatch(vitrailThread, any_, record, vitrailFirstPixel(tile));
     barrier();
     uvec2 bits = vitrailCovering(0u);
     if (!inside) bits = uvec2(0u);

@@ -289,7 +289,7 @@ TEST_F(RasterFailingTest, WithoutMemoryForARowNothingChanges) {
   RasterHost host(hostOf(context_));
   host.setScene(manyTriangles(100));
   const std::vector<float> small = host.draw();
-  host.setScene(manyTriangles(4000));
+  host.setScene(manyTriangles(100'000));
   host.drawOnce(); // asks for tables
   ASSERT_EQ(host.raster().update(), VK_SUCCESS);
   host.drawOnce();
