@@ -47,7 +47,7 @@ double rasterExcess(const RasterNeeds& needs, const RasterBounds& bounds) {
   };
   const std::uint64_t masks = rasterMaskBytes(bounds.samples);
   const std::uint64_t states = rasterStateBytes(bounds.samples);
-  add(needs.records, std::max(kRasterRecordBytes, masks), rasterRecordBytes(bounds.samples));
+  add(needs.records, std::max(kRasterRecordBytes, masks), rasterRecordBytes(bounds.samples, bounds.counted));
   add(needs.large, kRasterListedBytes, kRasterListedBytes);
   add(needs.deep, states, kRasterDeepTileBytes + kRasterDeepPixelsBytes + states);
   add(needs.blocks, kRasterListedBytes, kRasterListedBytes);

@@ -35,15 +35,21 @@ struct RasterBounds {
   std::uint64_t budget = 0; // bytes of all together
   std::uint32_t tiles = 0;  // of a band
   std::uint32_t samples = 1;
+  bool counted = false; // records are, before there are places for them
 };
 
 // Bytes of what a frame's passes keep.
 constexpr std::uint64_t kRasterTileBytes = 128;    // of each of two arrays, the other with kRasterTileListBytes
 constexpr std::uint64_t kRasterTileListBytes = 24; // a place in each class
 constexpr std::uint64_t kRasterRecordBytes = 32;
-constexpr std::uint64_t kRasterAstrayBytes = 3; // for a record: one in four at most is listed, in three words
-// Of medium triangles, which are in two words: for a record one in four.
-constexpr std::uint64_t rasterMediumBytes(std::uint32_t samples) { return samples > 1 ? 8 : 2; }
+constexpr std::uint64_t rasterAstrayBytes(bool counted) { // for a record: one in four at most is listed, in three words
+  return counted ? 0 : 3;
+}
+// Of medium triangles, which are in two words: for a record one in four, or where there are as many places as records,
+// as many.
+constexpr std::uint64_t rasterMediumBytes(std::uint32_t samples, bool counted) {
+  return samples > 1 || counted ? 8 : 2;
+}
 constexpr std::uint64_t kRasterFragmentBytes = 8; // in each of two arrays
 constexpr std::uint64_t kRasterDeepTileBytes = 16;
 constexpr std::uint64_t kRasterDeepPixelsBytes = 64 * 16; // of a deep tile
@@ -51,8 +57,9 @@ constexpr std::uint64_t kRasterListedBytes = 8;           // a block, a chunk, a
 constexpr std::uint64_t kRasterItemBytes = 16;            // of an instance; no part of the budget
 constexpr std::uint64_t kRasterPositionBytes = 16;        // of a vertex of an instance; no part of the budget
 constexpr std::uint64_t rasterMaskBytes(std::uint32_t samples) { return samples > 1 ? samples * 8 : 0; } // of a record
-constexpr std::uint64_t rasterRecordBytes(std::uint32_t samples) { // of a record in all arrays
-  return kRasterRecordBytes + kRasterAstrayBytes + rasterMediumBytes(samples) + rasterMaskBytes(samples);
+constexpr std::uint64_t rasterRecordBytes(std::uint32_t samples, bool counted) { // of a record in all arrays
+  return kRasterRecordBytes + rasterAstrayBytes(counted) + rasterMediumBytes(samples, counted) +
+         rasterMaskBytes(samples);
 }
 constexpr std::uint64_t rasterStateBytes(std::uint32_t samples) { return samples * 64 * 32; } // of a deep tile
 

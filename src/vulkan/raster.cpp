@@ -14,7 +14,7 @@
 #include "core/target_common.h"
 
 vitrail::RasterBounds VitrailVkRaster_T::bounds(std::uint32_t rows) const {
-  return {.reach = reach(), .budget = budget, .tiles = tilesX() * rows, .samples = samples};
+  return {.reach = reach(), .budget = budget, .tiles = tilesX() * rows, .samples = samples, .counted = counted};
 }
 
 namespace vitrail {
@@ -274,14 +274,19 @@ void warnOfBands(const VitrailVkRaster_T& raster) {
 VkResult makeRoom(VitrailVkRaster_T& raster, const RasterNeeds& guess, const RasterNeeds& had) {
   std::uint32_t rows = raster.tilesY();
   RasterNeeds room;
+  const bool wasCounted = raster.counted;
+  raster.counted = false;
   const auto plan = [&](RasterNeeds needs, const RasterNeeds& before) {
-    const RasterBounds bounds = raster.bounds(rows);
-    const std::uint64_t first = std::uint64_t{bounds.tiles} << raster.leastPageBits(rows);
-    needs.records = std::max(needs.records, first);
-    return planRasterRoom(needs, before, bounds, room);
+    needs.records = std::max(needs.records, raster.leastPlaces(rows));
+    return planRasterRoom(needs, before, raster.bounds(rows), room);
   };
   while (plan(guess, had) > 1.0 && plan(kLeast, {}) > 1.0) {
+    if (rows == 1 && !raster.counted) {
+      raster.counted = true;
+      continue;
+    }
     if (rows == 1) {
+      raster.counted = wasCounted;
       return raster.context->log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY,
                                       "%s: a memoryBudget of %llu bytes has no room for a row of tiles, %u pixels wide",
                                       raster.debugName.c_str(), static_cast<unsigned long long>(raster.budget),
@@ -291,6 +296,7 @@ VkResult makeRoom(VitrailVkRaster_T& raster, const RasterNeeds& guess, const Ras
   }
   const bool isNew = raster.bandRows == 0;
   VkResult result = resizeRasterRoom(raster, room, rows, isNew || rows == 1 ? raster.context->log : kQuiet);
+  if (result != VK_SUCCESS) raster.counted = wasCounted;
   while (result != VK_SUCCESS && !isNew && rows > 1) { // in what there is, as growWithoutMemory()
     rows /= 2;
     if (rows > 1 && rasterExcess(raster.room, raster.bounds(rows)) > 1.0) continue;
@@ -483,12 +489,25 @@ VkResult growWithoutMemory(VitrailVkRaster_T& raster, const RasterNeeds& needs) 
   }
 }
 
-VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
+// Instead of pages as many places as there are records: of a row of tiles, for which there is no room with pages.
+// False: nor is there for that, and all stays as it was.
+bool countRecords(VitrailVkRaster_T& raster, RasterNeeds needs, std::uint64_t inTiles) {
+  needs.records = 1 + inTiles;
+  raster.counted = true;
+  RasterNeeds next;
+  const bool done = planRasterRoom(needs, {}, raster.bounds(1), next) <= 1.0 &&
+                    resizeRasterRoom(raster, next, 1, kQuiet) == VK_SUCCESS;
+  raster.counted = done;
+  return done;
+}
+
+VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs, std::uint64_t inTiles) {
   RasterNeeds next;
   std::uint32_t rows = raster.bandRows;
   const double excess = planRasterRoom(needs, raster.room, raster.bounds(rows), next);
   if (excess > 1.0) {
     if (rows == 1) {
+      if (!raster.counted && countRecords(raster, needs, inTiles)) return VK_SUCCESS;
       return raster.context->log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY,
                                       "%s: there is no room for the %llu triangles of a row of tiles and for %llu "
                                       "fragments of deep tiles: a larger "
@@ -505,21 +524,24 @@ VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
 
 // What is enough for the frame: where there is less room, tiles begin with smaller pages.
 RasterNeeds leastOf(const VitrailVkRaster_T& raster, RasterNeeds needs, std::uint64_t inTiles) {
-  const std::uint64_t first = (std::uint64_t{raster.tilesX()} * raster.bandRows)
-                              << raster.leastPageBits(raster.bandRows);
-  needs.records = std::min(needs.records, first + 4 * inTiles);
+  needs.records = std::min(needs.records, raster.leastPlaces(raster.bandRows) + 4 * inTiles);
   return needs;
 }
 
 // Less memory, or fewer bands, where frames have needed little for long. What cannot be made then stays as it is.
 void shrink(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
-  const bool splits = raster.bandRows < raster.tilesY();
+  const bool splits = raster.counted || raster.bandRows < raster.tilesY();
   RasterNeeds most;
   if (!raster.low.note(needs, splits || isLowRasterNeed(needs, raster.room), most)) return;
   const std::uint32_t rows = std::min(raster.tilesY(), raster.bandRows * 2);
   RasterNeeds next;
   if (splits) {
-    if (planJoinedBands(most, raster.room, raster.bounds(rows), next)) resizeRasterRoom(raster, next, rows, kQuiet);
+    const bool wasCounted = raster.counted;
+    raster.counted = false;
+    if (wasCounted) most.records = 3 * most.records + raster.leastPlaces(rows); // with what pages leave free
+    const bool joined = planJoinedBands(most, raster.room, raster.bounds(rows), next) &&
+                        resizeRasterRoom(raster, next, rows, kQuiet) == VK_SUCCESS;
+    raster.counted = wasCounted && !joined;
     return;
   }
   most = most.most(raster.guess); // what the host knew beforehand it still knows
@@ -542,6 +564,7 @@ VkResult follow(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals& to
   if (result != VK_SUCCESS) return result;
   // Draws are those of any extent. What their triangles need in another one says little.
   if (facts.extent.width != raster.extent.width || facts.extent.height != raster.extent.height) return VK_SUCCESS;
+  if (facts.counted != raster.counted) return VK_SUCCESS; // nor what pages need where there are none
   if (needs.fitInto(raster.room)) {
     shrink(raster, leastOf(raster, needs, totals.inTiles));
     return VK_SUCCESS;
@@ -549,7 +572,7 @@ VkResult follow(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals& to
   raster.low.forget();
   // A band of more rows than they are now needed more.
   if (facts.bands < raster.bands()) return VK_SUCCESS;
-  return growRoom(raster, needs);
+  return growRoom(raster, needs, totals.inTiles);
 }
 
 } // namespace

@@ -119,6 +119,7 @@ struct RasterFacts {
   std::uint64_t tag = 0; // of no other frame, also where numbers come twice
   VkExtent2D extent{};
   RasterNeeds room;
+  bool counted = false;
   std::uint32_t bands = 0;
   std::uint32_t draws = 0;
   bool deep = false; // its passes of deep tiles are there, with so many
@@ -189,7 +190,10 @@ struct VitrailVkRaster_T {
   vitrail::RasterTables tables;
   vitrail::RasterNeeds guess; // what there is room for from the start
   std::uint32_t bandRows = 0; // of tiles
-  bool deepPlanned = false;   // frames have the passes of deep tiles, and so many of some
+  // Records are counted before there are places for them, which takes a second turn of setting up, but no memory for
+  // what pages leave free.
+  bool counted = false;
+  bool deepPlanned = false; // frames have the passes of deep tiles, and so many of some
   std::uint32_t mergePasses = 0;
   std::uint32_t slices = 1;
   vitrail::RasterLow low;
@@ -228,6 +232,10 @@ struct VitrailVkRaster_T {
   // room that there is.
   [[nodiscard]] std::uint32_t leastPageBits(std::uint32_t rows) const;
   [[nodiscard]] std::uint32_t pageBits() const;
+  // Places for records that such bands have whatever is drawn.
+  [[nodiscard]] std::uint64_t leastPlaces(std::uint32_t rows) const {
+    return counted ? 1 : (std::uint64_t{tilesX()} * rows) << leastPageBits(rows);
+  }
   [[nodiscard]] std::size_t slotOf(std::uint64_t frame) const { return frame % facts.size(); }
   // Bytes of a buffer that a shader can look at.
   [[nodiscard]] std::uint64_t reach() const {

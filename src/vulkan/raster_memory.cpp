@@ -124,13 +124,14 @@ std::uint32_t VitrailVkRaster_T::leastPageBits(std::uint32_t rows) const {
   using namespace vitrail;
   constexpr std::uint64_t kOfBudget = 32;
   const std::uint64_t good = (std::uint64_t{tilesX()} * rows) << raster::VITRAIL_RASTER_GOOD_PAGE;
-  const bool hasMemory = rows >= tilesY() && good * rasterRecordBytes(samples) <= budget / kOfBudget;
+  const bool hasMemory = rows >= tilesY() && good * rasterRecordBytes(samples, false) <= budget / kOfBudget;
   return hasMemory ? raster::VITRAIL_RASTER_GOOD_PAGE : raster::VITRAIL_RASTER_LEAST_PAGE;
 }
 
 // At most three quarters of what there is room for, so that most tiles have no other page.
 std::uint32_t VitrailVkRaster_T::pageBits() const {
   using namespace vitrail;
+  if (counted) return raster::VITRAIL_RASTER_COUNTED;
   const std::uint64_t tiles = std::uint64_t{tilesX()} * bandRows;
   std::uint32_t bits = leastPageBits(bandRows);
   if (bandRows < tilesY()) return bits;
@@ -160,8 +161,8 @@ VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, st
   made.make(RasterBuffer::Tiles, tiles * kRasterTileBytes, times);
   made.make(RasterBuffer::TileList, tiles * kRasterTileListBytes, times);
   made.make(RasterBuffer::Records, room.records * kRasterRecordBytes);
-  made.make(RasterBuffer::Astray, room.records * kRasterAstrayBytes);
-  made.make(RasterBuffer::Medium, room.records * rasterMediumBytes(raster.samples));
+  made.make(RasterBuffer::Astray, room.records * rasterAstrayBytes(raster.counted));
+  made.make(RasterBuffer::Medium, room.records * rasterMediumBytes(raster.samples, raster.counted));
   made.make(RasterBuffer::SampleMasks, room.records * rasterMaskBytes(raster.samples));
   made.make(RasterBuffer::Large, room.large * kRasterListedBytes);
   made.make(RasterBuffer::DeepTiles, room.deep * kRasterDeepTileBytes);

@@ -65,6 +65,11 @@ class Recording {
     vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     vk_.CmdDispatchIndirect(commands_, raster_.buffer(sizes).buffer, offset);
   }
+  void dispatchTiles(VkPipeline pipeline, const Band& band) const { // 256 for a work group
+    const std::uint32_t groups = (raster_.tilesX() * band.tilesY() + 255) / 256;
+    dispatch(pipeline, std::min(groups, raster::VITRAIL_RASTER_ROW),
+             (groups + raster::VITRAIL_RASTER_ROW - 1) / raster::VITRAIL_RASTER_ROW);
+  }
   void fill(RasterBuffer which) const {
     vk_.CmdFillBuffer(commands_, raster_.buffer(which).buffer, 0, VK_WHOLE_SIZE, 0);
   }
@@ -81,6 +86,7 @@ class Recording {
   void clear(const Band& band, bool isFirst);
   void readDraws(bool isFirst);
   void setUp();
+  void place(const Band& band);
   void bin(const Band& band);
   void blend();
   void blendDeep();
@@ -227,12 +233,17 @@ void Recording::setUp() {
   passBarrier();
 }
 
-void Recording::bin(const Band& band) {
-  const std::uint32_t tiles = raster_.tilesX() * band.tilesY();
-  const std::uint32_t groups = (tiles + 255) / 256;
+// After a turn of setting up that only counted.
+void Recording::place(const Band& band) {
   bind(RasterSet::Own);
-  dispatch(raster_.kernel(RasterKernel::Plan), std::min(groups, raster::VITRAIL_RASTER_ROW),
-           (groups + raster::VITRAIL_RASTER_ROW - 1) / raster::VITRAIL_RASTER_ROW);
+  dispatchTiles(raster_.kernel(RasterKernel::Place), band);
+  // Tiles have places for what was counted, and lists are empty -> records are made.
+  passBarrier();
+}
+
+void Recording::bin(const Band& band) {
+  bind(RasterSet::Own);
+  dispatchTiles(raster_.kernel(RasterKernel::Plan), band);
   // Records are on their pages, and tiles on lists -> they are blended, and the counts say how many.
   passBarrier();
 }
@@ -310,6 +321,10 @@ void Recording::drawBand(const Band& band, bool isFirst, bool isLast) {
   if (!empty) readDraws(isFirst);
   passed("clear");
   if (!empty) {
+    if (raster_.counted) {
+      setUp();
+      place(band);
+    }
     setUp();
     passed("set up");
     bin(band);
@@ -383,6 +398,7 @@ void beginFrame(VitrailVkRaster_T& raster, const VitrailVkRasterInfo& info, bool
   facts.frame = raster.frames.newest();
   facts.extent = raster.extent;
   facts.room = raster.room;
+  facts.counted = raster.counted;
   facts.bands = raster.bands();
   facts.draws = info.drawCount;
   facts.deep = raster.deepPlanned;

@@ -78,8 +78,23 @@ uint vitrailDistance(float depth) { return 0x3f800000u - floatBitsToUint(min(max
   first = atomicAdd(low, more); \
   if (first + (more) < first) atomicAdd(high, 1u);
 
+// Whether a tile's records lie side by side, in as many places as a first turn of setting up has counted: pages.glsl.
+bool vitrailIsCounted() { return vitrailRaster.pageBits == VITRAIL_RASTER_COUNTED; }
+
+// How many medium triangles can be listed.
+uint vitrailMediumCapacity() {
+  return VITRAIL_RASTER_SAMPLES > 1u || vitrailIsCounted()
+             ? vitrailRaster.recordCapacity
+             : vitrailRaster.recordCapacity / VITRAIL_RASTER_MEDIUM_SHARE;
+}
+
 // Whether the records can be read: there was room for all.
 bool vitrailHasRecords() {
+  // Of lists that were cut off each turn of setting up may have had other triangles.
+  if (vitrailIsCounted() && (vitrailRasterControl.medium > vitrailMediumCapacity() ||
+                             vitrailRasterControl.large > vitrailRaster.largeCapacity)) {
+    return false;
+  }
   return vitrailRasterControl.recordsHigh == 0u && vitrailRasterControl.records <= vitrailRaster.recordCapacity &&
          vitrailRasterControl.astray <= vitrailRaster.recordCapacity / VITRAIL_RASTER_ASTRAY_SHARE;
 }

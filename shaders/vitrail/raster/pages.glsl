@@ -1,15 +1,12 @@
 // Where a tile's records are: on pages, the first of 2 to the power of vitrailRaster.pageBits, each next one twice as
 // large as the one before. The first pages of all tiles are there from the start.
+//
+// Where memory is too short for that, triangles are set up twice: the first turn only counts the records of each tile,
+// place.comp gives it as many places, and the second turn makes them (VITRAIL_RASTER_COUNTED).
 #ifndef VITRAIL_RASTER_PAGES_GLSL
 #define VITRAIL_RASTER_PAGES_GLSL
 
 #include "frame.glsl"
-
-// How many medium triangles can be listed.
-uint vitrailMediumCapacity() {
-  return VITRAIL_RASTER_SAMPLES > 1u ? vitrailRaster.recordCapacity
-                                     : vitrailRaster.recordCapacity / VITRAIL_RASTER_MEDIUM_SHARE;
-}
 
 uint vitrailPageOf(uint number) { return uint(findMSB((number >> vitrailRaster.pageBits) + 1u)); }
 uint vitrailFirstOfPage(uint page) { return ((1u << page) - 1u) << vitrailRaster.pageBits; }
@@ -21,9 +18,15 @@ uint vitrailWordOfPage(uint tile, uint page) {
   return tile * VITRAIL_RASTER_TILE_WORDS + VITRAIL_RASTER_FIRST_PAGE + page - 1u;
 }
 
+// The first place of a tile. Of those that are counted 0 while it has none.
+uint vitrailFirstPlace(uint tile) {
+  return vitrailIsCounted() ? vitrailTiles[tile * VITRAIL_RASTER_TILE_WORDS + VITRAIL_RASTER_FIRST_PAGE]
+                            : tile << vitrailRaster.pageBits;
+}
+
 // The place of a tile's record, when all are there.
 uint vitrailRecordOf(uint tile, uint number) {
-  if (number < 1u << vitrailRaster.pageBits) return (tile << vitrailRaster.pageBits) + number; // as most do
+  if (number < 1u << vitrailRaster.pageBits) return vitrailFirstPlace(tile) + number; // as most do
   uint page = vitrailPageOf(number);
   return vitrailTiles[vitrailWordOfPage(tile, page)] + number - vitrailFirstOfPage(page);
 }
@@ -34,6 +37,10 @@ uint vitrailRecordOf(uint tile, uint number) {
 // there is room for: then the frame is drawn again.
 uint vitrailTakePlace(uint tile) {
   uint number = atomicAdd(vitrailTiles[tile * VITRAIL_RASTER_TILE_WORDS], 1u);
+  if (vitrailIsCounted()) {
+    uint first = vitrailFirstPlace(tile);
+    return first != 0u ? first + number : 0xffffffffu; // this turn counts
+  }
   uint page = vitrailPageOf(number);
   uint inPage = number - vitrailFirstOfPage(page);
   uint size = 1u << min(vitrailRaster.pageBits + page, 30u);

@@ -28,6 +28,7 @@ void main() {
   if (thread < VITRAIL_RASTER_CLASSES + 2u) classes[thread] = isMedium ? uvec4(0u, 1u, 1u, 0u) : uvec4(0u);
   if (thread > 0u) return;
   const VitrailRasterDispatch none = VitrailRasterDispatch(0u, 0u, 0u, 0u);
-  const uint first = tiles << frameWords[1].z; // the places of all first pages
+  // The places of all first pages; or where they are counted one that no tile has.
+  const uint first = frameWords[1].z == VITRAIL_RASTER_COUNTED ? 1u : tiles << frameWords[1].z;
   vitrailRasterControl = VitrailRasterControl(none, none, none, first, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
 }
