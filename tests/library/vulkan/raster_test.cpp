@@ -1195,7 +1195,7 @@ TEST_F(RasterTest, SmallerExtentsKeepToTheBudget) {
   RasterHost small(desc);
   small.setScene(scene);
   small.draw();
-  desc.width = desc.height = 512; // whose tiles take 73,728 bytes more
+  desc.width = desc.height = 512; // whose tiles take 466,944 bytes more
   desc.memoryBudget = small.raster().memory().tileBytes;
   RasterHost host(desc);
   ASSERT_EQ(host.raster().resize({256, 256}), VK_SUCCESS);
@@ -1203,6 +1203,48 @@ TEST_F(RasterTest, SmallerExtentsKeepToTheBudget) {
   host.draw();
   EXPECT_EQ(host.stats().bands, 1U);
   EXPECT_LE(host.raster().memory().tileBytes, desc.memoryBudget + 4096U);
+}
+
+// A row of tiles with room for its records, but not for pages, which leave places free: records are counted, and lie
+// side by side. Where they have been few for long there are pages again.
+TEST_F(RasterTest, RecordsWithoutRoomForPagesAreCounted) {
+  std::vector<Rectangle> rectangles = someRectangles(1000);
+  for (std::uint32_t i = 0; i < rectangles.size(); ++i) { // of 2 x 2 pixels: no tile is deep
+    rectangles[i].left = i % 7;
+    rectangles[i].top = i / 7 % 7;
+    rectangles[i].right = rectangles[i].left + 2;
+    rectangles[i].bottom = rectangles[i].top + 2;
+  }
+  const RasterScene scene = sceneOf(rectangles, Form::VertexOffsets, false, 8);
+  const RasterScene small = sceneOf({rectangles.begin(), rectangles.begin() + 4}, Form::VertexOffsets, false, 8);
+  for (const std::uint32_t samples : {1U, 4U}) {
+    SCOPED_TRACE(samples);
+    RasterHostDesc desc;
+    desc.width = desc.height = 8;
+    desc.samples = samples;
+    RasterHost whole(desc);
+    whole.setScene(scene);
+    const std::vector<float> expected = whole.draw();
+    const VitrailVkRasterStats stats = whole.stats();
+    EXPECT_EQ(stats.deepTiles, 0U);
+    EXPECT_GE(stats.records, 2000U);
+    const std::uint64_t masks = samples > 1 ? 8 * samples : 0;
+    desc.memoryBudget = stats.records * (48 + masks);  // of which records take 40
+    EXPECT_LT(desc.memoryBudget, 4032 * (37 + masks)); // which pages of 64, 128 and so on take
+    RasterHost host(desc);
+    for (int turn = 0; turn < 2; ++turn) {
+      host.setScene(scene);
+      EXPECT_TRUE(host.draw(30) == expected);
+      EXPECT_LE(host.raster().memory().tileBytes, desc.memoryBudget + 4096U); // and what is rounded
+      const VkDeviceSize counted = host.raster().memory().tileBytes;
+      host.setScene(small);
+      for (int i = 0; i < 130; ++i) {
+        host.drawOnce();
+        ASSERT_EQ(host.raster().update(), VK_SUCCESS);
+      }
+      EXPECT_NE(host.raster().memory().tileBytes, counted); // of places on pages
+    }
+  }
 }
 
 // ---- Draws that are wrong
