@@ -64,7 +64,7 @@ TEST(RasterNeeds, TooMuchIsSaidByHowMuch) {
   RasterNeeds next;
   const double excess = planRasterRoom(withRecords(80'000), kLeast, bounds, next);
   EXPECT_NEAR(excess, (152.0 * 1000 + 37.0 * 80'000) / (1 << 20U), 0.01);
-  EXPECT_EQ(fewerRasterRows(100, excess), 20U); // 4.0 times too much, and some for what bands share
+  EXPECT_EQ(fewerRasterRows(100, excess), 25U); // 3.0 times too much, and some for what bands share
   EXPECT_EQ(fewerRasterRows(100, 1.01), 50U);
   EXPECT_EQ(fewerRasterRows(1, 9.0), 1U);
   // What a shader reaches, and what numbers of 32 bits count, bound as well.
