@@ -266,7 +266,8 @@ typedef struct VitrailCpuFrame {
   void* progressUser;
   /* Bytes that the fragments of all tiles in work may take, at least 65536: where they need more, a tile is drawn in
    * parts and layers, for the same picture. Default: 256 MiB, or 4 MiB a thread where that is more; tiles that
-   * need little touch little of it. Beside it a frame takes about 20 bytes a vertex and 5 bytes a triangle. */
+   * need little touch little of it. Beside it a frame takes about 20 bytes a vertex and 5 bytes a
+   * triangle, 9 where what is near may hide what is behind it. */
   uint64_t memoryBudget;
 } VitrailCpuFrame;
 
