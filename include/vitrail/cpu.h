@@ -192,9 +192,9 @@ typedef struct VitrailCpuDraw {
    * ones are clamped to it. It decides how far behind nearly opaque surfaces fragments still count (VitrailStats of
    * vitrailCpuRender). Default: 65504. Not needed where `shade` is null. */
   float brightest;
-  /* A promise: the alpha that `shade` gives is never below this, from 0 (default: nothing is known) to 1. Where it is
-   * told what is hidden is known before it is shaded, and most of it is left alone. 0 with VITRAIL_CPU_SHADE_DISCARD.
-   * Not needed where `shade` is null. */
+  /* A promise: the alpha that `shade` gives is never below this, from 0 (default: nothing is known) to 1. By it, what
+   * is hidden is known before it is shaded, and most of it is left alone; where it is not kept, surfaces vanish behind
+   * others. 0 with VITRAIL_CPU_SHADE_DISCARD. Not needed where `shade` is null. */
   float leastAlpha;
   uint32_t word; /* the host's, for the list hook: object, material */
 } VitrailCpuDraw;
@@ -266,16 +266,15 @@ typedef struct VitrailCpuFrame {
   void* progressUser;
   /* Bytes that the fragments of all tiles in work may take, at least 65536: where they need more, a tile is drawn in
    * parts and layers, for the same picture. Default: 256 MiB, or 4 MiB a thread where that is more; tiles that
-   * need little touch little of it. Beside it a frame takes about 20 bytes a vertex and 5 bytes a
-   * triangle, 9 where what is near may hide what is behind it. */
+   * need little touch little of it. Beside it a frame takes about 20 bytes a vertex and 5 bytes a triangle, 9 where
+   * what is near may hide what is behind it. */
   uint64_t memoryBudget;
 } VitrailCpuFrame;
 
-/* Draws a frame. `stats` is optional, and a frame without it is faster where much is hidden, which then need not be
- * counted; the picture is the same. `exact` and `complete` are 1 for every frame that was not given up,
- * fragmentsRequested counts the transparent fragments in front of opaque surfaces (as far as they are known: those
- * behind what is nearly opaque may be left out before they are counted; layersMax and coveredPixels likewise),
- * fragmentsMissing is 0.
+/* Draws a frame. `stats` is optional: a frame without it is faster where much is hidden, which need not be counted
+ * then; the picture is the same. `exact` and `complete` are 1 for every frame that was not given up, fragmentsRequested
+ * counts the transparent fragments in front of opaque surfaces (as far as they are known: those behind what is nearly
+ * opaque may be left out before they are counted; layersMax and coveredPixels likewise), fragmentsMissing is 0.
  *
  * A fragment is not blended, and where that saves time not shaded, where so little light comes through what is in front
  * of it, at most 2^-16 divided by the brightest colour of the frame (see VitrailCpuDraw::brightest; at least 1), that

@@ -44,6 +44,7 @@ Contender prepare(Device& device, const Scene& scene, const BenchRun& run, const
   contender.picture = pictureOf(run, options);
   contender.renderer = device.makeRenderer(scene, run.opacity, DrawOrder::Forward, options);
   for (std::uint32_t i = 0; i < run.warmups; ++i) contender.report = contender.renderer->measure(contender.picture);
+  contender.picture.counts = false; // in the frames that are timed
   return contender;
 }
 
@@ -109,7 +110,6 @@ void drawRounds(std::vector<WarmScene>& scenes) {
     if (first.progress) first.progress(fmt::format("round {} of {}", round + 1, first.repeats));
     for (std::size_t i = 0; i < all.size(); ++i) {
       Contender& contender = *all[(round + i) % all.size()];
-      contender.picture.counts = false;
       contender.frames.push_back(contender.renderer->measure(contender.picture).passesMs);
     }
   }

@@ -90,8 +90,10 @@ struct ShadeFunction {
 };
 ShadeFunction shadeFunction(const ShadeSurface& surface, VitrailCpuInstructions instructions);
 
-// The colour of a surface that needs no function, as its blend mode takes it.
+// What the alpha of a surface's fragments is never below; 0 where that is not known.
 float leastAlphaOf(const ShadeSurface& surface);
+
+// The colour of a surface that needs no function, as its blend mode takes it.
 glm::vec4 constantColor(const ShadeSurface& surface);
 
 // Whether the mask leaves nothing of such a surface.

@@ -8,6 +8,7 @@
 #endif
 
 #include "raster/cpu/frame.h"
+#include "raster/cpu/geometry-inl.h"
 #include "raster/cpu/lanes-inl.h"
 #include "raster/cpu/store-inl.h"
 
@@ -188,17 +189,10 @@ HWY_INLINE void setUpValues(Batch& batch, std::uint32_t at, const F* z, const F*
   store(batch.w2 + at, w[2]);
 }
 
-// A key that is nearer than those of all that sixteen triangles cover, which may be off by 2^-20 of the way between
-// their corners.
+// A key that is nearer than those of all that sixteen triangles cover.
 HWY_INLINE I nearestOf(const Batch& batch, std::uint32_t at, bool nearestIsOne) {
   const F z = load(batch.z[0] + at);
-  const F second = load(batch.z[1] + at);
-  const F third = load(batch.z[2] + at);
-  const F zero = set(0.0F);
-  const F up = max(max(second, third), zero);
-  const F down = min(min(second, third), zero);
-  const F margin = fma(set(1.0F / 65536.0F), up - down, set(1.0F / 1048576.0F) * max(z, z + up));
-  return keyOf(nearestIsOne ? z + up + margin : z + down - margin, nearestIsOne);
+  return keyOf(nearestOfDepths(z, z + load(batch.z[1] + at), z + load(batch.z[2] + at), nearestIsOne), nearestIsOne);
 }
 
 // Sixteen triangles from entry `at` on; of those that need clipping nothing comes: returns which they are, a bit each.

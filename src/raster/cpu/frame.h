@@ -144,7 +144,7 @@ struct Frame {
   }
   // Whether each fragment has the colour of its draw.
   bool isFlat() const { return !needs.shaded && !needs.filters && leastTransmittance > 0.0F; }
-  // The optical depth behind which nothing counts, and half of it for what rounds.
+  // The optical depth behind which nothing counts: the light is halved once more, for what rounds.
   float opaqueDepth() const { return 1.0F - std::log2(leastTransmittance); }
   // Whether what hides others may be known when it comes.
   bool mayTrackHidden() const { return info.samples == 1 && !needs.filters && leastTransmittance > 0.0F; }

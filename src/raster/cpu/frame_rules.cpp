@@ -227,8 +227,6 @@ void addWork(Frame& frame, std::uint32_t draw, std::uint64_t& vertices) {
 // Makes room for how near primitives come, where what is near may hide what is behind it, and that is known when it
 // comes.
 void addNearest(Frame& frame) {
-  frame.nearest.clear();
-  if (!frame.mayTrackHidden()) return;
   float depth = 0.0F; // of one layer of each job: a guess, as for each tile later
   std::uint64_t primitives = 0;
   for (Job& job : frame.jobs) {
@@ -237,7 +235,9 @@ void addNearest(Frame& frame) {
     primitives += job.count;
     depth += frame.opticalDepths[job.draw];
   }
-  if (depth > frame.opaqueDepth()) frame.nearest.resize(primitives);
+  // Not emptied first: that would fill all of it once more in each frame.
+  const bool isNeeded = frame.mayTrackHidden() && depth > frame.opaqueDepth();
+  frame.nearest.resize(isNeeded ? primitives : 0);
 }
 
 } // namespace

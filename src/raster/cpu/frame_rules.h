@@ -14,8 +14,7 @@ VitrailResult checkFrame(const Log& log, const VitrailCpuFrame* frame, const Vit
                          std::uint32_t count);
 
 // Fills in the defaults of a frame that was checked and plans its jobs. What cannot change the picture is left out.
-// `counts`: Frame's.
-// Throws std::bad_alloc.
+// `counts`: Frame's. Throws std::bad_alloc.
 void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const VitrailCpuDraw> draws,
                   std::uint32_t threads, bool counts);
 

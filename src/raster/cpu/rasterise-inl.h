@@ -43,8 +43,8 @@ inline void TileWorker::merge() {
 }
 
 // Puts the tile's triangles about from near to far, where they hide so much that blocks may become opaque before most
-// have come: by counting, in steps of the nearest depths that they reach. In which order they are before
-// does not matter. False: they were left as they are.
+// have come: by counting, in steps of the nearest depths that they reach. In which order they are before does not
+// matter. False: they were left as they are.
 inline bool TileWorker::orderByDepth(const Frame& frame) {
   if (frame.nearest.empty()) return false;
   // Of one layer of each job: a guess.

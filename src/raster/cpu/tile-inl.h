@@ -39,7 +39,7 @@ inline void TileWorker::draw(const Frame& frame, std::uint32_t tile, TileCounts&
   if (!numbers_.empty() || (opaque_ != nullptr && opaque_->drawn != 0) || frame.info.sampleColors != nullptr) {
     untouched_ = 0;
     drawParts(frame, blocks, counts);
-    if (tracksHidden_) order_.learn(shownTriangles_ < numbers_.size() / 8 * 7);
+    if (tracksHidden_ && !frame.isFlat()) order_.learn(shownTriangles_ < numbers_.size() / 8 * 7);
     writeTile(frame);
   } else {
     untouched_ = blocks;

@@ -136,10 +136,7 @@ class OrderTrial {
     return depth >= paysFrom_ || asked_++ % 32 == 0;
   }
   // Of the tile that was asked for last.
-  void learn(bool pays) {
-    if (pays) paysFrom_ = std::min(paysFrom_, depth_);
-    if (!pays) paysFrom_ = std::max(paysFrom_, depth_ * 1.05F);
-  }
+  void learn(bool pays) { paysFrom_ = pays ? std::min(paysFrom_, depth_) : std::max(paysFrom_, depth_ * 1.05F); }
 
  private:
   std::uint32_t asked_ = 0;
@@ -222,7 +219,8 @@ class TileWorker final : public TileWorkspace {
   template <bool kPlain = false>
   HWY_INLINE void perspective(const Work& work, bool derivatives, F* weights) const;
   HWY_INLINE void countHidden(std::uint32_t block, std::uint32_t mask);
-  // What is kept of a fragment: its triangle and place, its draw, or that and what light is left behind it.
+  // What is kept of a fragment: its triangle and place, or its draw. Where it is tracked, also what light is left
+  // behind those of its pixel.
   enum class Kept { Shaded, ShadedTracked, Flat, FlatTracked };
   static constexpr bool isShaded(Kept kept) { return kept == Kept::Shaded || kept == Kept::ShadedTracked; }
   static constexpr bool isTracked(Kept kept) { return kept == Kept::ShadedTracked || kept == Kept::FlatTracked; }
