@@ -23,6 +23,8 @@ struct DeviceLimits {
   // How lists are sorted: by networks on GPUs, by insertion, whose code is short, where both sides of every branch are
   // executed. Set by the tests, too.
   bool networks = true;
+  // A raster has one pipeline that blends for tiles of all classes.
+  bool oneBlend = false;
 };
 
 } // namespace vitrail

@@ -51,8 +51,10 @@ void readLimits(VitrailVkContext_T& context, const VkPhysicalDeviceProperties& d
                       limits.sampledImageColorSampleCounts & limits.sampledImageDepthSampleCounts;
   kept.isCpu = device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   kept.networks = !kept.isCpu;
+  kept.oneBlend = kept.isCpu;
 #ifdef VITRAIL_TEST_USE_NETWORKS // so that a CPU device tests what GPUs run
   kept.networks = true;
+  kept.oneBlend = false;
 #endif
   kept.poolByAddress = context.has(VITRAIL_VK_FEATURE_BUFFER_DEVICE_ADDRESS);
   kept.dualSourceBlending = context.has(VITRAIL_VK_FEATURE_DUAL_SRC_BLEND);

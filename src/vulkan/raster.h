@@ -214,6 +214,10 @@ struct VitrailVkRaster_T {
   [[nodiscard]] VkPipeline kernel(vitrail::RasterKernel which) const {
     return kernels[static_cast<std::size_t>(which)];
   }
+  // Without one of its own, a class of tiles has the last.
+  [[nodiscard]] VkPipeline blend(std::uint32_t which) const {
+    return blends.at(which) != VK_NULL_HANDLE ? blends.at(which) : blends.back();
+  }
   [[nodiscard]] VkPipelineLayout layout(vitrail::RasterSet which) const {
     return layouts[static_cast<std::size_t>(which)];
   }

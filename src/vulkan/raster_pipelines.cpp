@@ -216,14 +216,16 @@ VkResult createGeometryPipeline(VitrailVkRaster_T& raster, const VitrailVkRaster
 }
 
 // Tiles with few records, or of which no pixel is deep, keep fewer of a pixel's fragments in registers, so that more
-// work groups run at a time.
+// work groups run at a time. A CPU runs as many of any pipeline, and takes a second and more to compile each: there the
+// last one blends all tiles.
 VkResult createBlends(VitrailVkRaster_T& raster, const VitrailVkRasterStage& given) {
   constexpr std::array<std::uint32_t, kRasterBlends> kKeep = {8, 16, 16, 32};
   const std::uint32_t atOnce = raster.samples > 1 ? 2 : 1; // batches
   const std::array<std::uint32_t, kRasterBlends> batches = {0, 0, atOnce, 1};
   RasterStage stage;
   VkResult result = keepStage(raster, given, "blend", stage);
-  for (std::uint32_t i = 0; result == VK_SUCCESS && i < kRasterBlends; ++i) {
+  const std::uint32_t first = raster.context->limits.oneBlend ? kRasterBlends - 1 : 0;
+  for (std::uint32_t i = first; result == VK_SUCCESS && i < kRasterBlends; ++i) {
     RasterConstants constants = constantsOf(raster);
     constants.keep = kKeep[i];
     constants.batches = batches.at(i);

@@ -254,7 +254,7 @@ void Recording::blend() {
   for (std::uint32_t i = raster::VITRAIL_RASTER_CLASSES; i-- > 0;) { // those that take longest first
     push({i, 0, 0}, RasterSet::Blend);
     dispatch(
-        raster_.blends.at(kPipelines.at(i)), RasterBuffer::Counts,
+        raster_.blend(kPipelines.at(i)), RasterBuffer::Counts,
         kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, of) + i * sizeof(raster::VitrailRasterDispatch));
   }
 }

@@ -1,5 +1,4 @@
-// A Vulkan layer that keeps pipelines (kept_pipelines.h), for below the validation layer. For one instance and one
-// device at a time.
+// A Vulkan layer that keeps pipelines (kept_pipelines.h). For one instance and one device at a time.
 #include <volk.h>
 
 #include <cstring>

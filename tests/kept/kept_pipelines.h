@@ -3,10 +3,10 @@
 // shader, the driver compiles it. Here a pipeline of the same code, constants, layout and state as one before is that
 // one again.
 //
-// Above the layer, as methods_tests has it, the layer sees each that differs, once, and does not see a pipeline that is
-// destroyed while a frame uses it. Below the layer, as library_tests has it (keeping_layer.cpp), the layer sees all
-// that is made, used and destroyed, and the driver alone is spared. The tool itself, which tool_tests runs under the
-// layer, makes and destroys its own.
+// Above the layer, as methods_tests and most of library_tests have it, the layer sees each that differs, once, and does
+// not see a pipeline that is destroyed while a frame uses it. Below the layer, as the test library.lives has it
+// (keeping_layer.cpp), the layer sees all that is made, used and destroyed, and the driver alone is spared. The tool
+// itself, which tool_tests runs under the layer, makes and destroys its own.
 #pragma once
 
 #include <string>

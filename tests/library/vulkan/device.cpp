@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace vitrail::tests::vulkan {
@@ -123,8 +124,10 @@ void Device::makeInstance() {
 #else
   constexpr std::array kExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
   layers.push_back(kLayer);
-  // Below it: the first is the nearest to the application.
-  if (std::getenv("VITRAIL_TEST_KEEP_PIPELINES") != nullptr) layers.push_back(kKeepingLayer);
+  // Below it, or above (tests/kept): the first is the nearest to the application.
+  if (const char* place = std::getenv("VITRAIL_TEST_KEEP_PIPELINES"); place != nullptr) {
+    layers.insert(std::string_view(place) == "above" ? layers.begin() : layers.end(), kKeepingLayer);
+  }
 #endif
   auto info = zeroed<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
   info.pNext = &validation;

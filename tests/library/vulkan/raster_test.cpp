@@ -886,7 +886,7 @@ TEST_F(RasterTest, RoomFromTheStartStays) {
 // ---- Bands of frames that stay alike
 
 constexpr std::uint32_t kTilesSide = 128; // pixels of the picture
-constexpr std::uint32_t kTies = 10;       // more than registers hold of tiles with few records
+constexpr std::uint32_t kTies = 40;       // more than registers hold of any tile
 
 // In each of so many tiles triangles at one depth, over one pixel or all of them, which makes it a deep one.
 RasterScene deepTilesOf(std::uint32_t tiles, float pixels) {
@@ -917,8 +917,8 @@ TEST_F(RasterTest, BandsThatDeepTilesBoundStay) {
   RasterHostDesc desc;
   desc.width = desc.height = kTilesSide;
   desc.indexType = VK_INDEX_TYPE_UINT32;
-  desc.hints.triangles = 2600; // room for twice as many records
-  desc.memoryBudget = 900'000; // of which 256 deep tiles take 790,528
+  desc.hints.triangles = 10'400; // room for twice as many records
+  desc.memoryBudget = 1'000'000; // of which 256 deep tiles take 790,528
   RasterHost host(desc);
   host.setScene(deepTilesOf(22, 4.0F)); // many fragments, in few tiles
   host.draw();
