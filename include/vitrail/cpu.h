@@ -188,9 +188,9 @@ typedef struct VitrailCpuDraw {
   VitrailCpuShade shade;
   void* shadeUser;
   uint32_t shadeFlags; /* VitrailCpuShadeBits */
-  /* The largest r, g or b, times alpha where `blend` is VITRAIL_BLEND_OVER or _ADDITIVE, that `shade` gives: larger
-   * ones are clamped to it. It decides how far behind nearly opaque surfaces fragments still count (VitrailStats of
-   * vitrailCpuRender). Default: 65504. Not needed where `shade` is null. */
+  /* The largest r, g or b, of VITRAIL_BLEND_ADDITIVE times alpha, that `shade` gives: larger ones are clamped to it. It
+   * decides how far behind nearly opaque surfaces fragments still count (VitrailStats of vitrailCpuRender). Default:
+   * 65504. Not needed where `shade` is null. */
   float brightest;
   /* A promise: the alpha that `shade` gives is never below this, from 0 (default: nothing is known) to 1. By it, what
    * is hidden is known before it is shaded, and most of it is left alone; where it is not kept, surfaces vanish behind
@@ -277,9 +277,13 @@ typedef struct VitrailCpuFrame {
  * opaque may be left out before they are counted; layersMax and coveredPixels likewise), fragmentsMissing is 0.
  *
  * A fragment is not blended, and where that saves time not shaded, where so little light comes through what is in front
- * of it, at most 2^-16 divided by the brightest colour of the frame (see VitrailCpuDraw::brightest; at least 1), that
- * it changes the sRGB picture by at most 1/20 of 1/255. Together with rounding, errorBound tells how far a pixel may be
- * from the real-number answer.
+ * of it, at most 0.000106 divided by the brightest colour of the frame (see VitrailCpuDraw::brightest; at least 1),
+ * that all that is left out changes the sRGB picture by at most 0.35 of 1/255, as on a GPU (vulkan_raster.h). A host
+ * that shows colours with a higher exposure, or wants more of them, says a larger `brightest`: with 1000, 0.00035 of
+ * 1/255 may be left out. Where surfaces send light that they need not hide for (VITRAIL_BLEND_ADDITIVE, or
+ * VITRAIL_BLEND_PREMULTIPLIED with a shade function), any number of them may add up, and nothing is left out but what
+ * less than 1e-30 of the light comes from. Together with rounding, errorBound tells how far a pixel may be from the
+ * real-number answer.
  *
  * Errors, with the reason in the context's log: VITRAIL_ERROR_INVALID for a field that is not as described,
  * VITRAIL_ERROR_OUT_OF_MEMORY, VITRAIL_ERROR_UNSUPPORTED where a thread cannot be started. Then the arrays may hold a

@@ -13,7 +13,7 @@ namespace {
 
 // What a fragment behind too little light may add, and rounding.
 double toleranceOf(double value, std::uint32_t layers) {
-  return 0x1.0p-16 + (2e-6 + 2e-7 * layers) * (1.0 + std::fabs(value));
+  return 0.35 / 255.0 / 12.92 + (2e-6 + 2e-7 * layers) * (1.0 + std::fabs(value));
 }
 
 std::size_t undecidedOf(const Expected& expected) {

@@ -259,8 +259,8 @@ std::span<const VitrailCpuDraw> CpuScene::Impl::draws(const View& view, std::uin
     const Group& group = groups_[i];
     if (group.prototype.shade == nullptr) continue;
     brightest[i] = brightestOf(group.surface, group.largestVertex, lights);
-    const bool alphaFollows = group.isTransparent; // of opaque ones alpha is not looked at
-    if (alphaFollows) brightest[i] *= largestAlphaOf(group.surface, group.largestVertex);
+    const bool isWeighted = group.isTransparent && group.prototype.blend == VITRAIL_BLEND_PREMULTIPLIED;
+    if (isWeighted) brightest[i] *= largestAlphaOf(group.surface, group.largestVertex);
     brightest[i] = std::max(brightest[i], 1e-6F); // 0 would stand for the default
   }
   transform_ = data.viewProjection;

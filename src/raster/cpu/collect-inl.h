@@ -109,7 +109,7 @@ HWY_INLINE std::uint32_t TileWorker::emitPlain(const Frame& frame, std::uint32_t
   const I base = set(nearestIsOne ? kOneBits + kNearestKey + 1 : kNearestKey);
   const F zero = set(0.0F);
   const F one = set(1.0F);
-  const F least = set(0.5F * frame.leastTransmittance);
+  const F least = set(frame.trackedTransmittance);
   const std::uint64_t saturated = saturated_;
   const std::int32_t* const draws = batch_.draw;
   Store::Head* const heads = store_.heads();

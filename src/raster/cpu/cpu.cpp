@@ -103,13 +103,14 @@ void forAll(raster::Workers& workers, std::uint64_t count, Work work) {
   });
 }
 
-void setStats(const raster::TileCounts& counts, VitrailStats& stats) {
+void setStats(const raster::TileCounts& counts, float leastTransmittance, VitrailStats& stats) {
   void* const next = stats.next;
   stats = {};
   stats.next = next;
   stats.complete = 1;
   // Half a step of rounding, what is behind too little light, and the rounding of so many sums and products.
-  stats.errorBound = 0.56F + 2e-5F * std::sqrt(static_cast<float>(counts.layersMax));
+  const float leftOut = leastTransmittance > raster::kNoTransmittance ? raster::kLeftOut : 0.0F;
+  stats.errorBound = 0.51F + leftOut + 2e-5F * std::sqrt(static_cast<float>(counts.layersMax));
   stats.exact = stats.errorBound <= 1.0F ? 1 : 0;
   stats.fragmentsRequested = counts.fragments;
   stats.fragmentsStored = counts.fragments;
@@ -155,7 +156,7 @@ VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
   if (progress.isGivenUp()) return VITRAIL_INCOMPLETE;
   raster::TileCounts all;
   for (const raster::TileCounts& each : counts) all.add(each);
-  if (stats != nullptr) setStats(all, *stats);
+  if (stats != nullptr) setStats(all, frame.leastTransmittance, *stats);
   return VITRAIL_SUCCESS;
 }
 

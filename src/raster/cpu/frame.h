@@ -112,11 +112,18 @@ struct FrameNeeds {
   bool operator==(const FrameNeeds&) const = default;
 };
 
+// How far an 8-bit sRGB picture may be off for what is left out as hidden, in steps: as of the rasteriser for GPUs.
+constexpr float kLeftOut = 0.35F;
+// What is behind less light than this shows nothing, however much light it sends.
+constexpr float kNoTransmittance = 1e-30F;
+
 struct Frame {
   VitrailCpuFrame info{}; // with its defaults filled in
   Viewport viewport{};
   FrameNeeds needs{};
   float leastTransmittance = 0.0F; // what is behind less than that does not count
+  // Less than that, for what rounds otherwise where light is multiplied up in the order in which fragments come.
+  float trackedTransmittance = 0.0F;
   std::vector<DrawInfo> draws;
   std::vector<Job> jobs;
   // Of each job's primitives a depth, nearer than all that it covers. Empty: their order does not matter.
@@ -144,8 +151,8 @@ struct Frame {
   }
   // Whether each fragment has the colour of its draw.
   bool isFlat() const { return !needs.shaded && !needs.filters && leastTransmittance > 0.0F; }
-  // The optical depth behind which nothing counts: the light is halved once more, for what rounds.
-  float opaqueDepth() const { return 1.0F - std::log2(leastTransmittance); }
+  // The optical depth behind which nothing counts.
+  float opaqueDepth() const { return -std::log2(trackedTransmittance); }
   // Whether what hides others may be known when it comes.
   bool mayTrackHidden() const { return info.samples == 1 && !needs.filters && leastTransmittance > 0.0F; }
 };

@@ -81,7 +81,7 @@ inline bool TileWorker::mayHideFlat(const Frame& frame, std::uint32_t block) {
     through = fnma(through, alpha, through);
   }
   store(through_[block], through);
-  return !none(set(0.5F * frame.leastTransmittance) > through);
+  return !none(set(frame.trackedTransmittance) > through);
 }
 
 // The depth, as a key, from which on each pixel's fragments are hidden by those in front of them: 1 beyond that of the
@@ -173,8 +173,7 @@ HWY_INLINE void TileWorker::trackHidden(const Frame& frame, std::uint32_t block,
   const I farthest = max(load(farthest_[block]), keep(here, key));
   store(through_[block], through);
   store(farthest_[block], farthest);
-  // Half of the least, for what rounds otherwise in blending.
-  const std::uint32_t opaque = bitsOf(set(0.5F * frame.leastTransmittance) > through);
+  const std::uint32_t opaque = bitsOf(set(frame.trackedTransmittance) > through);
   if (HWY_LIKELY(opaque == opaquePixels_[block])) return;
   hideFrom(block, select(maskOf(opaque & ~std::uint32_t{opaquePixels_[block]}), farthest + set(1), set(kFarKey)));
   opaquePixels_[block] = static_cast<std::uint16_t>(opaque);

@@ -41,7 +41,9 @@ HWY_INLINE Pairs pairsOf(const VitrailCpuDraw& draw, const VitrailCpuFragments& 
   for (std::size_t c = 0; c < 3; ++c) {
     const F color = clamped(load(f.color[c]), kLargestColor);
     pairs.filter[c] = one - pairs.alpha;
-    if (isOver || isAdded) {
+    if (isOver) {
+      pairs.color[c] = min(color, set(draw.brightest)) * alpha;
+    } else if (isAdded) {
       pairs.color[c] = min(color * alpha, set(draw.brightest));
     } else if (draw.blend == VITRAIL_BLEND_PREMULTIPLIED) {
       pairs.color[c] = min(color, set(draw.brightest));
