@@ -233,8 +233,8 @@ void addWork(Frame& frame, std::uint32_t draw, std::uint64_t& vertices) {
   }
 }
 
-// Each of n fragments rounds what comes through by 2^-23 in either order. Where each hides 1/256 or more, 17,700 of them
-// let through less than kNoTransmittance, and are off by 0.4 %. Where they hide less, there may be any number.
+// Each of n fragments rounds what comes through by 2^-23 in either order. Where each hides 1/256 or more, 17,700 of
+// them let through less than kNoTransmittance, and are off by 0.4 %. Where they hide less, there may be any number.
 float trackedOf(const Frame& frame) {
   constexpr float kMuch = 1.0F / 256.0F;
   const bool isMuch = std::all_of(frame.leastAlphas.begin(), frame.leastAlphas.end(),
