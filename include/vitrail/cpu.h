@@ -281,8 +281,8 @@ typedef struct VitrailCpuFrame {
  * that all that is left out changes the sRGB picture by at most 0.35 of 1/255, as on a GPU (vulkan_raster.h). A host
  * that shows colours with a higher exposure, or wants more of them, says a larger `brightest`: with 1000, 0.00035 of
  * 1/255 may be left out. Where surfaces send light that they need not hide for (VITRAIL_BLEND_ADDITIVE, or
- * VITRAIL_BLEND_PREMULTIPLIED with a shade function), any number of them may add up, and nothing is left out but what
- * less than 1e-30 of the light comes from. Together with rounding, errorBound tells how far a pixel may be from the
+ * VITRAIL_BLEND_PREMULTIPLIED with a shade function), any number of them may add up, and nothing is left out unless
+ * less than 1e-30 of its light comes through. Together with rounding, errorBound tells how far a pixel may be from the
  * real-number answer.
  *
  * Errors, with the reason in the context's log: VITRAIL_ERROR_INVALID for a field that is not as described,
