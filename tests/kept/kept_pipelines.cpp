@@ -4,6 +4,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <type_traits>
 #include <unordered_map>
@@ -70,6 +71,7 @@ struct State {
   std::mutex mutex;
   Functions next;
   Contents<VkShaderModule> modules;
+  std::unordered_map<VkShaderModule, std::set<std::uint32_t>> constants; // that they look at
   Contents<VkDescriptorSetLayout> setLayouts;
   Contents<VkPipelineLayout> layouts;
   std::map<std::string, Kept> pipelines;
@@ -101,8 +103,10 @@ void addStage(Content& content, const VkPipelineShaderStageCreateInfo& stage) {
   const VkSpecializationInfo* constants = stage.pSpecializationInfo;
   content.add(constants != nullptr);
   if (constants == nullptr) return;
-  content.add(std::size_t{constants->mapEntryCount});
+  const auto asked = state().constants.find(stage.module);
+  if (asked == state().constants.end()) return content.refuse(&content);
   for (const VkSpecializationMapEntry& entry : std::span(constants->pMapEntries, constants->mapEntryCount)) {
+    if (!asked->second.contains(entry.constantID)) continue;
     content.add(entry.constantID);
     content.addAll(static_cast<const char*>(constants->pData) + entry.offset, entry.size);
   }
@@ -219,6 +223,22 @@ std::optional<std::string> contentOf(const VkShaderModuleCreateInfo& info) {
   return content.get();
 }
 
+// The numbers of the constants that a module looks at: a pipeline is the same whatever the others are.
+std::set<std::uint32_t> constantsOf(const VkShaderModuleCreateInfo& info) {
+  constexpr std::size_t kHeader = 5; // words
+  constexpr std::uint32_t kOpDecorate = 71;
+  constexpr std::uint32_t kSpecId = 1;
+  std::set<std::uint32_t> constants;
+  const std::span code(info.pCode, info.codeSize / sizeof(std::uint32_t));
+  for (std::size_t at = kHeader; at < code.size();) {
+    const std::size_t words = code[at] >> 16U;
+    if (words == 0 || words > code.size() - at) break;
+    if ((code[at] & 0xffffU) == kOpDecorate && words == 4 && code[at + 2] == kSpecId) constants.insert(code[at + 3]);
+    at += words;
+  }
+  return constants;
+}
+
 std::optional<std::string> contentOf(const VkDescriptorSetLayoutCreateInfo& info) {
   Content content;
   if (info.pNext != nullptr) {
@@ -262,20 +282,24 @@ VkResult remember(Contents<Handle>& contents, const Create& create, VkDevice dev
   return result;
 }
 
-template <class Handle>
-void forget(Contents<Handle>& contents, Handle handle) {
+template <class Map, class Handle>
+void forget(Map& contents, Handle handle) {
   const std::lock_guard lock(state().mutex);
   contents.erase(handle);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL createShaderModule(VkDevice device, const VkShaderModuleCreateInfo* info,
                                                   const VkAllocationCallbacks* allocator, VkShaderModule* module) {
-  return remember(state().modules, state().next.createShaderModule, device, info, allocator, module);
+  const VkResult result = remember(state().modules, state().next.createShaderModule, device, info, allocator, module);
+  const std::lock_guard lock(state().mutex);
+  if (result == VK_SUCCESS) state().constants[*module] = constantsOf(*info);
+  return result;
 }
 
 VKAPI_ATTR void VKAPI_CALL destroyShaderModule(VkDevice device, VkShaderModule module,
                                                const VkAllocationCallbacks* allocator) {
   forget(state().modules, module);
+  forget(state().constants, module);
   state().next.destroyShaderModule(device, module, allocator);
 }
 

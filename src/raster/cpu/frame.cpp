@@ -2,25 +2,33 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 
 namespace vitrail::raster {
 
 void Bins::append(Bin& bin) {
-  if (used_ / kSlab == slabs_.size()) slabs_.push_back(std::make_unique_for_overwrite<Slab>());
-  Chunk& chunk = (*slabs_[used_ / kSlab])[used_ % kSlab];
-  ++used_;
-  (bin.chunks == 0 ? bin.first : bin.last->next) = &chunk;
-  bin.last = &chunk;
-  ++bin.chunks;
-  bin.next = chunk.numbers.data();
-  bin.end = bin.next + kChunk;
+  const std::uint32_t lines =
+      bin.last == nullptr ? kLeastLines : std::min((bin.last->room + kLine) / kLine * 2, kMostLines);
+  if (used_ + lines > kSlabLines) {
+    ++slab_;
+    used_ = 0;
+  }
+  if (slab_ == slabs_.size()) slabs_.push_back(std::make_unique_for_overwrite<Slab>());
+  const std::uint32_t room = lines * kLine - static_cast<std::uint32_t>(sizeof(Chunk) / sizeof(std::uint32_t));
+  auto* const chunk = new ((*slabs_[slab_])[used_].numbers.data()) Chunk{nullptr, room};
+  used_ += lines;
+  (bin.last == nullptr ? bin.first : bin.last->next) = chunk;
+  bin.last = chunk;
+  bin.room += room;
+  bin.next = chunk->numbers();
+  bin.end = bin.next + room;
 }
 
 void Bins::copy(std::size_t tile, std::uint32_t* to) const {
   const Chunk* chunk = bins_[tile].first;
   for (std::uint32_t left = countOf(tile); left > 0; chunk = chunk->next) {
-    const std::uint32_t count = std::min(left, kChunk);
-    std::memcpy(to, chunk->numbers.data(), count * sizeof(std::uint32_t));
+    const std::uint32_t count = std::min(left, chunk->room);
+    std::memcpy(to, chunk->numbers(), count * sizeof(std::uint32_t));
     to += count;
     left -= count;
   }

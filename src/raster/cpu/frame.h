@@ -43,13 +43,13 @@ struct Job {
   std::uint64_t firstNearest; // in Frame::nearest, where that is there
 };
 
-// Triangle numbers in chunks, of one thread and one tile; in the order in which they were added.
+// Triangle numbers of one thread and each tile, in the order in which they were added: in chunks, each twice as large
+// as the one before it. Who reads them waits for each chunk's address, and goes through a chunk as through any array.
 class Bins {
  public:
-  static constexpr std::uint32_t kChunk = 30;
-
   void reset(std::size_t tiles) {
     bins_.assign(tiles, {});
+    slab_ = 0;
     used_ = 0;
   }
 
@@ -61,32 +61,41 @@ class Bins {
 
   std::uint32_t countOf(std::size_t tile) const {
     const Bin& bin = bins_[tile];
-    return bin.chunks * kChunk - static_cast<std::uint32_t>(bin.end - bin.next);
+    return bin.room - static_cast<std::uint32_t>(bin.end - bin.next);
   }
 
   // Writes the numbers of a tile one after the other.
   void copy(std::size_t tile, std::uint32_t* to) const;
 
  private:
-  struct Chunk {
-    std::array<std::uint32_t, kChunk> numbers;
+  static constexpr std::uint32_t kLine = 16; // numbers in a line of the cache
+  static constexpr std::uint32_t kLeastLines = 2;
+  static constexpr std::uint32_t kMostLines = 64;
+  static constexpr std::uint32_t kSlabLines = 8192;
+  struct Line {
+    alignas(64) std::array<std::uint32_t, kLine> numbers;
+  };
+  struct Chunk { // at the begin of its lines; numbers follow
     Chunk* next;
+    std::uint32_t room;
+    std::uint32_t* numbers() { return reinterpret_cast<std::uint32_t*>(this + 1); }
+    const std::uint32_t* numbers() const { return reinterpret_cast<const std::uint32_t*>(this + 1); }
   };
   struct Bin {
     std::uint32_t* next = nullptr; // where the next number goes
     std::uint32_t* end = nullptr;  // of its chunk
     Chunk* first = nullptr;
     Chunk* last = nullptr;
-    std::uint32_t chunks = 0;
+    std::uint32_t room = 0; // of all its chunks
   };
-  static constexpr std::uint32_t kSlab = 4096; // chunks
-  using Slab = std::array<Chunk, kSlab>;
+  using Slab = std::array<Line, kSlabLines>;
 
   void append(Bin& bin);
 
   std::vector<Bin> bins_;
   std::vector<std::unique_ptr<Slab>> slabs_;
-  std::size_t used_ = 0; // chunks
+  std::size_t slab_ = 0;   // the one that chunks come from
+  std::uint32_t used_ = 0; // its lines
 };
 
 // Of one thread.

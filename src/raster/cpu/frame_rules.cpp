@@ -125,9 +125,9 @@ class LargestIndex {
     if (draw.indices == indices_ && draw.indexCount == count_) return largest_;
     indices_ = draw.indices;
     count_ = draw.indexCount;
-    largest_ = 0;
-    for (std::uint32_t i = 0; i < count_; ++i) largest_ = std::max(largest_, indices_[i]);
-    return largest_;
+    std::uint32_t largest = 0; // no member, which the compiler would take for one of the indices and store each time
+    for (std::uint32_t i = 0; i < draw.indexCount; ++i) largest = std::max(largest, draw.indices[i]);
+    return largest_ = largest;
   }
 
  private:
