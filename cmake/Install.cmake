@@ -87,7 +87,8 @@ set(vitrail_without "") # headers of what is not built
 if(VITRAIL_BUILD_VULKAN)
   vitrail_install(vitrail vulkan vitrail.pc)
 else()
-  list(APPEND vitrail_without PATTERN vulkan.h EXCLUDE PATTERN vulkan_raster.h EXCLUDE)
+  list(APPEND vitrail_without PATTERN vulkan.h EXCLUDE PATTERN vulkan_raster.h EXCLUDE
+       PATTERN vulkan_trial.h EXCLUDE)
 endif()
 if(VITRAIL_BUILD_OPENGL)
   vitrail_install(vitrail_gl gl vitrail-gl.pc)

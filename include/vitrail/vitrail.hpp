@@ -1,6 +1,7 @@
 // Move-only C++ wrappers of Vitrail's C headers: they own the handles and change nothing else. Every function is
-// documented in vulkan.h, vulkan_raster.h, gl.h and tiles.h. C++17 or later. VITRAIL_NO_VULKAN leaves out what needs
-// Vulkan's headers; what is of OpenGL needs no header of OpenGL's, and is there where the package has gl.h.
+// documented in vulkan.h, vulkan_raster.h, vulkan_trial.h, gl.h and tiles.h. C++17 or later. VITRAIL_NO_VULKAN leaves
+// out what needs Vulkan's headers; what is of OpenGL needs no header of OpenGL's, and is there where the package has
+// gl.h.
 #pragma once
 
 #include <vitrail/tiles.h>
@@ -8,11 +9,13 @@
 #ifndef VITRAIL_NO_VULKAN
 #include <vitrail/vulkan.h>
 #include <vitrail/vulkan_raster.h>
+#include <vitrail/vulkan_trial.h>
 #endif
 #if __has_include(<vitrail/gl.h>)
 #include <vitrail/gl.h>
 #endif
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -199,6 +202,35 @@ class Raster {
 
  private:
   VitrailVkRaster handle_ = nullptr;
+};
+
+// Owns a VitrailVkTrial. Its context outlives it.
+class Trial {
+ public:
+  Trial() = default;
+  ~Trial() { vitrailVkDestroyTrial(handle_); }
+  Trial(Trial&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+  Trial& operator=(Trial&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+
+  // Replaces what `trial` owns. On error it owns nothing.
+  static VkResult create(const Context& context, const VitrailVkTrialDesc& desc, Trial& trial) {
+    trial = Trial();
+    return vitrailVkCreateTrial(context.handle(), &desc, &trial.handle_);
+  }
+
+  explicit operator bool() const { return handle_ != nullptr; }
+  VitrailVkTrial handle() const { return handle_; }
+  std::uint32_t way() { return vitrailVkTrialWay(handle_); }
+  void begin(VkCommandBuffer commandBuffer, std::uint32_t way) { vitrailVkCmdTrialBegin(commandBuffer, handle_, way); }
+  void end(VkCommandBuffer commandBuffer) { vitrailVkCmdTrialEnd(commandBuffer, handle_); }
+  VkResult read(VitrailVkTrialResult& result) { return vitrailVkReadTrial(handle_, &result); }
+  VkResult memory(std::size_t& size, void* data) { return vitrailVkTrialMemory(handle_, &size, data); }
+
+ private:
+  VitrailVkTrial handle_ = nullptr;
 };
 
 } // namespace vulkan

@@ -11,7 +11,8 @@ namespace vitrail {
   X(GetPhysicalDeviceFeatures2)        \
   X(GetPhysicalDeviceFormatProperties) \
   X(GetPhysicalDeviceMemoryProperties) \
-  X(GetPhysicalDeviceProperties2)
+  X(GetPhysicalDeviceProperties2)      \
+  X(GetPhysicalDeviceQueueFamilyProperties)
 
 #define VITRAIL_DEVICE_FUNCTIONS(X) \
   X(AllocateDescriptorSets)         \
@@ -20,27 +21,32 @@ namespace vitrail {
   X(CmdBindDescriptorSets)          \
   X(CmdBindPipeline)                \
   X(CmdCopyBuffer)                  \
+  X(CmdCopyQueryPoolResults)        \
   X(CmdDispatch)                    \
   X(CmdDispatchIndirect)            \
   X(CmdDrawIndirect)                \
   X(CmdFillBuffer)                  \
   X(CmdPipelineBarrier)             \
   X(CmdPushConstants)               \
+  X(CmdResetQueryPool)              \
   X(CmdSetScissor)                  \
   X(CmdSetViewport)                 \
   X(CmdUpdateBuffer)                \
+  X(CmdWriteTimestamp)              \
   X(CreateBuffer)                   \
   X(CreateComputePipelines)         \
   X(CreateDescriptorPool)           \
   X(CreateDescriptorSetLayout)      \
   X(CreateGraphicsPipelines)        \
   X(CreatePipelineLayout)           \
+  X(CreateQueryPool)                \
   X(CreateShaderModule)             \
   X(DestroyBuffer)                  \
   X(DestroyDescriptorPool)          \
   X(DestroyDescriptorSetLayout)     \
   X(DestroyPipeline)                \
   X(DestroyPipelineLayout)          \
+  X(DestroyQueryPool)               \
   X(DestroyShaderModule)            \
   X(FreeMemory)                     \
   X(GetBufferDeviceAddress)         \

@@ -6,6 +6,7 @@
 #include <vitrail/gl.h>
 #include <vitrail/vulkan.h>
 #include <vitrail/vulkan_raster.h>
+#include <vitrail/vulkan_trial.h>
 #endif
 
 int main(void) {
@@ -17,6 +18,7 @@ int main(void) {
   vitrailVkDestroyContext(VK_NULL_HANDLE);
   vitrailVkDestroyTarget(VK_NULL_HANDLE);
   vitrailVkDestroyRaster(VK_NULL_HANDLE);
+  vitrailVkDestroyTrial(VK_NULL_HANDLE);
   vitrailGlDestroyContext(NULL);
 #endif
   printf("components: linked\n");

@@ -4,10 +4,17 @@
 
 #include <vitrail/vulkan.h>
 #include <vitrail/vulkan_raster.h>
+#include <vitrail/vulkan_trial.h>
 #include <vulkan/vulkan.h>
 
 #ifdef __cplusplus
+#include <string>
+#include <vector>
+
 #include <vitrail/vitrail.hpp>
+extern vitrail::vulkan::Context ownedContext;
+std::vector<unsigned char> readCache(const std::string& name);
+void writeCache(const std::string& name, const std::vector<unsigned char>& bytes);
 void drawTransparent(VkCommandBuffer commands, VkDescriptorSet lists);
 extern "C" {
 #else
@@ -29,6 +36,7 @@ extern VitrailVkResolveInfo resolve;
 extern VitrailBounds bounds;
 extern uint64_t frame;
 extern uint32_t framesInFlight;
+extern uint32_t queueFamily;
 extern bool hasPostDepthCoverage;
 
 extern VkExtent2D extent;
@@ -89,6 +97,8 @@ void imageBarrier(VkCommandBuffer commandBuffer, VkImage image, VkImageLayout ol
                   VkPipelineStageFlags oldStages, VkAccessFlags oldAccess, VkPipelineStageFlags newStages,
                   VkAccessFlags newAccess);
 void drawOpaque(VkCommandBuffer commandBuffer);
+void drawByLists(VkCommandBuffer commandBuffer);
+void drawByRaster(VkCommandBuffer commandBuffer);
 void drawInterface(VkCommandBuffer commandBuffer);
 void waitForFenceOf(uint64_t pastFrame);
 void printObject(uint32_t object);
