@@ -470,9 +470,23 @@ VkResult growTables(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals
   return resize(false, raster.context->log); // what is spare is not worth a refusal
 }
 
+// Instead of pages as many places as there are records: of a row of tiles, for which there is no room with pages.
+// False: nor is there for that, and all stays as it was.
+bool countRecords(VitrailVkRaster_T& raster, RasterNeeds needs, std::uint64_t inTiles) {
+  if (raster.counted) return false;
+  needs.records = 1 + inTiles;
+  raster.counted = true;
+  RasterNeeds next;
+  const bool done = planRasterRoom(needs, {}, raster.bounds(1), next) <= 1.0 &&
+                    resizeRasterRoom(raster, next, 1, kQuiet) == VK_SUCCESS;
+  raster.counted = done;
+  return done;
+}
+
 // Where the device has no memory for that: what is needed and none to spare, or else more bands, in what there is or in
-// less than was wanted. How much those need is a guess, which the next frame corrects.
-VkResult growWithoutMemory(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
+// less than was wanted, and of a row places that are counted. How much those need is a guess, which the next frame
+// corrects.
+VkResult growWithoutMemory(VitrailVkRaster_T& raster, const RasterNeeds& needs, std::uint64_t inTiles) {
   const std::uint32_t rows = raster.bandRows;
   for (std::uint32_t parts = 1;; parts *= 2) {
     const std::uint32_t fewer = std::max(1U, rows / parts);
@@ -483,22 +497,14 @@ VkResult growWithoutMemory(VitrailVkRaster_T& raster, const RasterNeeds& needs) 
       if (fewer > 1) continue;
       room = raster.room;
     }
-    const VkResult result = resizeRasterRoom(raster, room, fewer, fewer > 1 ? kQuiet : raster.context->log, true);
-    if (result == VK_SUCCESS && fewer < rows) warnOfBands(raster);
-    if (result == VK_SUCCESS || fewer == 1) return result;
+    bool done = resizeRasterRoom(raster, room, fewer, kQuiet, true) == VK_SUCCESS;
+    if (!done && fewer > 1) continue;
+    done = done || countRecords(raster, needs.part(parts), inTiles / parts);
+    if (!done)
+      return resizeRasterRoom(raster, room, fewer, raster.context->log, true); // says what there is no room for
+    if (fewer < rows) warnOfBands(raster);
+    return VK_SUCCESS;
   }
-}
-
-// Instead of pages as many places as there are records: of a row of tiles, for which there is no room with pages.
-// False: nor is there for that, and all stays as it was.
-bool countRecords(VitrailVkRaster_T& raster, RasterNeeds needs, std::uint64_t inTiles) {
-  needs.records = 1 + inTiles;
-  raster.counted = true;
-  RasterNeeds next;
-  const bool done = planRasterRoom(needs, {}, raster.bounds(1), next) <= 1.0 &&
-                    resizeRasterRoom(raster, next, 1, kQuiet) == VK_SUCCESS;
-  raster.counted = done;
-  return done;
 }
 
 VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs, std::uint64_t inTiles) {
@@ -507,7 +513,7 @@ VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs, std::uint
   const double excess = planRasterRoom(needs, raster.room, raster.bounds(rows), next);
   if (excess > 1.0) {
     if (rows == 1) {
-      if (!raster.counted && countRecords(raster, needs, inTiles)) return VK_SUCCESS;
+      if (countRecords(raster, needs, inTiles)) return VK_SUCCESS;
       return raster.context->log.fail(VK_ERROR_OUT_OF_DEVICE_MEMORY,
                                       "%s: there is no room for the %llu triangles of a row of tiles and for %llu "
                                       "fragments of deep tiles: a larger "
@@ -519,7 +525,7 @@ VkResult growRoom(VitrailVkRaster_T& raster, const RasterNeeds& needs, std::uint
     next = raster.room;
   }
   if (resizeRasterRoom(raster, next, rows, kQuiet) == VK_SUCCESS) return VK_SUCCESS;
-  return growWithoutMemory(raster, needs);
+  return growWithoutMemory(raster, needs, inTiles);
 }
 
 // What is enough for the frame: where there is less room, tiles begin with smaller pages.

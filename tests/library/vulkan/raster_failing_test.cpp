@@ -266,6 +266,27 @@ TEST_F(RasterFailingTest, FramesWithoutMemoryAreDrawnInBands) {
   }
 }
 
+// Pages leave places free. A row for which the device has no pages has as many places as records.
+TEST_F(RasterFailingTest, ARowWithoutMemoryForPagesIsCounted) {
+  RasterHostDesc row = hostOf(context_);
+  row.height = 8;
+  const RasterScene scene = manyTriangles(2000);
+  const VkDeviceSize before = liveBytes;
+  RasterHost whole(row);
+  whole.setScene(scene);
+  const std::vector<float> expected = whole.draw();
+  const VkDeviceSize needed = liveBytes - before;
+  const VkDeviceSize pages = whole.raster().memory().tileBytes;
+  RasterHost host(row);
+  host.setScene(scene);
+  host.drawOnce(); // asks for tables
+  ASSERT_EQ(host.raster().update(), VK_SUCCESS);
+  mostBytes = before + needed + (needed - pages) + pages * 2 / 3;
+  EXPECT_TRUE(host.draw() == expected);
+  EXPECT_EQ(host.stats().exact, VK_TRUE);
+  EXPECT_LT(host.raster().memory().tileBytes, pages * 2 / 3);
+}
+
 TEST_F(RasterFailingTest, ExtentsWithoutMemoryAreDrawnInBands) {
   RasterHost host(hostOf(context_));
   host.setScene(manyTriangles(100));
