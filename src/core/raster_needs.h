@@ -47,9 +47,7 @@ constexpr std::uint64_t rasterAstrayBytes(bool counted) { // for a record: one i
 }
 // Of medium triangles, which are in two words: for a record one in four, or where there are as many places as records,
 // as many.
-constexpr std::uint64_t rasterMediumBytes(std::uint32_t samples, bool counted) {
-  return samples > 1 || counted ? 8 : 2;
-}
+constexpr std::uint64_t rasterMediumBytes(bool counted) { return counted ? 8 : 2; }
 constexpr std::uint64_t kRasterFragmentBytes = 8; // in each of two arrays
 constexpr std::uint64_t kRasterDeepTileBytes = 16;
 constexpr std::uint64_t kRasterDeepPixelsBytes = 64 * 16; // of a deep tile
@@ -58,8 +56,7 @@ constexpr std::uint64_t kRasterItemBytes = 16;            // of an instance; no 
 constexpr std::uint64_t kRasterPositionBytes = 16;        // of a vertex of an instance; no part of the budget
 constexpr std::uint64_t rasterMaskBytes(std::uint32_t samples) { return samples > 1 ? samples * 8 : 0; } // of a record
 constexpr std::uint64_t rasterRecordBytes(std::uint32_t samples, bool counted) { // of a record in all arrays
-  return kRasterRecordBytes + rasterAstrayBytes(counted) + rasterMediumBytes(samples, counted) +
-         rasterMaskBytes(samples);
+  return kRasterRecordBytes + rasterAstrayBytes(counted) + rasterMediumBytes(counted) + rasterMaskBytes(samples);
 }
 constexpr std::uint64_t rasterStateBytes(std::uint32_t samples) { return samples * 64 * 32; } // of a deep tile
 

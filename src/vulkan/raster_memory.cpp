@@ -162,7 +162,7 @@ VkResult resizeRasterRoom(VitrailVkRaster_T& raster, const RasterNeeds& room, st
   made.make(RasterBuffer::TileList, tiles * kRasterTileListBytes, times);
   made.make(RasterBuffer::Records, room.records * kRasterRecordBytes);
   made.make(RasterBuffer::Astray, room.records * rasterAstrayBytes(raster.counted));
-  made.make(RasterBuffer::Medium, room.records * rasterMediumBytes(raster.samples, raster.counted));
+  made.make(RasterBuffer::Medium, room.records * rasterMediumBytes(raster.counted));
   made.make(RasterBuffer::SampleMasks, room.records * rasterMaskBytes(raster.samples));
   made.make(RasterBuffer::Large, room.large * kRasterListedBytes);
   made.make(RasterBuffer::DeepTiles, room.deep * kRasterDeepTileBytes);

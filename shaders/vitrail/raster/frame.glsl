@@ -83,9 +83,7 @@ bool vitrailIsCounted() { return vitrailRaster.pageBits == VITRAIL_RASTER_COUNTE
 
 // How many medium triangles can be listed.
 uint vitrailMediumCapacity() {
-  return VITRAIL_RASTER_SAMPLES > 1u || vitrailIsCounted()
-             ? vitrailRaster.recordCapacity
-             : vitrailRaster.recordCapacity / VITRAIL_RASTER_MEDIUM_SHARE;
+  return vitrailIsCounted() ? vitrailRaster.recordCapacity : vitrailRaster.recordCapacity / VITRAIL_RASTER_MEDIUM_SHARE;
 }
 
 // Whether the records can be read: there was room for all.

@@ -40,8 +40,7 @@ const uint VITRAIL_RASTER_LEAST_PAGE = 2u;     // a tile's first page has room f
 const uint VITRAIL_RASTER_GOOD_PAGE = 6u;      // of this where there is memory, or of this where there are many records
 const uint VITRAIL_RASTER_MOST_PAGE = 9u;
 const uint VITRAIL_RASTER_COUNTED = 31u;     // in place of that: records are counted first, and there are no pages
-const uint VITRAIL_RASTER_MEDIUM_SHARE = 4u; // medium triangles are listed, one for so many records of the room, or
-                                             // with several samples, where all are, for each;
+const uint VITRAIL_RASTER_MEDIUM_SHARE = 4u; // medium triangles are listed, one for so many records of the room;
 const uint VITRAIL_RASTER_ASTRAY_SHARE = 4u; // and records that are still to be brought to their pages
 const uint VITRAIL_RASTER_BLOCK = 4096u;     // records of a deep tile that a work group looks after
 const uint VITRAIL_RASTER_CHUNK = 1024u;     // fragments that a work group sorts at once

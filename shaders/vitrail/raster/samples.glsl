@@ -19,8 +19,10 @@ ivec2 vitrailSamplePlace(uint i) {
 // Spelled out: arrays stay in registers where their indices are constants, which those of loops are not for all
 // drivers.
 #ifdef VITRAIL_MULTISAMPLED
+#define VITRAIL_RASTER_SAMPLES_KEPT 8 // VITRAIL_RASTER_MOST_SAMPLES
 #define VITRAIL_EACH_SAMPLE(what) what(0) what(1) what(2) what(3) what(4) what(5) what(6) what(7)
 #else
+#define VITRAIL_RASTER_SAMPLES_KEPT 1
 #define VITRAIL_EACH_SAMPLE(what) what(0)
 #endif
 
@@ -67,6 +69,20 @@ void vitrailKeepSamples(uint record, uvec4 upperBefore, uvec4 upper, uvec4 lower
     vitrailSampleMasks[at + 1u] = upper;
     vitrailSampleMasks[at + 2u] = lowerBefore;
     vitrailSampleMasks[at + 3u] = lower;
+  }
+}
+
+// The same, given as the pixels of each sample.
+void vitrailKeepSamples(uint record, uvec2 samples[VITRAIL_RASTER_SAMPLES_KEPT]) {
+  uvec4 upper = uvec4(samples[0].x, samples[1].x, samples[2].x, samples[3].x);
+  uvec4 lower = uvec4(samples[0].y, samples[1].y, samples[2].y, samples[3].y);
+  if (VITRAIL_RASTER_SAMPLES == 8u) {
+    vitrailKeepSamples(record, upper, uvec4(samples[4].x, samples[5].x, samples[6].x, samples[7].x), lower,
+                       uvec4(samples[4].y, samples[5].y, samples[6].y, samples[7].y));
+  } else if (VITRAIL_RASTER_SAMPLES == 4u) {
+    vitrailKeepSamples(record, uvec4(0u), upper, uvec4(0u), lower);
+  } else {
+    vitrailKeepSamples(record, uvec4(0u), upper.zwxy, uvec4(0u), lower.zwxy);
   }
 }
 

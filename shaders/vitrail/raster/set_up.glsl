@@ -1,6 +1,6 @@
 // Sets up triangles, a thread each, and makes the records of small ones, for each tile in which one covers a pixel. A
-// small one lies within 8 x 8 pixels: it gets one mask, which may be cut by the borders of tiles. Others are put aside:
-// medium ones, which may touch some tiles, and large ones, which may touch very many or need clipping.
+// small one lies within 8 x 8 pixels: it gets one mask for each sample, which may be cut by the borders of tiles. Others
+// are put aside: medium ones, which may touch some tiles, and large ones, which may touch very many or need clipping.
 //
 // How many work groups run at a time is what hides waiting, so this has little shared memory, no thread waits for
 // another before the end, and the indices of the next turn's triangles are asked for before this one's are set up.
@@ -60,17 +60,36 @@ void vitrailSetUpSmall(VitrailTriangle t, uint draw, ivec2 first, ivec2 last) {
   ivec2 p1 = area > 0 ? t.p1 : t.p2;
   ivec2 p2 = area > 0 ? t.p2 : t.p1;
   vitrailTurnCorners(p0, p1, p2);
-  uvec2 covered = vitrailRowCoverage(vitrailRows(p0, p1, p2, first), ivec2(8), last.y - first.y + 1);
+  VitrailRows rows = vitrailRows(p0, p1, p2, first);
+  int count = last.y - first.y + 1;
+  uvec2 window = uvec2(0xffffffffu);
   if (any(greaterThan(first + VITRAIL_TILE_SIDE, ivec2(vitrailRaster.width, vitrailRaster.bottom)))) {
-    covered &= vitrailTileWindow(ivec2(0), last - first + 1);
+    window = vitrailTileWindow(ivec2(0), last - first + 1);
   }
+  uvec2 samples[VITRAIL_RASTER_SAMPLES_KEPT];
+  uvec2 covered = uvec2(0u);
+#define VITRAIL_COVER_SAMPLE(i) \
+  samples[i] = uvec2(0u); \
+  if (i < VITRAIL_RASTER_SAMPLES) { \
+    samples[i] = window & vitrailRowCoverage(rows, vitrailSamplePlace(i), count); \
+    covered |= samples[i]; \
+  }
+  VITRAIL_EACH_SAMPLE(VITRAIL_COVER_SAMPLE)
   if ((covered.x | covered.y) == 0u) return;
   VitrailSource source = vitrailSourceOf(t, draw, front, float(area));
   uint parts = vitrailPartsOf(covered, first);
   while (parts != 0u) {
     uint part = uint(findLSB(parts));
     parts &= parts - 1u;
-    vitrailMakeRecord((first >> 3) + ivec2(part & 1u, part >> 1), vitrailCutAtTiles(covered, first, part), source);
+    ivec2 tile = (first >> 3) + ivec2(part & 1u, part >> 1);
+    uint place = vitrailMakeRecord(tile, vitrailCutAtTiles(covered, first, part), source);
+#ifdef VITRAIL_MULTISAMPLED
+    if (place >= vitrailRaster.recordCapacity) continue; // the frame is drawn again
+    uvec2 inTile[VITRAIL_RASTER_SAMPLES_KEPT];
+#define VITRAIL_CUT_SAMPLE(i) inTile[i] = vitrailCutAtTiles(samples[i], first, part);
+    VITRAIL_EACH_SAMPLE(VITRAIL_CUT_SAMPLE)
+    vitrailKeepSamples(place, inTile);
+#endif
   }
 }
 
@@ -95,12 +114,10 @@ bool vitrailSetUp(uint draw, uint corners, uvec2 source, uvec3 indices) {
     return false;
   }
   if (count == 0u) return false;
-#ifndef VITRAIL_MULTISAMPLED // to look at each sample takes longer than all else, and is done once for a tile
   if (all(lessThan(last - first, ivec2(VITRAIL_TILE_SIDE))) && vitrailIsLittle(t.p0, t.p1, t.p2)) {
     vitrailSetUpSmall(t, draw, first, last);
     return false;
   }
-#endif
   return true;
 }
 

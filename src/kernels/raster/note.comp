@@ -22,7 +22,7 @@ void main() {
   uint mediums = vitrailRasterControl.medium;
   uint astray = vitrailRasterControl.astray;
   if (vitrailRasterControl.recordsHigh == 0u) {
-    const uint share_ = VITRAIL_RASTER_SAMPLES > 1u || vitrailIsCounted() ? 1u : VITRAIL_RASTER_MEDIUM_SHARE;
+    const uint share_ = vitrailIsCounted() ? 1u : VITRAIL_RASTER_MEDIUM_SHARE;
     records_ = max(records_, min(mediums, most / share_) * share_);
     records_ = max(records_, min(astray, most / VITRAIL_RASTER_ASTRAY_SHARE) * VITRAIL_RASTER_ASTRAY_SHARE);
   }
