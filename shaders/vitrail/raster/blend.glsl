@@ -75,7 +75,8 @@ uint vitrailDepthPart(uint key) { return key >> vitrailNumberBits; }
   uint inBatch = number & (VITRAIL_BATCHED - 1u); \
   float depth = vitrailDepthOn(vitrailBatchPlanes[inBatch], vitrailInTile); \
   uint key = (vitrailDistance(depth) >> (vitrailNumberBits - 2u)) << vitrailNumberBits | (base + number); \
-  if (key < from || vitrailIsHidden(inBatch, depth, farthest)) isThere = false; \
+  bool isHidden = vitrailIsHidden(inBatch, depth, farthest); /* asked in any case: a branch takes longer */ \
+  if (key < from || isHidden) isThere = false; \
   vitrailNewKeys[i] = isThere ? key : VITRAIL_NO_FRAGMENT; \
 }
 
@@ -246,9 +247,10 @@ void main() {
 #define VITRAIL_AFTER(i) (i + 1 < int(VITRAIL_RASTER_MOST_KEPT) ? i + 1 : i)
 #define VITRAIL_COUNT_KEPT(i) \
     if (vitrailNearestKeys[i] < end) ++kept; \
-    if (i + 1 < VITRAIL_RASTER_KEEP && vitrailNearestKeys[VITRAIL_AFTER(i)] != VITRAIL_NO_FRAGMENT && \
-        vitrailDepthPart(vitrailNearestKeys[i]) == vitrailDepthPart(vitrailNearestKeys[VITRAIL_AFTER(i)])) { \
-      ties |= 1u << i; \
+    if (i + 1 < VITRAIL_RASTER_KEEP) { \
+      uint other = vitrailNearestKeys[VITRAIL_AFTER(i)]; \
+      uint differ = vitrailDepthPart(vitrailNearestKeys[i] ^ other); \
+      ties |= (other != VITRAIL_NO_FRAGMENT && differ == 0u ? 1u : 0u) << i; \
     }
     VITRAIL_EACH_KEPT(VITRAIL_COUNT_KEPT)
 #define VITRAIL_STORE_KEPT(i) \
