@@ -1,5 +1,5 @@
 // Sets up triangles, a thread each, and makes the records of small ones, for each tile in which one covers a pixel. A
-// small one lies within 8 x 8 pixels: it gets one mask for each sample, which may be cut by the borders of tiles. Others
+// small one lies within 8 x 8 pixels: it gets a mask of each sample, which may be cut by the borders of tiles. Others
 // are put aside: medium ones, which may touch some tiles, and large ones, which may touch very many or need clipping.
 //
 // How many work groups run at a time is what hides waiting, so this has little shared memory, no thread waits for
