@@ -46,8 +46,11 @@ void vitrailTurnEight(inout uvec4 first, inout uvec4 last) {
   vitrailTurnFour(last);
 }
 
+bool vitrailHasPixels(uvec4 masks) { return (masks.x | masks.y | masks.z | masks.w) != 0u; }
+
 // Keeps the samples that a record covers, those of a pixel side by side. They are given as the pixels of each sample in
-// the tile's upper and in its lower half: of the last four samples, or two, and of four before.
+// the tile's upper and in its lower half: of the last four samples, or two, and of four before. Nobody asks for pixels
+// that no sample covers: a half of these is not written.
 void vitrailKeepSamples(uint record, uvec4 upperBefore, uvec4 upper, uvec4 lowerBefore, uvec4 lower) {
   uint at = record * (VITRAIL_RASTER_SAMPLES / 2u);
   if (VITRAIL_RASTER_SAMPLES == 2u) {
@@ -58,17 +61,25 @@ void vitrailKeepSamples(uint record, uvec4 upperBefore, uvec4 upper, uvec4 lower
     first ^= other << 1;
     vitrailSampleMasks[at] = uvec4(first.x, last.x, first.y, last.y);
   } else if (VITRAIL_RASTER_SAMPLES == 4u) {
-    vitrailTurnFour(upper);
-    vitrailTurnFour(lower);
-    vitrailSampleMasks[at] = upper;
-    vitrailSampleMasks[at + 1u] = lower;
+    if (vitrailHasPixels(upper)) {
+      vitrailTurnFour(upper);
+      vitrailSampleMasks[at] = upper;
+    }
+    if (vitrailHasPixels(lower)) {
+      vitrailTurnFour(lower);
+      vitrailSampleMasks[at + 1u] = lower;
+    }
   } else {
-    vitrailTurnEight(upperBefore, upper);
-    vitrailTurnEight(lowerBefore, lower);
-    vitrailSampleMasks[at] = upperBefore;
-    vitrailSampleMasks[at + 1u] = upper;
-    vitrailSampleMasks[at + 2u] = lowerBefore;
-    vitrailSampleMasks[at + 3u] = lower;
+    if (vitrailHasPixels(upperBefore | upper)) {
+      vitrailTurnEight(upperBefore, upper);
+      vitrailSampleMasks[at] = upperBefore;
+      vitrailSampleMasks[at + 1u] = upper;
+    }
+    if (vitrailHasPixels(lowerBefore | lower)) {
+      vitrailTurnEight(lowerBefore, lower);
+      vitrailSampleMasks[at + 2u] = lowerBefore;
+      vitrailSampleMasks[at + 3u] = lower;
+    }
   }
 }
 
