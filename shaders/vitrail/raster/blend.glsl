@@ -39,7 +39,18 @@ void vitrailSetOrder(uint i, uint number) {
   vitrailKeptOrder[at] = (vitrailKeptOrder[at] & ~(0xffffu << shift)) | number << shift;
 }
 
-uint vitrailRecordAt(uint number) { return vitrailRecordOf(vitrailTile, number); }
+// Of each page of the tile where the tile's first record would be if all were side by side: what vitrailRecordOf()
+// gives, without a branch or a look at memory. There from the first barrier on.
+shared uint vitrailPageStarts[VITRAIL_RASTER_MOST_PAGES];
+
+void vitrailSharePages(uint count) {
+  uint page = vitrailThread;
+  if (page > vitrailPageOf(count - 1u)) return;
+  uint place = page == 0u ? vitrailFirstPlace(vitrailTile) : vitrailTiles[vitrailWordOfPage(vitrailTile, page)];
+  vitrailPageStarts[page] = place - vitrailFirstOfPage(page);
+}
+
+uint vitrailRecordAt(uint number) { return vitrailPageStarts[vitrailPageOf(number)] + number; }
 uint vitrailAlikeRecord(uint i) { return vitrailRecordAt(vitrailOrderAt(vitrailAlikeFirst + i)); }
 VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel) {
   return vitrailSurfaceOf(vitrailRecords[vitrailAlikeRecord(i)].zw, pixel);
@@ -80,6 +91,13 @@ uint vitrailDepthPart(uint key) { return key >> vitrailNumberBits; }
   vitrailNewKeys[i] = isThere ? key : VITRAIL_NO_FRAGMENT; \
 }
 
+// A record of a batch, or none. `isFirst`: of the first one, before which no barrier comes.
+void vitrailLoadNumber(uint place, uint number, uint count, bool isFirst, ivec2 corner) {
+  uint record = 0u;
+  if (number < count) record = isFirst ? vitrailRecordOf(vitrailTile, number) : vitrailRecordAt(number);
+  vitrailLoadBatch(place, number < count, record, corner);
+}
+
 // Finds the nearest fragments of a pixel whose keys are not below `from`: the nearest key of those that were left.
 uint vitrailFindNearest(uint count, uint from, ivec2 corner, float farthest, bool ended, bool isFirst) {
   uint left = VITRAIL_NO_FRAGMENT;
@@ -90,12 +108,10 @@ uint vitrailFindNearest(uint count, uint from, ivec2 corner, float farthest, boo
   for (; base < count; base += VITRAIL_BATCHED) {
     if (isFirst || VITRAIL_RASTER_BATCHES > 0u) {
       if (!isFirst || base > 0u) barrier(); // all have left the last batch
-      uint number = base + vitrailThread;
-      vitrailLoadBatch(vitrailThread, number < count, number < count ? vitrailRecordAt(number) : 0u, corner);
+      vitrailLoadNumber(vitrailThread, base + vitrailThread, count, isFirst && base == 0u, corner);
       if (VITRAIL_RASTER_BATCHES > 1u) {
-        number += VITRAIL_RASTER_PIXELS;
-        vitrailLoadBatch(VITRAIL_RASTER_PIXELS + vitrailThread, number < count,
-                         number < count ? vitrailRecordAt(number) : 0u, corner);
+        uint second = VITRAIL_RASTER_PIXELS + vitrailThread;
+        vitrailLoadNumber(second, base + second, count, isFirst && base == 0u, corner);
       }
       barrier();
     }
@@ -217,6 +233,7 @@ void main() {
   uint tile = vitrailTileList[vitrailClass * vitrailRaster.tilesX * vitrailRaster.tilesY + place];
   uint count = vitrailCountIn(tile);
   vitrailTile = tile;
+  vitrailSharePages(count);
   vitrailInTile = ivec2(vitrailThread & 7u, vitrailThread >> 3);
   ivec2 corner = vitrailFirstPixel(tile);
   ivec2 pixel = corner + vitrailInTile;

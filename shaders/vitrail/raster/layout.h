@@ -39,6 +39,7 @@ const uint VITRAIL_RASTER_FIRST_PAGE = 2u;     // of these the second page of re
 const uint VITRAIL_RASTER_LEAST_PAGE = 2u;     // a tile's first page has room for 2 to the power of this, up to
 const uint VITRAIL_RASTER_GOOD_PAGE = 6u;      // of this where there is memory, or of this where there are many records
 const uint VITRAIL_RASTER_MOST_PAGE = 9u;
+const uint VITRAIL_RASTER_MOST_PAGES = 16u;  // of a tile that is not deep: of mostWalked records, on the least pages
 const uint VITRAIL_RASTER_COUNTED = 31u;     // in place of that: records are counted first, and there are no pages
 const uint VITRAIL_RASTER_MEDIUM_SHARE = 4u; // medium triangles are listed, one for so many records of the room;
 const uint VITRAIL_RASTER_ASTRAY_SHARE = 4u; // and records that are still to be brought to their pages
