@@ -20,11 +20,22 @@ layout(constant_id = 1717) const bool VITRAIL_RASTER_ONLY_TRIANGLES = false;
 layout(constant_id = 1718) const bool VITRAIL_RASTER_NEAREST_IS_ZERO = false;
 layout(constant_id = 1719) const uint VITRAIL_RASTER_INDEX_BYTES = 4u; // 2, 4, or 0: there are none
 
+// What a stage does with them. A host's stages say what they only read: compilers then know that it stays as it is.
 #define VITRAIL_TILES_ARE
+#define VITRAIL_RECORDS_ARE
+#define VITRAIL_TABLES_ARE
 #ifdef VITRAIL_RASTER_STAGE
+#undef VITRAIL_TABLES_ARE
+#define VITRAIL_TABLES_ARE restrict readonly
 #if VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_SET_UP || VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_SET_UP_LARGE
+#define VITRAIL_MAKES_RECORDS
 #undef VITRAIL_TILES_ARE
 #define VITRAIL_TILES_ARE coherent
+#else
+#undef VITRAIL_TILES_ARE
+#define VITRAIL_TILES_ARE restrict readonly
+#undef VITRAIL_RECORDS_ARE
+#define VITRAIL_RECORDS_ARE restrict readonly
 #endif
 #endif
 
@@ -39,7 +50,7 @@ layout(VITRAIL_RASTER_BOUND(2), std430) VITRAIL_TILES_ARE buffer VitrailTileBloc
 // whether its front shows) and the item; and behind these of all records the depth at the middle of the first pixel,
 // what pixels to the right and down add, and the nearest depth. Triangles that are side by side are so here, most
 // often, and what GPUs write at once is then side by side as well.
-layout(VITRAIL_RASTER_BOUND(3), std430) buffer VitrailRecordBlock { uvec4 vitrailRecords[]; };
+layout(VITRAIL_RASTER_BOUND(3), std430) VITRAIL_RECORDS_ARE buffer VitrailRecordBlock { uvec4 vitrailRecords[]; };
 // Of each record that is not on its page yet the tile, which one it is there, and where it is.
 layout(VITRAIL_RASTER_BOUND(4), std430) buffer VitrailAstrayBlock { uint vitrailAstray[]; };
 layout(VITRAIL_RASTER_BOUND(5), std430) buffer VitrailMediumBlock { uvec2 vitrailMedium[]; }; // primitive and item
@@ -47,16 +58,19 @@ layout(VITRAIL_RASTER_BOUND(6), std430) buffer VitrailLargeBlock { uvec2 vitrail
 // Tiles by class: each has room for all.
 layout(VITRAIL_RASTER_BOUND(7), std430) buffer VitrailTileListBlock { uint vitrailTileList[]; };
 // Of each record, where there are several samples, the pixels whose samples the triangle covers: samples.glsl.
-layout(VITRAIL_RASTER_BOUND(19), std430) buffer VitrailSampleBlock { uvec4 vitrailSampleMasks[]; };
+layout(VITRAIL_RASTER_BOUND(19), std430) VITRAIL_RECORDS_ARE buffer VitrailSampleBlock { uvec4 vitrailSampleMasks[]; };
 layout(VITRAIL_RASTER_BOUND(19), std430) readonly buffer VitrailSampleWordBlock { uint vitrailSampleWords[]; };
 
 // The draws: places, and of each work group the draw.
-layout(VITRAIL_RASTER_BOUND(21), std430) buffer VitrailDrawPlaceBlock { VitrailRasterPlace vitrailDrawPlaces[]; };
-layout(VITRAIL_RASTER_BOUND(22), std430) buffer VitrailRasterStartBlock { VitrailRasterStart vitrailRasterStart; };
-layout(VITRAIL_RASTER_BOUND(23), std430) buffer VitrailGroupBlock { uint vitrailDrawOfGroup[]; };
-layout(VITRAIL_RASTER_BOUND(24), std430) buffer VitrailVertexGroupBlock { uint vitrailDrawOfVertexGroup[]; };
+layout(VITRAIL_RASTER_BOUND(21), std430) VITRAIL_TABLES_ARE
+buffer VitrailDrawPlaceBlock { VitrailRasterPlace vitrailDrawPlaces[]; };
+layout(VITRAIL_RASTER_BOUND(22), std430) VITRAIL_TABLES_ARE
+buffer VitrailRasterStartBlock { VitrailRasterStart vitrailRasterStart; };
+layout(VITRAIL_RASTER_BOUND(23), std430) VITRAIL_TABLES_ARE buffer VitrailGroupBlock { uint vitrailDrawOfGroup[]; };
+layout(VITRAIL_RASTER_BOUND(24), std430) VITRAIL_TABLES_ARE
+buffer VitrailVertexGroupBlock { uint vitrailDrawOfVertexGroup[]; };
 // Of each item where the draw's indices begin, and the item's vertices; the draw; its instance. Fragments look it up.
-layout(VITRAIL_RASTER_BOUND(25), std430) buffer VitrailItemBlock { uvec4 vitrailItems[]; };
+layout(VITRAIL_RASTER_BOUND(25), std430) VITRAIL_TABLES_ARE buffer VitrailItemBlock { uvec4 vitrailItems[]; };
 layout(VITRAIL_RASTER_BOUND(26), std430) readonly buffer VitrailIndexBlock { uint vitrailIndices[]; };
 layout(VITRAIL_RASTER_BOUND(28), std430) readonly buffer VitrailOrderBlock { uint vitrailOrders[]; }; // of instances
 

@@ -31,6 +31,7 @@ uint vitrailRecordOf(uint tile, uint number) {
   return vitrailTiles[vitrailWordOfPage(tile, page)] + number - vitrailFirstOfPage(page);
 }
 
+#ifdef VITRAIL_MAKES_RECORDS // which frame.glsl defines
 // Takes a place for one more record of a tile. Who takes the last quarter of a page gets the next one, so that it is
 // there in time, for most. Who comes too early takes some other place; plan.comp brings the record to its own. So
 // nobody waits for another, and how much room a frame wants is hardly a matter of chance. The place may be beyond what
@@ -62,5 +63,7 @@ uint vitrailTakePlace(uint tile) {
   }
   return place;
 }
+
+#endif
 
 #endif

@@ -27,6 +27,7 @@ ivec2 vitrailSamplePlace(uint i) {
 #endif
 
 #ifdef VITRAIL_MULTISAMPLED
+#ifdef VITRAIL_MAKES_RECORDS
 // Turns four words: bit 4 i + j of word k is bit 4 i + k of word j then.
 void vitrailTurnFour(inout uvec4 words) {
   uvec2 other = (words.xy >> 2 ^ words.zw) & 0x33333333u;
@@ -96,6 +97,8 @@ void vitrailKeepSamples(uint record, uvec2 samples[VITRAIL_RASTER_SAMPLES_KEPT])
     vitrailKeepSamples(record, uvec4(0u), upper.zwxy, uvec4(0u), lower.zwxy);
   }
 }
+
+#endif
 
 // The samples of a pixel of its tile that a record covers, a bit each.
 uint vitrailCoveredSamples(uint record, uint pixel) {
