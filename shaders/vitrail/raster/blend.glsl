@@ -21,8 +21,13 @@ layout(VITRAIL_RASTER_BOUND(17), std430) readonly buffer VitrailTileClassBlock {
   VitrailRasterTileClasses vitrailTileClasses;
 };
 
-// Of the i-th fragment that a pixel has kept the number of its record in the tile, two a word.
-shared uint vitrailKeptOrder[VITRAIL_RASTER_KEEP / 2u * VITRAIL_RASTER_PIXELS];
+// Of the i-th fragment that a pixel has kept the number of its record in the tile: two a word, or four where a tile has
+// no more than VITRAIL_RASTER_PIXELS.
+const uint VITRAIL_ORDER_SHIFT = VITRAIL_RASTER_BATCHES > 0u ? 1u : 2u;
+const uint VITRAIL_ORDER_BITS = 32u >> VITRAIL_ORDER_SHIFT;
+const uint VITRAIL_ORDER_MASK = (1u << VITRAIL_ORDER_BITS) - 1u;
+const uint VITRAIL_ORDER_LAST = (1u << VITRAIL_ORDER_SHIFT) - 1u;
+shared uint vitrailKeptOrder[(VITRAIL_RASTER_KEEP >> VITRAIL_ORDER_SHIFT) * VITRAIL_RASTER_PIXELS];
 shared uint vitrailGoesOn[2]; // in turns
 shared uint vitrailTooShort;
 
@@ -31,12 +36,13 @@ uint vitrailAlikeFirst; // of the fragments that are blended
 ivec2 vitrailInTile;
 
 uint vitrailOrderAt(uint i) {
-  return vitrailKeptOrder[(i >> 1) * VITRAIL_RASTER_PIXELS + vitrailThread] >> (16u * (i & 1u)) & 0xffffu;
+  return vitrailKeptOrder[(i >> VITRAIL_ORDER_SHIFT) * VITRAIL_RASTER_PIXELS + vitrailThread] >>
+             (VITRAIL_ORDER_BITS * (i & VITRAIL_ORDER_LAST)) & VITRAIL_ORDER_MASK;
 }
 void vitrailSetOrder(uint i, uint number) {
-  uint shift = 16u * (i & 1u);
-  uint at = (i >> 1) * VITRAIL_RASTER_PIXELS + vitrailThread;
-  vitrailKeptOrder[at] = (vitrailKeptOrder[at] & ~(0xffffu << shift)) | number << shift;
+  uint shift = VITRAIL_ORDER_BITS * (i & VITRAIL_ORDER_LAST);
+  uint at = (i >> VITRAIL_ORDER_SHIFT) * VITRAIL_RASTER_PIXELS + vitrailThread;
+  vitrailKeptOrder[at] = (vitrailKeptOrder[at] & ~(VITRAIL_ORDER_MASK << shift)) | number << shift;
 }
 
 // Of each page of the tile where the tile's first record would be if all were side by side: what vitrailRecordOf()
@@ -271,7 +277,12 @@ void main() {
     }
     VITRAIL_EACH_KEPT(VITRAIL_COUNT_KEPT)
 #define VITRAIL_STORE_KEPT(i) \
-    if ((i & 1) == 0) \
+    if (VITRAIL_RASTER_BATCHES == 0u) { \
+      if ((i & 3) == 0) \
+        vitrailKeptOrder[i / 4 * VITRAIL_RASTER_PIXELS + vitrailThread] = \
+            (vitrailNearestKeys[i] & numbers) | (vitrailNearestKeys[i | 1] & numbers) << 8 | \
+            (vitrailNearestKeys[i | 2] & numbers) << 16 | (vitrailNearestKeys[i | 3] & numbers) << 24; \
+    } else if ((i & 1) == 0) \
       vitrailKeptOrder[i / 2 * VITRAIL_RASTER_PIXELS + vitrailThread] = \
           (vitrailNearestKeys[i] & numbers) | (vitrailNearestKeys[i | 1] & numbers) << 16;
     VITRAIL_EACH_KEPT(VITRAIL_STORE_KEPT)

@@ -76,7 +76,7 @@ void vitrailSetUpSmall(VitrailTriangle t, uint draw, ivec2 first, ivec2 last) {
   }
   VITRAIL_EACH_SAMPLE(VITRAIL_COVER_SAMPLE)
   if ((covered.x | covered.y) == 0u) return;
-  VitrailSource source = vitrailSourceOf(t, draw, front, float(area));
+  VitrailSource source = vitrailSourceOf(t, front, float(area));
   uint parts = vitrailPartsOf(covered, first);
   while (parts != 0u) {
     uint part = uint(findLSB(parts));

@@ -12,28 +12,28 @@
 
 layout(local_size_x = VITRAIL_RASTER_GROUP) in;
 
-// The triangles of the work group.
+// The triangles of the work group, in as little memory as they need: how many groups run at a time hangs on it.
 shared ivec4 vitrailGroupCorners[VITRAIL_RASTER_GROUP]; // the first two
-shared ivec4 vitrailGroupTiles[VITRAIL_RASTER_GROUP];   // the third; the first tile
+shared ivec4 vitrailGroupTiles[VITRAIL_RASTER_GROUP];   // the third; the first tile, 16 bits each; tiles in a row
 shared vec4 vitrailGroupPlanes[VITRAIL_RASTER_GROUP];   // the depths at the first corner; the nearest of the corners'
-shared uvec4 vitrailGroupSources[VITRAIL_RASTER_GROUP]; // primitive, item; tiles in a row; draw
+shared uvec2 vitrailGroupSources[VITRAIL_RASTER_GROUP]; // primitive, item
 shared uint vitrailGroupEnds[VITRAIL_RASTER_GROUP];     // of the candidates of each, among those of all
-shared uint vitrailGroupSums[VITRAIL_RASTER_GROUP];
+shared uint vitrailGroupSums[VITRAIL_RASTER_SHUFFLES ? VITRAIL_RASTER_GROUP / 32u : VITRAIL_RASTER_GROUP];
 shared uint vitrailGroupPieces;
 
 // Puts a triangle where all threads find it.
 void vitrailShareTriangle(uint i, VitrailTriangle t, VitrailSource source, ivec2 low, ivec2 high) {
   vitrailGroupCorners[i] = ivec4(t.p0, t.p1);
-  vitrailGroupTiles[i] = ivec4(t.p2, low);
+  vitrailGroupTiles[i] = ivec4(t.p2, low.x | low.y << 16, high.x - low.x);
   vitrailGroupPlanes[i] = vec4(source.plane.depth, source.nearest);
-  vitrailGroupSources[i] = uvec4(source.primitive, source.item, high.x - low.x, source.draw);
+  vitrailGroupSources[i] = uvec2(source.primitive, source.item);
 }
 
 // What records of the i-th have in common, which is shared; `corner` is its first.
 VitrailSource vitrailSharedSource(uint i, ivec2 corner) {
-  uvec4 source = vitrailGroupSources[i];
+  uvec2 source = vitrailGroupSources[i];
   vec4 plane = vitrailGroupPlanes[i];
-  return VitrailSource(source.x, source.y, source.w, VitrailPlane(vec2(corner), plane.xyz), plane.w);
+  return VitrailSource(source.x, source.y, VitrailPlane(vec2(corner), plane.xyz), plane.w);
 }
 
 // A candidate: a tile that a shared triangle may touch. The i-th of the group.
@@ -45,9 +45,9 @@ void vitrailCoverCandidate(uint i) {
   uint number = i - (owner > 0u ? vitrailGroupEnds[owner - 1u] : 0u);
   ivec4 corners = vitrailGroupCorners[owner];
   ivec4 rest = vitrailGroupTiles[owner];
-  uint width = vitrailGroupSources[owner].z;
+  uint width = uint(rest.w);
   uint row = width > 1u ? number / width : number;
-  ivec2 tile = rest.zw + ivec2(number - row * width, row);
+  ivec2 tile = ivec2(rest.z & 0xffff, rest.z >> 16) + ivec2(number - row * width, row);
   ivec2 pixel = tile * VITRAIL_TILE_SIDE;
   ivec2 p0 = corners.xy;
   ivec2 p1 = corners.zw;

@@ -99,7 +99,6 @@ uint vitrailCandidates(ivec2 first, ivec2 last, ivec2 least, ivec2 most, out ive
 struct VitrailSource {
   uint primitive; // and in the highest bit whether its front shows
   uint item;
-  uint draw;
   VitrailPlane plane;
   float nearest; // of its corners
 };
@@ -115,11 +114,10 @@ bool vitrailSideOf(uint draw, bool isClockwise, out bool front) {
   return (flags & (front ? VITRAIL_RASTER_CULL_FRONT : VITRAIL_RASTER_CULL_BACK)) == 0u;
 }
 
-VitrailSource vitrailSourceOf(VitrailTriangle t, uint draw, bool front, float area) {
+VitrailSource vitrailSourceOf(VitrailTriangle t, bool front, float area) {
   VitrailSource source;
   source.primitive = t.primitive | (front ? 0x80000000u : 0u);
   source.item = t.item;
-  source.draw = draw;
   source.plane = vitrailPlane(t.p0, t.p1, t.p2, t.depths, area);
   source.nearest = max(t.depths.x, max(t.depths.y, t.depths.z));
   return source;
@@ -130,7 +128,7 @@ bool vitrailOrientTriangle(inout VitrailTriangle t, uint draw, out VitrailSource
   float area = vitrailArea(t.p0, t.p1, t.p2);
   bool front;
   if (area == 0.0 || !vitrailSideOf(draw, area > 0.0, front)) return false;
-  source = vitrailSourceOf(t, draw, front, area);
+  source = vitrailSourceOf(t, front, area);
   if (area < 0.0) {
     ivec2 other = t.p1;
     t.p1 = t.p2;
