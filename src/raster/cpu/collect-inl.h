@@ -250,7 +250,7 @@ inline void TileWorker::shrink(Window& window, std::uint32_t block) {
     }
     most = std::max(most, list.size());
   }
-  if (most == rows_.size()) return store_.grow(); // at one depth are more than fit: they are held at once
+  const bool isStuck = most == rows_.size(); // at one depth are more than fit: they are held at once
 
   const std::size_t stride = shape_.vectors * kLanes;
   std::vector<std::int32_t> copy(most * stride);
@@ -268,6 +268,7 @@ inline void TileWorker::shrink(Window& window, std::uint32_t block) {
   store_.restart(block, static_cast<std::uint32_t>(most));
   store_.collect(block, rows_);
   for (std::size_t r = 0; r < most; ++r) std::memcpy(rows_[r], copy.data() + r * stride, shape_.bytes());
+  if (isStuck) store_.grow(); // and of pixels beside them what lies beyond the window is gone all the same
 }
 
 // A block whose fragments do not fit: the nearest ones are blended, then those behind them, and so on.

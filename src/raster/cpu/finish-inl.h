@@ -301,23 +301,26 @@ inline void TileWorker::writeTile(const Frame& frame) {
   written_ = 0;
 }
 
-// The mean of the samples, each over what is behind it.
-inline void TileWorker::blendedOver(const Frame& frame, std::uint32_t block, const State* state, F* sum) {
+// The mean of the samples, each over what is behind it. They are added up in pairs: the mean of eight that are alike is
+// then what they are, as where nothing is drawn.
+inline void TileWorker::blendedOver(const Frame& frame, std::uint32_t block, const State* state, F* mean) {
   const std::uint32_t samples = frame.info.samples;
+  F colors[kMaxSamples][4];
   for (std::uint32_t s = 0; s < samples; ++s) {
-    F color[4];
-    behind(frame, block, s, color);
-    if (state != nullptr) {
-      if (frame.needs.filters) {
-        over<true>(state->of(s), frame.leastTransmittance, color);
-      } else {
-        over<false>(state->of(s), frame.leastTransmittance, color);
-      }
+    behind(frame, block, s, colors[s]);
+    if (state == nullptr) continue;
+    if (frame.needs.filters) {
+      over<true>(state->of(s), frame.leastTransmittance, colors[s]);
+    } else {
+      over<false>(state->of(s), frame.leastTransmittance, colors[s]);
     }
-    for (std::size_t c = 0; c < 4; ++c) sum[c] = s == 0 ? color[c] : sum[c] + color[c];
   }
-  if (samples == 1) return;
-  for (std::size_t c = 0; c < 4; ++c) sum[c] = sum[c] * set(1.0F / static_cast<float>(samples));
+  for (std::uint32_t step = 1; step < samples; step *= 2) {
+    for (std::uint32_t s = 0; s < samples; s += 2 * step) {
+      for (std::size_t c = 0; c < 4; ++c) colors[s][c] = colors[s][c] + colors[s + step][c];
+    }
+  }
+  for (std::size_t c = 0; c < 4; ++c) mean[c] = colors[0][c] * set(1.0F / static_cast<float>(samples));
 }
 
 inline void TileWorker::finishBlock(const Frame& frame, std::uint32_t block, const State* state) {
@@ -354,11 +357,12 @@ inline void TileWorker::listBlock(const Frame& frame, std::uint32_t block, const
     const int isBlended = frame.info.list(frame.info.listUser, frame.info.originX + x, frame.info.originY + y,
                                           list_.data(), static_cast<std::uint32_t>(list_.size()), color);
     if (isBlended == 0) continue;
-    for (std::size_t c = 0; c < 4; ++c) {
-      float sum = 0.0F;
-      for (std::uint32_t s = 0; s < samples; ++s) sum += color[4 * s + c];
-      result[c][lane] = sum / static_cast<float>(samples);
+    for (std::uint32_t step = 1; step < samples; step *= 2) { // as in blendedOver()
+      for (std::uint32_t s = 0; s < samples; s += 2 * step) {
+        for (std::size_t c = 0; c < 4; ++c) color[4 * s + c] += color[4 * (s + step) + c];
+      }
     }
+    for (std::size_t c = 0; c < 4; ++c) result[c][lane] = color[c] / static_cast<float>(samples);
   }
   for (std::size_t c = 0; c < 4; ++c) blended[c] = load(result[c]);
   write(frame, block, blended);

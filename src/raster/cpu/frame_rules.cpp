@@ -223,8 +223,9 @@ void addWork(Frame& frame, std::uint32_t draw, std::uint64_t& vertices) {
   if (info.primitives == 0) return;
   if (info.draw.topology == VITRAIL_CPU_TRIANGLES) {
     vertices += info.draw.vertexCount;
-    for (std::uint32_t i = 0; i < info.draw.vertexCount; i += kVertexChunk) {
-      frame.vertexChunks.push_back({draw, i, std::min(kVertexChunk, info.draw.vertexCount - i)});
+    for (std::uint64_t i = 0; i < info.draw.vertexCount; i += kVertexChunk) { // 64 bits: it passes the end
+      const auto first = static_cast<std::uint32_t>(i);
+      frame.vertexChunks.push_back({draw, first, std::min(kVertexChunk, info.draw.vertexCount - first)});
     }
   }
   for (std::uint64_t i = 0; i < info.primitives; i += kJobTriangles) {

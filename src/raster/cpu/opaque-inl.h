@@ -16,6 +16,26 @@
 HWY_BEFORE_NAMESPACE();
 namespace vitrail::raster::HWY_NAMESPACE {
 
+// Of what passes the depth test, the pixels in which it does not lie at the depth of something that is drawn later.
+// Pieces come when a batch of them is full; all else comes in order.
+HWY_INLINE std::uint32_t TileWorker::withoutLater(const Frame& frame, const Work& work, std::uint32_t item,
+                                                  std::uint32_t mask, const I* keys) {
+  const std::uint32_t block = work.block();
+  const auto number =
+      static_cast<std::int32_t>(static_cast<std::uint32_t>(batch_.number[work.triangle()]) & ~kFrontBit);
+  std::uint32_t any = 0;
+  for (std::uint32_t s = 0; s < frame.info.samples; ++s) {
+    const I shown = load(opaque_->shown[s].number[block]) & set(static_cast<std::int32_t>(~kFrontBit));
+    const std::uint32_t later =
+        bitsOf((keys[s] == load(opaque_->depth[s].value[block])) & (shown > set(number + 1))); // plus 1, as below
+    if (frame.info.samples == 1) return mask & ~later;
+    std::uint16_t& covered = sampleMasks_[s][item];
+    covered = static_cast<std::uint16_t>(covered & ~later);
+    any |= covered;
+  }
+  return mask & any;
+}
+
 HWY_INLINE void TileWorker::emitOpaque(const Frame& frame, std::uint32_t item) {
   const Work work = work_[item];
   const std::uint32_t t = work.triangle();
@@ -23,6 +43,7 @@ HWY_INLINE void TileWorker::emitOpaque(const Frame& frame, std::uint32_t item) {
   const F depth = depthOfWork(work);
   I keys[kMaxSamples];
   std::uint32_t mask = testDepth(frame, work, item, depth, keys);
+  if (HWY_UNLIKELY(batch_.pieces != nullptr)) mask = withoutLater(frame, work, item, mask, keys);
   if (mask == 0) return;
   F weights[6];
   perspective(work, frame.needs.opaqueDerivatives, weights);
@@ -80,15 +101,16 @@ inline void TileWorker::shadeOpaque(const Frame& frame, std::uint32_t block) {
     // Where there is none, any number that exists.
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left[s]));
     job.numbers = select(job.present, number - set(1), set(shown.number[block][lane] - 1));
-    job.depth = depthOf(load(shown.centre[block]), frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE);
+    job.depth =
+        keep(job.present, depthOf(load(shown.centre[block]), frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE));
     job.second = load(shown.weights[0][block]);
     job.third = load(shown.weights[1][block]);
     for (std::size_t i = 0; i < 4; ++i) job.derivatives[i] = load(shown.weights[2 + i][block]);
     const std::uint32_t shading = left[s];
     shadeAll(frame, job, frame.needs.opaqueDerivatives, fragments_,
-             [&](const VitrailCpuDraw& /*draw*/, const VitrailCpuFragments& f, std::uint32_t mask) HWY_ATTR {
+             [&](const VitrailCpuDraw& draw, const VitrailCpuFragments& f, std::uint32_t mask) HWY_ATTR {
                F color[4];
-               for (std::size_t c = 0; c < 3; ++c) color[c] = clamped(load(f.color[c]), kLargestColor);
+               for (std::size_t c = 0; c < 3; ++c) color[c] = clamped(load(f.color[c]), draw.brightest);
                color[3] = set(1.0F);
                for (std::uint32_t other = s; other < samples; ++other) {
                  const std::uint32_t same =

@@ -84,6 +84,17 @@ void clearBlocks(const Frame& frame, const TileBox& tile, std::uint64_t blocks) 
   }
 }
 
+void setAlpha(const Frame& frame, const TileBox& tile, std::uint64_t blocks) {
+  for (; blocks != 0; blocks &= blocks - 1) {
+    const auto block = static_cast<std::uint32_t>(std::countr_zero(blocks));
+    for (std::uint32_t i = 0; i < kBlockPixels; ++i) {
+      const Place at = placeOf(frame, tile, block, i);
+      if (at.isInside)
+        rowOf<std::uint8_t>(frame.info.color, frame.info.colorStride, at.y)[std::size_t{at.x} * 4 + 3] = 255;
+    }
+  }
+}
+
 void writePixels(const Frame& frame, const TileBox& tile, std::uint32_t block, const PixelBlock& pixels) {
   const VitrailCpuFrame& info = frame.info;
   for (std::uint32_t i = 0; i < kBlockPixels; ++i) {

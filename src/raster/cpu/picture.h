@@ -17,6 +17,8 @@ struct PixelBlock {
 void readPixels(const Frame& frame, const TileBox& tile, std::uint32_t block, std::uint32_t sample, PixelBlock& pixels);
 // Where the frame has a colour that is behind all draws: gives it to all pixels of some blocks, a bit each.
 void clearBlocks(const Frame& frame, const TileBox& tile, std::uint64_t blocks);
+// 8-bit pictures have an alpha of 255 also where nothing is drawn.
+void setAlpha(const Frame& frame, const TileBox& tile, std::uint64_t blocks);
 void writePixels(const Frame& frame, const TileBox& tile, std::uint32_t block, const PixelBlock& pixels);
 
 // A sample's depth of each pixel. Only the pixels of `mask` are written.

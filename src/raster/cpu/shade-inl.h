@@ -106,18 +106,18 @@ HWY_INLINE void shadeAll(const Frame& frame, const ToShade& s, bool derivatives,
     const std::uint32_t jobNumber = (static_cast<std::uint32_t>(numbers[lane]) & 0x7fffffffU) >> kJobBits;
     const Job& job = frame.jobs[jobNumber];
     const DrawInfo& info = frame.draws[job.draw];
-    // Lanes of the same draw: those of the same job, mostly.
+    // Lanes of the same draw: those of the same job, mostly. In the others, also where nothing is, the triangle of this
+    // one: functions may look up what they do not use.
     M same = jobs == set(static_cast<std::int32_t>(jobNumber));
-    I triangles = within + set(static_cast<std::int32_t>(job.first));
+    const I own = set(numbers[lane] & static_cast<std::int32_t>(kJobTriangles - 1));
+    I triangles = select(same, within, own) + set(static_cast<std::int32_t>(job.first));
     std::uint32_t mask = bitsOf(same) & left;
     if (mask != every) {
       const auto first = static_cast<std::int32_t>(info.firstJob);
       const auto last = static_cast<std::int32_t>(info.firstJob + (info.primitives - 1) / kJobTriangles);
       same = ~((set(first) > jobs) | (jobs > set(last)));
       triangles = shiftLeft<kJobBits>(jobs - set(first)) + within;
-      triangles = select(
-          same, triangles,
-          set(static_cast<std::int32_t>(job.first) + (numbers[lane] & static_cast<std::int32_t>(kJobTriangles - 1))));
+      triangles = select(same, triangles, own + set(static_cast<std::int32_t>(job.first)));
       mask = bitsOf(same) & left;
     }
     f.mask = mask;
@@ -146,7 +146,7 @@ HWY_INLINE std::uint32_t shadeRow(const Frame& frame, Row row, std::uint32_t x, 
   s.y = y;
   s.numbers = load(row + kLanes * RowShape::kNumber);
   s.present = set(kFarKey) > keys;
-  s.depth = depthOf(keys, frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE);
+  s.depth = keep(s.present, depthOf(keys, frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE));
   s.second = load(floatsOf(row, RowShape::kSecond));
   s.third = load(floatsOf(row, RowShape::kThird));
   if (frame.needs.derivatives) {

@@ -44,7 +44,11 @@ inline void TileWorker::draw(const Frame& frame, std::uint32_t tile, TileCounts&
   } else {
     untouched_ = blocks;
   }
-  if (frame.info.clear != nullptr) clearBlocks(frame, tile_, untouched_);
+  if (frame.info.clear != nullptr) {
+    clearBlocks(frame, tile_, untouched_);
+  } else if (frame.info.colorFormat == VITRAIL_CPU_RGBA8_SRGB) {
+    setAlpha(frame, tile_, untouched_);
+  }
 }
 
 } // namespace vitrail::raster::HWY_NAMESPACE

@@ -238,6 +238,8 @@ class TileWorker final : public TileWorkspace {
   std::uint32_t emitPlain(const Frame& frame, std::uint32_t item, std::uint32_t count);
   template <Kept kKept>
   bool emitAll(const Frame& frame, std::uint32_t count);
+  HWY_INLINE std::uint32_t withoutLater(const Frame& frame, const Work& work, std::uint32_t item, std::uint32_t mask,
+                                        const I* keys);
   HWY_INLINE void emitOpaque(const Frame& frame, std::uint32_t item);
   HWY_INLINE std::uint32_t testDepth(const Frame& frame, const Work& work, std::uint32_t item, const F& depth, I* keys);
 
@@ -277,7 +279,7 @@ class TileWorker final : public TileWorkspace {
   HWY_INLINE void prefetchPixels(const Frame& frame, std::uint32_t block) const;
   void write(const Frame& frame, std::uint32_t block, const F* color);
   void writeTile(const Frame& frame);
-  void blendedOver(const Frame& frame, std::uint32_t block, const State* state, F* sum);
+  void blendedOver(const Frame& frame, std::uint32_t block, const State* state, F* mean);
   void finishBlock(const Frame& frame, std::uint32_t block, const State* state);
   void listBlock(const Frame& frame, std::uint32_t block, const SortedRows& sorted);
   void layersOf(const Frame& frame, const SortedRows& sorted, std::uint32_t lane);

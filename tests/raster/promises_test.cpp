@@ -1,0 +1,228 @@
+// What cpu.h promises, where frames are unlike most: too little memory for a pixel of one depth, opaque surfaces at one
+// depth that are not plain triangles, lanes in which nothing is, pixels that nobody draws on.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "host.h"
+
+namespace vitrail::tests::raster {
+namespace {
+
+constexpr std::uint32_t kPromisedSide = 64;
+
+void addColumn(std::vector<Position>& to, std::uint32_t x, float depth) {
+  const auto at = [&](std::uint32_t right, double y) {
+    return inPixels(kPromisedSide, kPromisedSide, x + right, y, depth);
+  };
+  to.insert(to.end(),
+            {at(0, 0.0), at(1, 0.0), at(0, kPromisedSide), at(0, kPromisedSide), at(1, 0.0), at(1, kPromisedSide)});
+}
+
+// In one pixel of a block more fragments lie at one depth than fit into the budget, and stay together; in the next
+// pixel they are at depths of their own, and are drawn window by window.
+TEST(BudgetTest, FragmentsOfOneDepthBesideManyAreDrawnOnce) {
+  constexpr std::uint32_t kCount = 1000;
+  std::vector<Position> vertices;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    addColumn(vertices, 0, 0.5F);
+    addColumn(vertices, 1, 0.1F + 0.8F * static_cast<float>(i * 7919 % kCount) / kCount);
+  }
+  VitrailCpuDraw draw = drawOf(vertices);
+  draw.color[0] = 1.0F;
+  draw.color[3] = 0.001F;
+  Raster raster;
+  Picture whole(kPromisedSide, kPromisedSide);
+  VitrailStats stats{};
+  ASSERT_EQ(raster.render(whole.frame(), {&draw, 1}, &stats), VITRAIL_SUCCESS);
+  EXPECT_EQ(stats.layersMax, kCount);
+  EXPECT_NEAR(whole.at(1, 1)[0], 1.0 - std::pow(1.0 - 0.001, kCount), 1e-4);
+  for (const std::uint64_t budget : {65536U, 1U << 17U, 1U << 20U}) {
+    Picture little(kPromisedSide, kPromisedSide);
+    VitrailCpuFrame frame = little.frame();
+    frame.memoryBudget = budget;
+    VitrailStats again{};
+    ASSERT_EQ(raster.render(frame, {&draw, 1}, &again), VITRAIL_SUCCESS);
+    EXPECT_TRUE(little.pixels == whole.pixels) << budget;
+    EXPECT_EQ(again.layersMax, kCount) << budget;
+    EXPECT_EQ(again.fragmentsRequested, stats.fragmentsRequested) << budget;
+  }
+}
+
+// The first draw is clipped, a line or a point: such are drawn in batches of their own.
+TEST(OpaqueTest, OfOneDepthTheLastOneIsSeen) {
+  const auto corner = [](double x, double y) { return inPixels(kPromisedSide, kPromisedSide, x, y); };
+  const std::vector<Position> quad = {corner(0, 0),
+                                      corner(kPromisedSide, 0),
+                                      corner(0, kPromisedSide),
+                                      corner(0, kPromisedSide),
+                                      corner(kPromisedSide, 0),
+                                      corner(kPromisedSide, kPromisedSide)};
+  const std::vector<Position> line = {corner(0, 32.5), corner(kPromisedSide, 32.5)};
+  const std::vector<Position> point = {corner(32, 32)};
+  const std::array<float, 4> plane = {1.0F, 0.0F, 0.0F, 0.9F}; // cuts off a strip
+  Raster raster;
+  for (const std::uint32_t samples : {1U, 4U}) {
+    for (int kind = 0; kind < 3; ++kind) {
+      for (const bool isLast : {false, true}) {
+        VitrailCpuDraw special = drawOf(kind == 0 ? quad : kind == 1 ? line : point);
+        if (kind == 0) {
+          special.clipPlanes = plane.data();
+          special.clipPlaneCount = 1;
+        }
+        if (kind == 1) special.topology = VITRAIL_CPU_LINES;
+        if (kind == 2) special.topology = VITRAIL_CPU_POINTS;
+        special.pointSize = 20.0F;
+        special.surface = VITRAIL_CPU_OPAQUE;
+        special.color[0] = 1.0F;
+        VitrailCpuDraw plain = drawOf(quad);
+        plain.surface = VITRAIL_CPU_OPAQUE;
+        plain.color[2] = 1.0F;
+        const std::array<VitrailCpuDraw, 2> draws = isLast ? std::array{plain, special} : std::array{special, plain};
+        Picture picture(kPromisedSide, kPromisedSide);
+        VitrailCpuFrame frame = picture.frame();
+        frame.samples = samples;
+        ASSERT_EQ(raster.render(frame, draws), VITRAIL_SUCCESS);
+        std::size_t red = 0;
+        for (std::size_t i = 0; i < picture.pixels.size(); i += 4) red += picture.pixels[i] > 0.0F ? 1 : 0;
+        SCOPED_TRACE(std::to_string(samples) + " samples, kind " + std::to_string(kind));
+        if (isLast) {
+          EXPECT_GT(red, 50U);
+        } else {
+          EXPECT_EQ(red, 0U);
+        }
+      }
+    }
+  }
+}
+
+struct Watched {
+  std::uint32_t triangles;
+  std::uint64_t calls = 0;
+  std::uint64_t wrongTriangles = 0;
+  std::uint64_t wrongNumbers = 0;
+};
+
+void shadeWatched(void* user, VitrailCpuFragments* f) {
+  Watched& watched = *static_cast<Watched*>(user);
+  ++watched.calls;
+  for (std::size_t i = 0; i < VITRAIL_CPU_LANES; ++i) {
+    if (f->triangle[i] >= watched.triangles) ++watched.wrongTriangles;
+    if (!std::isfinite(f->depth[i]) || !std::isfinite(f->second[i]) || !std::isfinite(f->third[i]))
+      ++watched.wrongNumbers;
+    for (auto& channel : f->color) channel[i] = 0.5F;
+    f->color[3][i] = 0.01F;
+  }
+}
+
+// A function may look up what all lanes name, whatever draws the block's rows held before.
+TEST(ShadeTest, LanesWithoutAFragmentNameTrianglesOfTheDraw) {
+  std::array<std::vector<Position>, 3> vertices;
+  const auto add = [&](std::size_t draw, double x, double y, double size, float depth) {
+    for (const auto& [right, down] : {std::pair{0.0, 0.0}, {size, 0.0}, {0.0, size}}) {
+      vertices.at(draw).push_back(inPixels(kPromisedSide, kPromisedSide, x + right, y + down, depth));
+    }
+  };
+  for (int i = 0; i < 60; ++i) add(0, 2, 0, 4, 0.1F + 0.001F * static_cast<float>(i));
+  for (int i = 0; i < 3940; ++i) add(1, -200, -200, 4, 0.5F);
+  for (int i = 0; i < 60; ++i) add(1, 0, 0, 2, 0.2F + 0.001F * static_cast<float>(i));
+  for (int i = 0; i < 200; ++i) add(2, 2, 0, 4, 0.5F + 0.001F * static_cast<float>(i));
+  std::array<Watched, 3> watched{};
+  std::array<VitrailCpuDraw, 3> draws{};
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    watched[i].triangles = static_cast<std::uint32_t>(vertices[i].size() / 3);
+    draws[i] = drawOf(vertices[i]);
+    draws[i].shade = shadeWatched;
+    draws[i].shadeUser = &watched[i];
+    draws[i].brightest = 1.0F;
+  }
+  Raster raster(VITRAIL_CPU_BEST, 1); // with all of the budget
+  for (const std::uint64_t budget : {0U, 65536U}) {
+    Picture picture(kPromisedSide, kPromisedSide);
+    VitrailCpuFrame frame = picture.frame();
+    frame.memoryBudget = budget;
+    ASSERT_EQ(raster.render(frame, draws), VITRAIL_SUCCESS);
+    for (const Watched& each : watched) {
+      EXPECT_GT(each.calls, 0U);
+      EXPECT_EQ(each.wrongTriangles, 0U) << budget;
+      EXPECT_EQ(each.wrongNumbers, 0U) << budget;
+    }
+  }
+}
+
+// One triangle, and random colours behind it.
+TEST(SamplesTest, PixelsWithoutAFragmentStayAsTheyAre) {
+  const std::vector<Position> triangle = {inPixels(kPromisedSide, kPromisedSide, 1.5, 1.5),
+                                          inPixels(kPromisedSide, kPromisedSide, 30.5, 2.5),
+                                          inPixels(kPromisedSide, kPromisedSide, 2.5, 40.5)};
+  VitrailCpuDraw draw = drawOf(triangle);
+  draw.color[0] = 1.0F;
+  draw.color[3] = 1.0F;
+  Raster raster;
+  for (const std::uint32_t samples : {2U, 4U, 8U}) {
+    Random random(samples);
+    Picture picture(kPromisedSide, kPromisedSide);
+    for (float& value : picture.pixels) value = random.single(0.0, 1.0);
+    const std::vector<float> before = picture.pixels;
+    VitrailCpuFrame frame = picture.frame();
+    frame.samples = samples;
+    ASSERT_EQ(raster.render(frame, {&draw, 1}), VITRAIL_SUCCESS);
+    std::size_t changed = 0;
+    for (std::uint32_t y = 0; y < kPromisedSide; ++y) {
+      for (std::uint32_t x = 0; x < kPromisedSide; ++x) {
+        const std::size_t at = (std::size_t{y} * kPromisedSide + x) * 4;
+        const bool isSame = std::equal(&before[at], &before[at] + 4, &picture.pixels[at]);
+        changed += isSame ? 0 : 1;
+        const bool isBeside = x < 1 || y < 1 || x > 31 || y > 41 || x + y > 48;
+        EXPECT_TRUE(isSame || !isBeside) << x << ' ' << y << ' ' << samples;
+      }
+    }
+    EXPECT_GT(changed, 400U);
+  }
+}
+
+TEST(EightBitTest, AlphaIs255Everywhere) {
+  const std::vector<Position> triangle = {inPixels(kPromisedSide, kPromisedSide, 0, 0),
+                                          inPixels(kPromisedSide, kPromisedSide, 20, 0),
+                                          inPixels(kPromisedSide, kPromisedSide, 0, 20)};
+  VitrailCpuDraw draw = drawOf(triangle);
+  draw.color[3] = 0.5F;
+  std::vector<std::uint8_t> bytes(std::size_t{kPromisedSide} * kPromisedSide * 4, 7);
+  VitrailCpuFrame frame{};
+  frame.width = frame.height = kPromisedSide;
+  frame.colorFormat = VITRAIL_CPU_RGBA8_SRGB;
+  frame.color = bytes.data();
+  Raster raster;
+  ASSERT_EQ(raster.render(frame, {&draw, 1}), VITRAIL_SUCCESS);
+  for (std::size_t i = 0; i < bytes.size(); i += 4) ASSERT_EQ(bytes[i + 3], 255) << i / 4;
+  EXPECT_EQ(bytes[bytes.size() - 4], 7);
+}
+
+void shadeBright(void* /*user*/, VitrailCpuFragments* f) {
+  for (std::size_t i = 0; i < VITRAIL_CPU_LANES; ++i) {
+    for (auto& channel : f->color) channel[i] = 50'000.0F;
+    f->color[3][i] = 1.0F;
+  }
+}
+
+TEST(BrightestTest, BoundsWhatShadeFunctionsGive) {
+  const std::vector<Position> triangle = {inPixels(kPromisedSide, kPromisedSide, 0, 0),
+                                          inPixels(kPromisedSide, kPromisedSide, 20, 0),
+                                          inPixels(kPromisedSide, kPromisedSide, 0, 20)};
+  Raster raster;
+  for (const VitrailCpuSurface surface : {VITRAIL_CPU_TRANSPARENT, VITRAIL_CPU_OPAQUE}) {
+    VitrailCpuDraw draw = drawOf(triangle);
+    draw.shade = shadeBright;
+    draw.brightest = 2.0F;
+    draw.surface = surface;
+    Picture picture(kPromisedSide, kPromisedSide);
+    ASSERT_EQ(raster.render(picture.frame(), {&draw, 1}), VITRAIL_SUCCESS);
+    EXPECT_EQ(picture.at(2, 2)[0], 2.0F) << surface;
+  }
+}
+
+} // namespace
+} // namespace vitrail::tests::raster
