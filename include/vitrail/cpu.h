@@ -23,7 +23,7 @@
  * The same frame gives the same bits for any number of threads and any order of transparent draws, as far as what is
  * shaded is the same; of opaque surfaces at one depth the one that is drawn last shows. Between instruction sets
  * pictures differ by at most 1/255: some fuse a multiplication and an addition, which rounds once, others round twice.
- * Coverage never differs.
+ * (By more where slanted surfaces lie in one plane: rounding then tells which is in front.) Coverage never differs.
  *
  * Threads: a context is used from one thread at a time; different contexts may be used at once. Nothing global is kept.
  * A call returns when the frame is done; shade functions and hooks run on the context's threads, several at once. */
@@ -266,8 +266,8 @@ typedef struct VitrailCpuFrame {
   void* progressUser;
   /* Bytes that the fragments of all tiles in work may take, at least 65536: where they need more, a tile is drawn in
    * parts and layers, for the same picture. Default: 256 MiB, or 4 MiB a thread where that is more; tiles that
-   * need little touch little of it. Beside it a frame takes about 20 bytes a vertex and 5 bytes a triangle, 9 where
-   * what is near may hide what is behind it. */
+   * need little touch little of it. Beside it a frame takes about 20 bytes a vertex, 4 to 8 bytes for each tile of 32
+   * x 32 pixels that a triangle may touch, and 4 a triangle where what is near may hide what is behind it. */
   uint64_t memoryBudget;
 } VitrailCpuFrame;
 

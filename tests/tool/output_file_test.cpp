@@ -40,7 +40,6 @@ int inChild(const std::function<void()>& work) {
 // The same on a disk that takes 1000 bytes a file. Exit code 7: the work threw std::runtime_error.
 int onAFullDisk(const std::function<void()>& work) {
   return inChild([&] {
-    ::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{1000, 1000};
     ::setrlimit(RLIMIT_FSIZE, &limit);
     try {
@@ -49,6 +48,24 @@ int onAFullDisk(const std::function<void()>& work) {
       ::_exit(7);
     }
   });
+}
+
+// As a shell writes through it. /dev/stdout is such a link where standard output is closed.
+TEST(OutputFile, ALinkToNothingStaysALink) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("there.png", folder.path() / "middle");
+  std::filesystem::create_symlink(folder.path() / "middle", folder.path() / "link");
+  {
+    OutputFile file(folder.file("link"));
+    file.write(kContent);
+    file.commit();
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "link"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "middle"));
+  EXPECT_EQ(std::filesystem::file_size(folder.path() / "there.png"), kContent.size());
+  std::filesystem::create_symlink("nowhere/a.png", folder.path() / "lost");
+  EXPECT_THROW(OutputFile(folder.file("lost")), std::runtime_error);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "lost"));
 }
 
 TEST(OutputFile, ASignalRemovesWhatIsNotWhole) {

@@ -38,6 +38,7 @@ void removeTemporaries(int signal) {
 
 void watch(const fs::path& path) {
   static const bool installed = [] {
+    ::signal(SIGXFSZ, SIG_IGN); // a file that may not be so large is then an error as others are
     for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
       struct sigaction old {};
       struct sigaction action {};
@@ -80,6 +81,19 @@ void writeAll(int file, std::span<const std::byte> content, const fs::path& path
   if (::close(file) != 0) fail(path, std::strerror(errno));
 }
 
+// Where links lead to whose file is not there: it is made there, as a shell makes it. Else the new file would take the
+// place of the link: of /dev/stdout itself, where standard output is closed.
+fs::path endOfLinks(fs::path path) {
+  constexpr int kMost = 40; // as the system
+  std::error_code error;
+  for (int i = 0; i < kMost && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
+    const fs::path to = fs::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / to;
+  }
+  return path;
+}
+
 } // namespace
 
 OutputFile::OutputFile(fs::path path) : path_(std::move(path)), target_(path_) {
@@ -92,6 +106,7 @@ OutputFile::OutputFile(fs::path path) : path_(std::move(path)), target_(path_) {
   if (isSpecial_) return;
   if (fs::exists(status)) target_ = fs::canonical(path_, error); // a link stays a link to the new file
   if (error && fs::exists(status)) fail(path_, error.message().c_str());
+  if (!fs::exists(status)) target_ = endOfLinks(path_);
   if (fs::exists(status) && ::access(target_.c_str(), W_OK) != 0) fail(path_, std::strerror(errno));
   fs::path folder = target_.parent_path();
   if (folder.empty()) folder = ".";

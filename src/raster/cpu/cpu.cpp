@@ -38,15 +38,15 @@ const raster::Stages* stagesOf(VitrailCpuInstructions instructions) {
   return nullptr;
 }
 
-// Calls the function and turns exceptions into results.
+// Calls the function and turns exceptions into results. `advice`: where there is no memory.
 template <class Function>
-VitrailResult guarded(const Log& log, const char* doing, Function function) {
+VitrailResult guarded(const Log& log, const char* doing, const char* advice, Function function) {
   try {
     return function();
   } catch (const std::bad_alloc&) {
-    return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory is left for %s", doing);
+    return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory is left for %s%s", doing, advice);
   } catch (const std::length_error&) {
-    return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory is left for %s", doing);
+    return log.fail(VITRAIL_ERROR_OUT_OF_MEMORY, "no memory is left for %s%s", doing, advice);
   } catch (const std::system_error& error) {
     return log.fail(VITRAIL_ERROR_UNSUPPORTED, "a thread could not be started: %s: use fewer threads", error.what());
   } catch (const std::exception& error) {
@@ -189,7 +189,7 @@ VitrailResult vitrailCpuCreateContext(const VitrailCpuContextDesc* desc, Vitrail
   if (context == nullptr) return log.fail(VITRAIL_ERROR_INVALID, "context is null");
   *context = nullptr;
   if (const VitrailResult result = checkContext(log, given); result != VITRAIL_SUCCESS) return result;
-  return guarded(log, "a context", [&] {
+  return guarded(log, "a context", "", [&] {
     auto made = std::make_unique<VitrailCpuContext_T>();
     made->log = log;
     made->stages = stagesOf(given.instructions);
@@ -241,7 +241,7 @@ VitrailResult vitrailCpuRender(VitrailCpuContext context, const VitrailCpuFrame*
       result != VITRAIL_SUCCESS) {
     return result;
   }
-  return guarded(context->log, "the frame", [&] {
+  return guarded(context->log, "the frame", ": a smaller memory budget takes less", [&] {
     raster::prepareFrame(context->frame, *frame, {draws, drawCount}, context->workers->count(), stats != nullptr);
     return drawFrame(*context, stats);
   });
