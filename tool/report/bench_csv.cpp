@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "../methods/methods.h"
 #include "names.h"
 
 namespace vitrail::tool {
@@ -91,7 +92,7 @@ constexpr CsvColumn kCsvColumns[] = {
     {names::kOverflowed, [](const CsvRow& row) { return cell(hasOverflowed(row.measured)); }},
     {names::kApproximatePixels,
      [](const CsvRow& row) { return orEmpty(row.frame.counted, row.frame.approximatePixels); }},
-    {names::kApi, [](const CsvRow& row) { return std::string(nameOf(row.measured.options.api)); }},
+    {names::kApi, [](const CsvRow& row) { return std::string(apiOf(row.measured.options)); }},
 };
 
 // One line of what `cellOf` says of every column.

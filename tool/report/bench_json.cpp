@@ -17,7 +17,7 @@ namespace {
 // What measured and skipped settings begin with. `chosen` has the choices that were made, or taken.
 Json settingOf(const MethodOptions& options, const FrameStats& chosen, std::optional<SweepKind> sweep) {
   return {{names::kMethod, options.name},
-          {names::kApi, nameOf(options.api)},
+          {names::kApi, apiOf(options)},
           {"setting", describeWithoutSamples(sweep ? withoutStep(options, *sweep) : options)},
           {names::kNodes, orNull(chosen.nodes)},
           {names::kSamples, options.samples},

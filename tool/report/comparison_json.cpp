@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "../methods/methods.h"
 #include "json.h"
 #include "names.h"
 
@@ -12,7 +13,7 @@ namespace {
 Json toJson(const ComparedMethod& method) {
   const Measurement& measured = method.measurement;
   Json json = {{names::kMethod, measured.options.name},
-               {names::kApi, nameOf(measured.options.api)},
+               {names::kApi, apiOf(measured.options)},
                {names::kMaxLayers, limitOrNull(measured.options.maxLayers)},
                {names::kPasses, limitOrNull(measured.options.passes)},
                {names::kExact, isExact(measured.report)},
