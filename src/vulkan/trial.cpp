@@ -82,7 +82,8 @@ VkResult checkTrial(const Log& log, const VitrailVkTrialDesc& desc) {
                     kMostFrames);
   }
   if (desc.memory == nullptr && desc.memorySize > 0) {
-    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "memorySize %zu without memory", desc.memorySize);
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "memorySize %llu without memory",
+                    static_cast<unsigned long long>(desc.memorySize));
   }
   return VK_SUCCESS;
 }
