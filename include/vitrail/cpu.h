@@ -109,7 +109,8 @@ typedef struct VitrailCpuFragments {
 
   /* What the function fills in. */
   float color[4][VITRAIL_CPU_LANES]; /* linear r, g, b, and alpha, as the draw's blend mode takes them */
-  /* VITRAIL_CPU_SHADE_FILTER: what passes through the fragment is multiplied by this, per channel. */
+  /* VITRAIL_CPU_SHADE_FILTER: what passes through the fragment is multiplied by this, per channel; 0 to 1, larger ones
+   * are clamped. (What makes the light behind it brighter is a draw of VITRAIL_BLEND_MULTIPLY.) */
   float filter[3][VITRAIL_CPU_LANES];
   /* VITRAIL_CPU_SHADE_DISCARD: bits of those that are not there. 0 when the function is called. */
   uint32_t discarded;

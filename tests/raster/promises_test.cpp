@@ -201,6 +201,29 @@ TEST(EightBitTest, AlphaIs255Everywhere) {
   EXPECT_EQ(bytes[bytes.size() - 4], 7);
 }
 
+void shadeFilter(void* /*user*/, VitrailCpuFragments* f) {
+  for (std::size_t i = 0; i < VITRAIL_CPU_LANES; ++i) {
+    for (auto& channel : f->color) channel[i] = 0.0F;
+    f->color[3][i] = 0.5F;
+    for (auto& channel : f->filter) channel[i] = 40'000.0F;
+  }
+}
+
+// What was left out behind too little light is not made bright again.
+TEST(FilterTest, LetsAllThroughAtMost) {
+  const std::vector<Position> triangle = {inPixels(kPromisedSide, kPromisedSide, 0, 0),
+                                          inPixels(kPromisedSide, kPromisedSide, 20, 0),
+                                          inPixels(kPromisedSide, kPromisedSide, 0, 20)};
+  VitrailCpuDraw draw = drawOf(triangle);
+  draw.blend = VITRAIL_BLEND_PREMULTIPLIED;
+  draw.shade = shadeFilter;
+  draw.shadeFlags = VITRAIL_CPU_SHADE_FILTER;
+  Picture picture(kPromisedSide, kPromisedSide, {1.0F, 1.0F, 1.0F, 1.0F});
+  Raster raster;
+  ASSERT_EQ(raster.render(picture.frame(), {&draw, 1}), VITRAIL_SUCCESS);
+  EXPECT_EQ(picture.at(2, 2)[0], 0.5F);
+}
+
 void shadeBright(void* /*user*/, VitrailCpuFragments* f) {
   for (std::size_t i = 0; i < VITRAIL_CPU_LANES; ++i) {
     for (auto& channel : f->color) channel[i] = 50'000.0F;

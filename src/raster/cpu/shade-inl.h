@@ -53,7 +53,7 @@ HWY_INLINE Pairs pairsOf(const VitrailCpuDraw& draw, const VitrailCpuFragments& 
       pairs.filter[c] = fma(alpha, min(color, set(draw.brightest)) - one, one);
     }
     if (filters && (draw.shadeFlags & VITRAIL_CPU_SHADE_FILTER) != 0) {
-      const F filter = clamped(load(f.filter[c]), kLargestColor);
+      const F filter = clamped(load(f.filter[c]), 1.0F);
       pairs.filter[c] = pairs.filter[c] * filter;
       pairs.isNothing = pairs.isNothing & (filter == one);
     }
