@@ -497,13 +497,11 @@ VkResult growWithoutMemory(VitrailVkRaster_T& raster, const RasterNeeds& needs, 
       if (fewer > 1) continue;
       room = raster.room;
     }
-    bool done = resizeRasterRoom(raster, room, fewer, kQuiet, true) == VK_SUCCESS;
-    if (!done && fewer > 1) continue;
-    done = done || countRecords(raster, needs.part(parts), inTiles / parts);
-    if (!done)
-      return resizeRasterRoom(raster, room, fewer, raster.context->log, true); // says what there is no room for
-    if (fewer < rows) warnOfBands(raster);
-    return VK_SUCCESS;
+    const bool isMade = resizeRasterRoom(raster, room, fewer, kQuiet, true) == VK_SUCCESS ||
+                        (fewer == 1 && countRecords(raster, needs.part(parts), inTiles / parts));
+    if (isMade && fewer < rows) warnOfBands(raster);
+    if (isMade) return VK_SUCCESS;
+    if (fewer == 1) return resizeRasterRoom(raster, room, fewer, raster.context->log, true); // once more, to say why
   }
 }
 

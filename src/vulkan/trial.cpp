@@ -74,13 +74,13 @@ VkResult checkTrial(const Log& log, const VitrailVkTrialDesc& desc) {
   const VkResult result = checkNext(log, desc.next, "VitrailVkTrialDesc");
   if (result != VK_SUCCESS) return result;
   if (desc.ways < 2 || desc.ways > kMostWays) {
-    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "ways %u: a trial is between 2 to %u", desc.ways, kMostWays);
+    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "ways %u: a trial has 2 to %u", desc.ways, kMostWays);
   }
-  if (desc.warmUps > kMostFrames || desc.rounds > kMostFrames) {
-    return log.fail(VK_ERROR_INITIALIZATION_FAILED, "%s %u: %u is the most",
-                    desc.warmUps > kMostFrames ? "warmUps" : "rounds", std::max(desc.warmUps, desc.rounds),
-                    kMostFrames);
-  }
+  const auto isTooMany = [&](const char* field, std::uint32_t frames) {
+    if (frames > kMostFrames) log.error("%s %u: %u is the most", field, frames, kMostFrames);
+    return frames > kMostFrames;
+  };
+  if (isTooMany("warmUps", desc.warmUps) || isTooMany("rounds", desc.rounds)) return VK_ERROR_INITIALIZATION_FAILED;
   if (desc.memory == nullptr && desc.memorySize > 0) {
     return log.fail(VK_ERROR_INITIALIZATION_FAILED, "memorySize %llu without memory",
                     static_cast<unsigned long long>(desc.memorySize));

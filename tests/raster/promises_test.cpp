@@ -14,6 +14,12 @@ namespace {
 
 constexpr std::uint32_t kPromisedSide = 64;
 
+// A triangle in the picture's corner.
+std::vector<Position> corner() {
+  const auto at = [](double x, double y) { return inPixels(kPromisedSide, kPromisedSide, x, y); };
+  return {at(0, 0), at(20, 0), at(0, 20)};
+}
+
 void addColumn(std::vector<Position>& to, std::uint32_t x, float depth) {
   const auto at = [&](std::uint32_t right, double y) {
     return inPixels(kPromisedSide, kPromisedSide, x + right, y, depth);
@@ -54,15 +60,15 @@ TEST(BudgetTest, FragmentsOfOneDepthBesideManyAreDrawnOnce) {
 
 // The first draw is clipped, a line or a point: such are drawn in batches of their own.
 TEST(OpaqueTest, OfOneDepthTheLastOneIsSeen) {
-  const auto corner = [](double x, double y) { return inPixels(kPromisedSide, kPromisedSide, x, y); };
-  const std::vector<Position> quad = {corner(0, 0),
-                                      corner(kPromisedSide, 0),
-                                      corner(0, kPromisedSide),
-                                      corner(0, kPromisedSide),
-                                      corner(kPromisedSide, 0),
-                                      corner(kPromisedSide, kPromisedSide)};
-  const std::vector<Position> line = {corner(0, 32.5), corner(kPromisedSide, 32.5)};
-  const std::vector<Position> point = {corner(32, 32)};
+  const auto at = [](double x, double y) { return inPixels(kPromisedSide, kPromisedSide, x, y); };
+  const std::vector<Position> quad = {at(0, 0),
+                                      at(kPromisedSide, 0),
+                                      at(0, kPromisedSide),
+                                      at(0, kPromisedSide),
+                                      at(kPromisedSide, 0),
+                                      at(kPromisedSide, kPromisedSide)};
+  const std::vector<Position> line = {at(0, 32.5), at(kPromisedSide, 32.5)};
+  const std::vector<Position> point = {at(32, 32)};
   const std::array<float, 4> plane = {1.0F, 0.0F, 0.0F, 0.9F}; // cuts off a strip
   Raster raster;
   for (const std::uint32_t samples : {1U, 4U}) {
@@ -185,9 +191,7 @@ TEST(SamplesTest, PixelsWithoutAFragmentStayAsTheyAre) {
 }
 
 TEST(EightBitTest, AlphaIs255Everywhere) {
-  const std::vector<Position> triangle = {inPixels(kPromisedSide, kPromisedSide, 0, 0),
-                                          inPixels(kPromisedSide, kPromisedSide, 20, 0),
-                                          inPixels(kPromisedSide, kPromisedSide, 0, 20)};
+  const std::vector<Position> triangle = corner();
   VitrailCpuDraw draw = drawOf(triangle);
   draw.color[3] = 0.5F;
   std::vector<std::uint8_t> bytes(std::size_t{kPromisedSide} * kPromisedSide * 4, 7);
@@ -211,9 +215,7 @@ void shadeFilter(void* /*user*/, VitrailCpuFragments* f) {
 
 // What was left out behind too little light is not made bright again.
 TEST(FilterTest, LetsAllThroughAtMost) {
-  const std::vector<Position> triangle = {inPixels(kPromisedSide, kPromisedSide, 0, 0),
-                                          inPixels(kPromisedSide, kPromisedSide, 20, 0),
-                                          inPixels(kPromisedSide, kPromisedSide, 0, 20)};
+  const std::vector<Position> triangle = corner();
   VitrailCpuDraw draw = drawOf(triangle);
   draw.blend = VITRAIL_BLEND_PREMULTIPLIED;
   draw.shade = shadeFilter;
@@ -232,9 +234,7 @@ void shadeBright(void* /*user*/, VitrailCpuFragments* f) {
 }
 
 TEST(BrightestTest, BoundsWhatShadeFunctionsGive) {
-  const std::vector<Position> triangle = {inPixels(kPromisedSide, kPromisedSide, 0, 0),
-                                          inPixels(kPromisedSide, kPromisedSide, 20, 0),
-                                          inPixels(kPromisedSide, kPromisedSide, 0, 20)};
+  const std::vector<Position> triangle = corner();
   Raster raster;
   for (const VitrailCpuSurface surface : {VITRAIL_CPU_TRANSPARENT, VITRAIL_CPU_OPAQUE}) {
     VitrailCpuDraw draw = drawOf(triangle);

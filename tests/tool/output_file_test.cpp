@@ -66,6 +66,8 @@ TEST(OutputFile, ALinkToNothingStaysALink) {
   std::filesystem::create_symlink("nowhere/a.png", folder.path() / "lost");
   EXPECT_THROW(OutputFile(folder.file("lost")), std::runtime_error);
   EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "lost"));
+  std::filesystem::create_symlink("round", folder.path() / "round");
+  EXPECT_THROW(OutputFile(folder.file("round")), std::runtime_error);
 }
 
 TEST(OutputFile, ASignalRemovesWhatIsNotWhole) {

@@ -91,6 +91,7 @@ fs::path endOfLinks(fs::path path) {
     if (error) break;
     path = path.parent_path() / to;
   }
+  if (fs::is_symlink(fs::symlink_status(path, error))) fail(path, std::strerror(ELOOP));
   return path;
 }
 

@@ -84,12 +84,13 @@ std::vector<std::string> methodWarnings(const Scene& scene, const MethodOptions&
 // The exact methods of choice: on a Vulkan device, and on the processor.
 inline constexpr std::string_view kListMethod = "linked-list";
 inline constexpr std::string_view kCpuMethod = "cpu";
+// Where it is faster than lists, which commands/method_choice.h measures.
+inline constexpr std::string_view kTilesMethod = "tiles";
+
 // What draws, as reports have it: "vulkan", "opengl", or "cpu" without either.
 inline std::string_view apiOf(const MethodOptions& options) {
   return options.name == kCpuMethod ? kCpuMethod : nameOf(options.api);
 }
-// Where it is faster than lists, which commands/method_choice.h measures.
-inline constexpr std::string_view kTilesMethod = "tiles";
 
 // Counts the fragments of each pixel and draws no picture; not listed.
 inline constexpr std::string_view kLayerCount = "layer-count";

@@ -301,8 +301,16 @@ inline void TileWorker::writeTile(const Frame& frame) {
   written_ = 0;
 }
 
-// The mean of the samples, each over what is behind it. They are added up in pairs: the mean of eight that are alike is
+// Adds samples up in pairs, by add(to, from), so that the sum comes to the first: the mean of eight that are alike is
 // then what they are, as where nothing is drawn.
+template <class Add>
+HWY_INLINE void addInPairs(std::uint32_t samples, Add add) {
+  for (std::uint32_t step = 1; step < samples; step *= 2) {
+    for (std::uint32_t s = 0; s < samples; s += 2 * step) add(s, s + step);
+  }
+}
+
+// The mean of the samples, each over what is behind it.
 inline void TileWorker::blendedOver(const Frame& frame, std::uint32_t block, const State* state, F* mean) {
   const std::uint32_t samples = frame.info.samples;
   F colors[kMaxSamples][4];
@@ -315,11 +323,9 @@ inline void TileWorker::blendedOver(const Frame& frame, std::uint32_t block, con
       over<false>(state->of(s), frame.leastTransmittance, colors[s]);
     }
   }
-  for (std::uint32_t step = 1; step < samples; step *= 2) {
-    for (std::uint32_t s = 0; s < samples; s += 2 * step) {
-      for (std::size_t c = 0; c < 4; ++c) colors[s][c] = colors[s][c] + colors[s + step][c];
-    }
-  }
+  addInPairs(samples, [&](std::uint32_t to, std::uint32_t from) HWY_ATTR {
+    for (std::size_t c = 0; c < 4; ++c) colors[to][c] = colors[to][c] + colors[from][c];
+  });
   for (std::size_t c = 0; c < 4; ++c) mean[c] = colors[0][c] * set(1.0F / static_cast<float>(samples));
 }
 
@@ -357,11 +363,9 @@ inline void TileWorker::listBlock(const Frame& frame, std::uint32_t block, const
     const int isBlended = frame.info.list(frame.info.listUser, frame.info.originX + x, frame.info.originY + y,
                                           list_.data(), static_cast<std::uint32_t>(list_.size()), color);
     if (isBlended == 0) continue;
-    for (std::uint32_t step = 1; step < samples; step *= 2) { // as in blendedOver()
-      for (std::uint32_t s = 0; s < samples; s += 2 * step) {
-        for (std::size_t c = 0; c < 4; ++c) color[4 * s + c] += color[4 * (s + step) + c];
-      }
-    }
+    addInPairs(samples, [&](std::uint32_t to, std::uint32_t from) HWY_ATTR {
+      for (std::size_t c = 0; c < 4; ++c) color[4 * to + c] += color[4 * from + c];
+    });
     for (std::size_t c = 0; c < 4; ++c) result[c][lane] = color[c] / static_cast<float>(samples);
   }
   for (std::size_t c = 0; c < 4; ++c) blended[c] = load(result[c]);

@@ -44,7 +44,8 @@ struct Job {
 };
 
 // Triangle numbers of one thread and each tile, in the order in which they were added: in chunks, each twice as large
-// as the one before it. Who reads them waits for each chunk's address, and goes through a chunk as through any array.
+// as the one before it, up to 4 KB. Who reads them waits for each chunk's address, and goes through a chunk as through
+// any array.
 class Bins {
  public:
   void reset(std::size_t tiles) {

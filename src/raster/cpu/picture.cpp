@@ -30,6 +30,23 @@ T* rowOf(void* array, std::uint32_t stride, std::uint32_t y) {
   return reinterpret_cast<T*>(static_cast<unsigned char*>(array) + std::size_t{stride} * y);
 }
 
+// Calls run(x, y, count) for each row of pixels side by side in some of a tile's blocks, a bit each.
+template <class Run>
+void forRuns(const TileBox& tile, std::uint64_t blocks, Run run) {
+  constexpr std::uint32_t kAcross = kTileSide / kBlockSide;
+  for (std::uint32_t y = 0; y <= static_cast<std::uint32_t>(tile.lastY); ++y) {
+    auto row = static_cast<std::uint32_t>(blocks >> y / kBlockSide * kAcross & 0xffU);
+    while (row != 0) { // each run of blocks
+      const auto first = static_cast<std::uint32_t>(std::countr_zero(row));
+      const auto end = first + static_cast<std::uint32_t>(std::countr_one(row >> first));
+      row &= ~(((1U << (end - first)) - 1U) << first);
+      const std::uint32_t x = first * kBlockSide;
+      const std::uint32_t count = std::min(end * kBlockSide, static_cast<std::uint32_t>(tile.lastX) + 1) - x;
+      run(static_cast<std::uint32_t>(tile.x) + x, static_cast<std::uint32_t>(tile.y) + y, count);
+    }
+  }
+}
+
 } // namespace
 
 void readPixels(const Frame& frame, const TileBox& tile, std::uint32_t block, std::uint32_t sample,
@@ -56,7 +73,6 @@ void readPixels(const Frame& frame, const TileBox& tile, std::uint32_t block, st
 }
 
 void clearBlocks(const Frame& frame, const TileBox& tile, std::uint64_t blocks) {
-  constexpr std::uint32_t kAcross = kTileSide / kBlockSide;
   const VitrailCpuFrame& info = frame.info;
   std::uint8_t code[4] = {0, 0, 0, 255};
   if (info.colorFormat == VITRAIL_CPU_RGBA8_SRGB) {
@@ -65,34 +81,22 @@ void clearBlocks(const Frame& frame, const TileBox& tile, std::uint64_t blocks) 
   const auto fill = [](auto* to, const auto* pixel, std::uint32_t count) {
     for (std::uint32_t x = 0; x < count; ++x, to += 4) std::memcpy(to, pixel, 4 * sizeof(*pixel));
   };
-  for (std::uint32_t y = 0; y <= static_cast<std::uint32_t>(tile.lastY); ++y) {
-    auto row = static_cast<std::uint32_t>(blocks >> y / kBlockSide * kAcross & 0xffU);
-    while (row != 0) { // each run of blocks
-      const auto first = static_cast<std::uint32_t>(std::countr_zero(row));
-      const auto end = first + static_cast<std::uint32_t>(std::countr_one(row >> first));
-      row &= ~(((1U << (end - first)) - 1U) << first);
-      const std::uint32_t x = first * kBlockSide;
-      const std::uint32_t count = std::min(end * kBlockSide, static_cast<std::uint32_t>(tile.lastX) + 1) - x;
-      const std::size_t at = std::size_t{static_cast<std::uint32_t>(tile.x) + x} * 4;
-      const std::uint32_t line = static_cast<std::uint32_t>(tile.y) + y;
-      if (info.colorFormat == VITRAIL_CPU_RGBA32F) {
-        fill(rowOf<float>(info.color, info.colorStride, line) + at, info.clear, count);
-      } else {
-        fill(rowOf<std::uint8_t>(info.color, info.colorStride, line) + at, code, count);
-      }
+  forRuns(tile, blocks, [&](std::uint32_t x, std::uint32_t y, std::uint32_t count) {
+    const std::size_t at = std::size_t{x} * 4;
+    if (info.colorFormat == VITRAIL_CPU_RGBA32F) {
+      fill(rowOf<float>(info.color, info.colorStride, y) + at, info.clear, count);
+    } else {
+      fill(rowOf<std::uint8_t>(info.color, info.colorStride, y) + at, code, count);
     }
-  }
+  });
 }
 
 void setAlpha(const Frame& frame, const TileBox& tile, std::uint64_t blocks) {
-  for (; blocks != 0; blocks &= blocks - 1) {
-    const auto block = static_cast<std::uint32_t>(std::countr_zero(blocks));
-    for (std::uint32_t i = 0; i < kBlockPixels; ++i) {
-      const Place at = placeOf(frame, tile, block, i);
-      if (at.isInside)
-        rowOf<std::uint8_t>(frame.info.color, frame.info.colorStride, at.y)[std::size_t{at.x} * 4 + 3] = 255;
-    }
-  }
+  const VitrailCpuFrame& info = frame.info;
+  forRuns(tile, blocks, [&](std::uint32_t x, std::uint32_t y, std::uint32_t count) {
+    auto* alpha = rowOf<std::uint8_t>(info.color, info.colorStride, y) + std::size_t{x} * 4 + 3;
+    for (std::uint32_t i = 0; i < count; ++i) alpha[std::size_t{i} * 4] = 255;
+  });
 }
 
 void writePixels(const Frame& frame, const TileBox& tile, std::uint32_t block, const PixelBlock& pixels) {

@@ -7,10 +7,11 @@
 // 32 of its fragments in registers, sorted, and shades them from the front; while some are left and still show, it
 // takes the next. Tiles with very many records collect their fragments and sort them all.
 //
-// Cost: nothing is stored per fragment but in such deep tiles, and no fragment that is hidden is shaded. Memory: 52
-// bytes for a triangle in a tile, 32 bytes a tile; 16 bytes a fragment in deep tiles. A picture that needs more than
-// the last ones had room for is drawn again, in bands of tiles where the device cannot hold all of it. With several
-// samples 8 bytes more for each of them and each triangle in a tile. Beside that 32 bytes for a vertex of an instance.
+// Cost: nothing is stored per fragment but in such deep tiles, and no fragment that is hidden is shaded. Memory: 37
+// to 85 bytes for a triangle in a tile, 152 bytes a tile; 16 bytes a fragment in deep tiles. A picture that needs more
+// than the last ones had room for is drawn again, in bands of tiles where the device cannot hold all of it. With
+// several samples 8 bytes more for each of them and each triangle in a tile. Beside that 32 bytes for a vertex of an
+// instance.
 //
 // What it gets wrong: nothing. Colours are not rounded before they are blended; what a pixel hardly shows is left out
 // (VitrailVkRasterStats::errorBound).

@@ -11,7 +11,7 @@
   // Of the processor alone, times are by the clock and there is no baseline.
   const onProcessor = report.api === "CPU";
   const hasTimes = !report.cpu || onProcessor;
-  const labelOf = (method) => method.method + (method.api === "opengl" && method.method !== "cpu" ? ", OpenGL" : "");
+  const labelOf = (method) => method.method + (method.api === "opengl" ? ", OpenGL" : "");
   const worst = (w) => (w.difference === 0 ? "0" : `${w.difference} at ${w.x},${w.y}`);
 
   // What --layers and --passes said of the methods that have them.
