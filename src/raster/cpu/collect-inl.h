@@ -109,32 +109,34 @@ HWY_INLINE std::uint32_t TileWorker::emitPlain(const Frame& frame, std::uint32_t
   const I base = set(nearestIsOne ? kOneBits + kNearestKey + 1 : kNearestKey);
   const F zero = set(0.0F);
   const F one = set(1.0F);
-  const F least = set(frame.trackedTransmittance);
-  const std::uint64_t saturated = saturated_;
   const std::int32_t* const draws = batch_.draw;
   Store::Head* const heads = store_.heads();
   for (; item < count; ++item) {
     const Work work = work_[item];
     const std::uint32_t t = work.triangle();
     const std::uint32_t block = work.block();
-    const std::uint32_t mask = work.pixels();
+    std::uint32_t mask = work.pixels();
+    const F depth = planeAt(batch_, t, load(kBlockLanes.place[block][0]), load(kBlockLanes.place[block][1]));
+    const I key = (bitsOf(min(max(depth, zero), one)) ^ flip) + base;
+    if (HWY_UNLIKELY(batch_.careful[t] != 0)) break;
+    if (kShaded && HWY_UNLIKELY(batch_.big[t] != 0)) break;
+    std::uint32_t hidden = 0;
+    if ((saturated_ >> block & 1U) != 0) {
+      if (!kTracked) break;
+      hidden = mask & ~bitsOf(load(until_[block]) > key);
+      mask &= ~hidden;
+    }
     const M here = maskOf(mask);
     Store::Head& head = heads[block];
     const std::uint32_t index = Store::freeRow(head, mask);
     const Row row = Store::rowAfter(head, index, stride);
-    if (HWY_UNLIKELY(row > head.last || batch_.careful[t] != 0)) break;
-    if (kShaded && HWY_UNLIKELY(batch_.big[t] != 0)) break;
-    const F depth = planeAt(batch_, t, load(kBlockLanes.place[block][0]), load(kBlockLanes.place[block][1]));
-    const I key = (bitsOf(min(max(depth, zero), one)) ^ flip) + base;
-    if ((saturated >> block & 1U) != 0) {
-      if (!kTracked || (mask & ~bitsOf(load(until_[block]) > key)) != 0) break;
-    }
-    if constexpr (kTracked) { // as trackHidden()
-      const F before = load(through_[block]);
-      const F through = fnma(before, keep(here, set(hidingOf<kKept>(frame, draws[t]))), before);
-      if (HWY_UNLIKELY(bitsOf(least > through) != opaquePixels_[block])) break;
-      store(through_[block], through);
-      store(farthest_[block], max(load(farthest_[block]), keep(here, key)));
+    if (HWY_UNLIKELY(row > head.last)) break;
+    if constexpr (kTracked) {
+      if (hidden != 0) {
+        countHidden(block, hidden);
+        if (mask == 0) continue;
+      }
+      trackHidden(frame, block, here, key, hidingOf<kKept>(frame, draws[t]));
     }
     const std::int32_t* const kept = store_.take(head, mask, index, row);
     const auto put = [&](std::uint32_t vector, const I& value)
