@@ -104,6 +104,33 @@ TEST_F(MaterialsTest, WhatIsReflectedOtherwiseThanByGlass) {
   expectLikeReference(scene, usualOptions(scene, 320, 180), 0.02);
 }
 
+// Sizes that a file may have: floats hold none of their fourth powers, and next to an eye so far away nothing of a
+// direction.
+TEST_F(MaterialsTest, ModelsOfAnySizeAreTheSame) {
+  for (const bool flat : {true, false}) {
+    Scene scene = balls({[](Material& m) {
+      m.alphaMode = AlphaMode::Blend;
+      m.baseColor.a = 0.5F;
+      m.metallic = 0.3F;
+    }});
+    if (flat) scene.meshes[0].normals.clear();
+    for (const char* name : {"cpu", "linked-list", "tiles"}) {
+      MethodOptions method;
+      method.name = name;
+      const auto picture = [&](float size) {
+        Scene sized = scene;
+        for (glm::vec3& position : sized.meshes[0].positions) position *= size;
+        return renderOnce(gpu(), sized, usualOptions(sized, 96, 64), {}, DrawOrder::Forward, method).picture;
+      };
+      const Picture usual = picture(1.0F);
+      EXPECT_GT(*std::ranges::max_element(usual.rgba) - *std::ranges::min_element(usual.rgba), 100);
+      for (const float size : {1e-15F, 1e14F}) {
+        EXPECT_LE(largestDifference(picture(size), usual), 1) << name << ", size " << size << (flat ? ", flat" : "");
+      }
+    }
+  }
+}
+
 TEST_F(MaterialsTest, LayersOverASurface) {
   const Scene scene = balls({
       [](Material& m) {

@@ -1,6 +1,7 @@
 // No memory, no threads, a host that gives up: an error and a line in the log, and the context goes on.
 #include <atomic>
 #include <cstdlib>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -177,6 +178,26 @@ TEST(ProgressTest, IsToldAndMayGiveUp) {
       EXPECT_EQ(told.last, std::min(giveUpAt, 28U)) << "told on after it gave up";
       EXPECT_EQ(drawn.stats.complete, giveUpAt == ~0U ? 1U : 0U);
       EXPECT_TRUE(giveUpAt != ~0U || drawn == expected);
+    }
+  }
+}
+
+// Hosts in C++ may throw where C++ says they should not; whatever it is, it goes no farther than the call.
+TEST(HostExceptionTest, IsAnErrorOfTheFrame) {
+  std::vector<Position> positions;
+  for (const auto& [x, y] : {std::pair{-1.0F, -1.0F}, {3.0F, -1.0F}, {-1.0F, 3.0F}})
+    positions.push_back({x, y, 0.5F, 1.0F});
+  VitrailCpuDraw throwing = drawOf(positions);
+  for (const bool isStandard : {false, true}) {
+    throwing.shade = isStandard ? [](void*, VitrailCpuFragments*) { throw std::runtime_error("none"); }
+                                : [](void*, VitrailCpuFragments*) { throw 1; };
+    for (const std::uint32_t threads : {1U, 2U}) {
+      Raster raster(VITRAIL_CPU_BEST, threads);
+      Picture picture(64, 64);
+      EXPECT_EQ(raster.render(picture.frame(), {&throwing, 1}), VITRAIL_ERROR_UNSUPPORTED);
+      EXPECT_EQ(raster.takeLog().size(), 1U);
+      const VitrailCpuDraw plain = drawOf(positions);
+      EXPECT_EQ(raster.render(picture.frame(), {&plain, 1}), VITRAIL_SUCCESS);
     }
   }
 }

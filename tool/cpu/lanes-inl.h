@@ -103,6 +103,15 @@ HWY_INLINE Float3 direction(const Float3& v, const Float3& fallback) {
   return select(squared > zero(), v * inverseSqrt(squared), fallback);
 }
 
+// The normal of the plane in which two directions lie, not of unit length. Each is made about 1 long first, so that no
+// square of the normal overflows in a large model, or vanishes in a small one.
+HWY_INLINE Float3 normalOfPlane(const Float3& a, const Float3& b) {
+  const auto sized = [](const Float3& v) HWY_ATTR {
+    return v * (one() / max(largest({hn::Abs(v.x), hn::Abs(v.y), hn::Abs(v.z)}), set(1e-37F)));
+  };
+  return cross(sized(a), sized(b));
+}
+
 // Which lanes have a bit set: lane i of those from `first` on has bit first + i.
 HWY_INLINE M maskOf(std::uint32_t bits, std::size_t first) {
   alignas(64) static constexpr std::int32_t kBits[VITRAIL_CPU_LANES] = {

@@ -219,7 +219,7 @@ HWY_INLINE Point pointOf(const VitrailCpuFragments& fragments, const ShadeDraw& 
                    valueAt(corners, attributes.position[2], places.first, i)};
     }
     // Differences in the mesh's own space: there they are exact, however far away the draw is.
-    point.plane = columns(draw.normals, cross(corner[1] - corner[0], corner[2] - corner[0]));
+    point.plane = columns(draw.normals, normalOfPlane(corner[1] - corner[0], corner[2] - corner[0]));
   }
   const Float3 normal = asked.normal ? interpolate3(corners, attributes.normal, places) : Float3{zero(), zero(), one()};
   point.inNormal = columns(draw.normals, normal);

@@ -4,6 +4,14 @@
 
 #include "surface_shared.h"
 
+// The normal of the plane in which two directions lie, not of unit length. Each is made about 1 long first, so that no
+// square of the normal overflows in a large model, or vanishes in a small one.
+vec3 normalOfPlane(vec3 a, vec3 b) {
+  float sizeA = max(max(abs(a.x), abs(a.y)), abs(a.z));
+  float sizeB = max(max(abs(b.x), abs(b.y)), abs(b.z));
+  return cross(a / max(sizeA, 1e-37), b / max(sizeB, 1e-37));
+}
+
 #ifndef SURFACE_OF_DRAWS
 CONSTANT(0, uint kFeatures, 0u)
 
@@ -45,7 +53,10 @@ vec2 texCoord(uint slot) {
 
 // The normal of a flat triangle's plane, on one side or the other, not of unit length. Before any discard, which would
 // leave the derivatives undefined.
-vec3 planeNormal() { return has(FEATURE_FLAT) ? cross(dFdx(inPosition), dFdy(inPosition)) : vec3(0.0); }
+vec3 planeNormal() { return has(FEATURE_FLAT) ? normalOfPlane(dFdx(inPosition), dFdy(inPosition)) : vec3(0.0); }
+
+// From the surface to the eye.
+vec3 wayToEye() { return frame.eye.xyz - inPosition; }
 
 #define SURFACE_FRONT gl_FrontFacing
 #define SURFACE_DISCARD discard
@@ -67,7 +78,7 @@ vec3 direction(vec3 v, vec3 fallback) {
 
 vec3 viewDirection() {
   vec3 backward = frame.cameraToWorld[2].xyz;
-  return frame.eye.w > 0.5 ? backward : direction(frame.eye.xyz - inPosition, backward);
+  return frame.eye.w > 0.5 ? backward : direction(wayToEye(), backward);
 }
 
 // The normal without the normal map, on the side that is seen. `v` points to the eye.

@@ -22,6 +22,7 @@ uint surfaceFeatures;
 uint surfaceMaterial;
 uint surfaceDraw;
 bool surfaceFront;
+vec3 surfaceToEye;             // of any length
 vec3 surfacePlane;             // with FEATURE_FLAT: the normal of its plane, on one side or the other
 vec4 surfaceTexCoords;         // both
 vec4 surfaceTexCoordsRight;    // how they change from a pixel to the next
@@ -42,6 +43,7 @@ bool has(uint feature) {
 #define SURFACE_FRONT surfaceFront
 #define SURFACE_DISCARD { surfaceCut = true; return Surface(vec3(0.0), 0.0, vec3(1.0), 0.0); }
 
+vec3 wayToEye() { return surfaceToEye; }
 vec3 planeNormal() { return has(FEATURE_FLAT) ? surfacePlane : vec3(0.0); }
 
 #ifndef SURFACE_CONSTANT_TEXTURES

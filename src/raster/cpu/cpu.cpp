@@ -51,6 +51,8 @@ VitrailResult guarded(const Log& log, const char* doing, const char* advice, Fun
     return log.fail(VITRAIL_ERROR_UNSUPPORTED, "a thread could not be started: %s: use fewer threads", error.what());
   } catch (const std::exception& error) {
     return log.fail(VITRAIL_ERROR_UNSUPPORTED, "%s failed: %s", doing, error.what());
+  } catch (...) { // of the host's: a shade function, or what it runs threads with
+    return log.fail(VITRAIL_ERROR_UNSUPPORTED, "%s failed: one of the host's functions threw an exception", doing);
   }
 }
 

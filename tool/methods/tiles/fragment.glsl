@@ -63,8 +63,8 @@ void setDirections(VitrailSurface at, InstancePlace place) {
 // Where a surface is only matters to lights that are near, and to planes; else only from where it is seen.
 const bool kNeedsPlaces = (kAnyFeatures & (FEATURE_LIGHTS | FEATURE_FLAT)) != 0u;
 
-// From a surface at the pixel to the eye.
-vec3 wayToEye(ivec2 pixel) {
+// From a surface at the pixel to the eye, of any length.
+vec3 pixelToEye(ivec2 pixel) {
   vec2 at = vec2(pixel) + 0.5;
   vec3 ray = vec3(at.x * frame.ray.x - frame.ray.z, frame.ray.w - at.y * frame.ray.y, -1.0);
   return -(mat3(frame.cameraToWorld) * ray);
@@ -84,8 +84,10 @@ Surface shadeFragment(VitrailSurface at) {
       world[i] = vec3(dot(place.row0, local), dot(place.row1, local), dot(place.row2, local));
     }
   }
-  inPosition = kNeedsPlaces ? mat3(world[0], world[1], world[2]) * at.weights : frame.eye.xyz - wayToEye(at.pixel);
-  if (has(FEATURE_FLAT)) surfacePlane = cross(world[1] - world[0], world[2] - world[0]);
+  // Not by way of a place where only the way counts: the eye may be so far away that it would be rounded off.
+  if (kNeedsPlaces) inPosition = mat3(world[0], world[1], world[2]) * at.weights;
+  surfaceToEye = kNeedsPlaces ? frame.eye.xyz - inPosition : pixelToEye(at.pixel);
+  if (has(FEATURE_FLAT)) surfacePlane = normalOfPlane(world[1] - world[0], world[2] - world[0]);
   if (has(FEATURE_VERTEX_COLOR)) {
     inColor = vec4(0.0);
     for (uint i = 0u; i < 3u; ++i) inColor += at.weights[i] * colorOf(at.draw, at.vertices[i]);
