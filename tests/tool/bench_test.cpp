@@ -335,6 +335,7 @@ TEST(Bench, WrongUsageIsOneLineAndExitCode2) {
       {{"--stencil-mark", "on,maybe"}, "'maybe' is not on or off"},
       {{"--stencil-mark", "off", "--methods", "loop"}, "--stencil-mark has no method that was named"},
       {{"--memory-budget", "64,0"}, "'0' is not a whole number from 1"},
+      {{"--memory-budget", "64,999999999999"}, "999999999999 is too large: 4294967295 at the most"},
       {{"--memory-budget", "64", "--methods", "loop,a-buffer"}, "--memory-budget has no method that was named"},
       {{"--overflow", "ignore"}, "'ignore' is none of grow and approximate"},
       {{"--overflow", "approximate"}, "add --node-capacity N"},

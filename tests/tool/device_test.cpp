@@ -123,6 +123,11 @@ TEST(Device, WhatNeedsVulkanIsRefusedOnTheProcessor) {
   }
   expectRefusal(kTool, small({"--method", "cpu", "--nodes", "compact"}), 2, "cpu has no choice");
   expectRefusal(kTool, small({"--method", "cpu", "--validate"}), 2, "leave --validate out");
+  expectRefusal(kTool, small({"--device", "cpu", "--passes", "3"}), 2, "needs a Vulkan device, which cpu is not");
+  for (const char* api : {"vulkan", "opengl"}) {
+    expectRefusal(kTool, small({"--method", "cpu", "--api", api}), 2, "the method cpu draws without an API");
+    expectRefusal(kTool, small({"--device", "cpu", "--api", api}), 2, "the device cpu draws without an API");
+  }
   expectRefusal(kTool, small({"--method", "cpu", "--device", "llvmpipe"}), 2, "draws on the processor");
 }
 

@@ -32,7 +32,7 @@ std::string withApiHelp(const std::string& page, bool several) {
   return withText(page, "@api@", std::string(kApiHelp) + std::string(several ? kSeveral : ""));
 }
 
-void addApi(CLI::App& command, Api& api) { addChoice(command, "--api", kApis, api, apiNamed); }
+void addApi(CLI::App& command, std::optional<Api>& api) { addChoice(command, "--api", kApis, api, apiNamed); }
 
 void addApis(CLI::App& command, std::vector<Api>& apis) {
   addList<Api>(command, "--api", apis, "an API: vulkan or opengl", apiNamed);

@@ -18,7 +18,7 @@ std::string withDeviceHelp(const std::string& page);
 std::string withApiHelp(const std::string& page, bool several);
 
 // --api A of one API, and A,... of several.
-void addApi(CLI::App& command, Api& api);
+void addApi(CLI::App& command, std::optional<Api>& api);
 void addApis(CLI::App& command, std::vector<Api>& apis);
 
 // What comparisons and benchmarks of these methods open, where none stands for all.

@@ -1,6 +1,7 @@
 #include "option_values.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/ranges.h>
 
@@ -77,10 +78,16 @@ void addPointSize(CLI::App& command, std::optional<float>& size) {
   });
 }
 
+std::string isNot(const std::string& text, std::string_view known) {
+  const bool isWhole = !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+  if (!isWhole || numberOf<std::uint32_t>(text)) return fmt::format("'{}' is not {}", text, known);
+  return fmt::format("{} is too large: {} at the most", text, std::numeric_limits<std::uint32_t>::max());
+}
+
 void addCount(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& target) {
   command.add_option_function<std::string>(name, [name, &target](const std::string& text) {
     target = numberOf<std::uint32_t>(text);
-    if (!target) throw CLI::ValidationError(name, fmt::format("'{}' is not a whole number from 0", text));
+    if (!target) throw CLI::ValidationError(name, isNot(text, "a whole number from 0"));
   });
 }
 

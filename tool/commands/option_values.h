@@ -54,19 +54,22 @@ void addLimits(CLI::App& command, MethodLimits& limits);
 // checkLimits() of what was asked for. Throws UsageError.
 void checkLimitsOf(const std::vector<std::string>& methods, const MethodLimits& limits);
 
+// What is wrong with a text that is not, say, "a whole number from 1".
+std::string isNot(const std::string& text, std::string_view known);
+
 // A whole number from 1.
 template <typename Target>
 void addPositive(CLI::App& command, const std::string& name, Target& target) {
   command.add_option_function<std::string>(name, [name, &target](const std::string& text) {
     const auto value = numberOf<std::uint32_t>(text);
-    if (!value || *value < 1) throw CLI::ValidationError(name, fmt::format("'{}' is not a whole number from 1", text));
+    if (!value || *value < 1) throw CLI::ValidationError(name, isNot(text, "a whole number from 1"));
     target = *value;
   });
 }
 
 // A choice by name. `names` is what to say where there is none of that name.
-template <typename Choice>
-void addChoice(CLI::App& command, const std::string& name, const char* names, Choice& target,
+template <typename Target, typename Choice>
+void addChoice(CLI::App& command, const std::string& name, const char* names, Target& target,
                std::optional<Choice> (*named)(std::string_view)) {
   command.add_option_function<std::string>(name, [name, names, &target, named](const std::string& text) {
     const std::optional<Choice> choice = named(text);
@@ -83,7 +86,7 @@ void addList(CLI::App& command, const std::string& name, std::vector<Value>& tar
     target.clear();
     for (const std::string& part : split(text, ',')) {
       const std::optional<Value> value = parse(part);
-      if (!value) throw CLI::ValidationError(name, fmt::format("'{}' is not {}", part, known));
+      if (!value) throw CLI::ValidationError(name, isNot(part, known));
       target.push_back(*value);
     }
   });

@@ -79,7 +79,7 @@ Examples:
 void addMethodOptions(CLI::App& command, RenderArguments& arguments) {
   MethodOptions& method = arguments.method;
   command.add_option("--method", arguments.methodName);
-  addApi(command, method.api);
+  addApi(command, arguments.api);
   addPositive(command, "--samples", method.samples);
   addPositive(command, "--layers", method.maxLayers);
   addPositive(command, "--passes", method.passes);
@@ -108,12 +108,13 @@ std::string vulkanOption(const RenderArguments& arguments) {
 }
 
 void chooseDevice(RenderArguments& arguments) {
-  if (arguments.method.api == Api::OpenGl) { // which has a device of its own
-    arguments.wish = Wish::Vulkan;
-    return;
-  }
   const bool isCpuMethod = arguments.methodName == kCpuMethod;
   const bool isCpuDevice = isProcessor(arguments.device);
+  if (arguments.api && (isCpuMethod || isCpuDevice)) {
+    throw UsageError(fmt::format("the {} cpu draws without an API: leave --api {} out, or --{} cpu",
+                                 isCpuMethod ? "method" : "device", nameOf(*arguments.api),
+                                 isCpuMethod ? "method" : "device"));
+  }
   if (isCpuMethod && arguments.validate) throw UsageError("the method cpu is without Vulkan: leave --validate out");
   if (isCpuMethod && !isCpuDevice && !arguments.device.empty()) {
     throw UsageError("the method cpu draws on the processor: leave --device out, or name cpu");
@@ -123,7 +124,9 @@ void chooseDevice(RenderArguments& arguments) {
     throw UsageError(
         fmt::format("{} needs a Vulkan device, which cpu is not: leave it out, or --device cpu", needsVulkan));
   }
-  if (isCpuMethod || isCpuDevice) {
+  if (arguments.method.api == Api::OpenGl) { // which has a device of its own
+    arguments.wish = Wish::Vulkan;
+  } else if (isCpuMethod || isCpuDevice) {
     arguments.wish = Wish::Processor;
     arguments.method.name = kCpuMethod;
   } else if (!needsVulkan.empty()) {
@@ -167,6 +170,9 @@ void addRenderOptions(CLI::App& command, RenderArguments& arguments) {
 void checkPictureArguments(RenderArguments& arguments, const std::string& command) {
   checkSceneArguments(arguments, command);
   arguments.method.name = arguments.methodName.value_or(arguments.method.name);
+  arguments.method.api = arguments.api.value_or(arguments.method.api);
+  // What the processor cannot do is said of it, not of the method that a Vulkan device would draw with.
+  if (isProcessor(arguments.device) && !arguments.methodName) chooseDevice(arguments);
   checkMethod(arguments);
   static_cast<void>(deviceFor(arguments.device, false, {arguments.method.name}, {arguments.method.api}));
   chooseDevice(arguments);

@@ -17,6 +17,7 @@ namespace vitrail::tool {
 struct RenderArguments : SceneArguments, OutputArguments {
   MethodOptions method;                      // where neither it nor a device is named, the device has its own
   std::optional<std::string> methodName;     // --method
+  std::optional<Api> api;                    // --api
   Wish wish = Wish::Fastest;                 // what the other options need
   std::optional<std::uint32_t> memoryBudget; // MiB
   std::optional<std::uint32_t> peel;         // surfaces of each pixel
