@@ -179,7 +179,7 @@ typedef struct VitrailVkRasterInfo {
    * a multiple of 4 bytes. Required unless indexType says that there are none. */
   VkBuffer indices;
   VkDeviceSize indexOffset;
-  /* An order for each instance number, a uint32_t each, in such a buffer: of more than 16 surfaces at one depth those
+  /* An order for each instance number, a uint32_t each, in such a buffer: of more than 32 surfaces at one depth those
    * of lower orders are in front. Instances of one order are of one draw. Optional: the order of the draws, and so the
    * one thing in which their order shows. */
   VkBuffer orders;

@@ -78,7 +78,7 @@ VitrailPixelLight vitrailLightBehind(ivec2 pixel) {
   light.through[i] = vec4(1.0); \
   if (i < VITRAIL_RASTER_SAMPLES && light.most >= 0.0) { \
     vec4 behind = vitrailColorBehind(pixel, i); \
-    light.most = max(light.most, max(behind.r, max(behind.g, behind.b))); \
+    light.most = max(light.most, max(max(behind.r, behind.g), max(behind.b, (1.0 - behind.a) / 0.43958))); \
   }
   VITRAIL_EACH_SAMPLE(VITRAIL_SET_SAMPLE)
   return light;
@@ -132,20 +132,20 @@ bool vitrailHasEnough(VitrailPixelLight light) {
   if (VITRAIL_RASTER_BLENDS != 1u << VITRAIL_OVER || light.most < 0.0) return through <= 0.0;
   float darkest = min(light.color.r, min(light.color.g, light.color.b));
   if (darkest <= 1.0 && through * light.most * (0.43958 * 255.0) >= VITRAIL_RASTER_STOP) return false; // it is as steep
-  float steepness = darkest > 0.0031308 ? 0.43958 * pow(darkest, -0.58333) : 12.92;
+  float steepness = darkest > 0.0031308 ? 0.43958 * pow(min(darkest, 1.0), -0.58333) : 12.92;
   return through * light.most * steepness * 255.0 < VITRAIL_RASTER_STOP;
 }
 
 // The order at one depth: by what fragments are, as in fragment lists. With the blend mode, in the lowest bits, its
 // number.
-uvec3 vitrailTieKey(vec4 color, uint blend, uint number) {
+uvec3 vitrailTieKey(vec4 color, uint blend, uint visible, uint number) {
   uvec4 node;
   vitrailPack(color, blend, 0.0, 1u, VITRAIL_TIE_NODES, node);
-  return uvec3(blend << 8 | number, node.xy);
+  return uvec3(blend << 16 | visible << 8 | number, node.xy);
 }
 
 bool vitrailLessKey(uvec3 a, uvec3 b) {
-  if (a.x >> 8 != b.x >> 8) return a.x < b.x;
+  if (a.x >> 16 != b.x >> 16) return a.x < b.x;
   if (a.y != b.y) return a.y < b.y;
   return a.z != b.z ? a.z < b.z : a.x < b.x;
 }
@@ -174,9 +174,14 @@ void vitrailBlendAlike(inout VitrailPixelLight light, ivec2 pixel, uint thread, 
   if (f.count > k) { \
     uint number = 2u * i + k + 1u; \
     if (isFound) { \
-      if (alike == 1u || (next.x & 0xffu) == number) vitrailPutFragment(light, f.colors[k], f.blends[k], visible); \
+      if (alike == 1u) { \
+        vitrailPutFragment(light, f.colors[k], f.blends[k], visible); \
+      } else if ((next.x & 0xffu) == number) { \
+        vec4 color = vitrailHdrColor(uvec4(0u, next.y, next.z, 0u)); /* as keys tell them apart */ \
+        vitrailPutFragment(light, color, f.blends[k], visible); \
+      } \
     } else { \
-      uvec3 key = vitrailTieKey(f.colors[k], f.blends[k], number); \
+      uvec3 key = vitrailTieKey(f.colors[k], f.blends[k], visible, number); \
       if (vitrailLessKey(last, key) && vitrailLessKey(key, next)) next = key; \
     } \
   }

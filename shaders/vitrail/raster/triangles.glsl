@@ -123,8 +123,37 @@ VitrailSource vitrailSourceOf(VitrailTriangle t, bool front, float area) {
   return source;
 }
 
+// How far out of the picture a corner is, in subpixels.
+int vitrailWayToPicture(ivec2 p) {
+  ivec2 way = max(max(-p, p - ivec2(vitrailRaster.width, vitrailRaster.height) * VITRAIL_SUBPIXELS), ivec2(0));
+  return max(way.x, way.y);
+}
+
+// Turns the corners so that the first is the one that is nearest to the picture. The plane of depths begins there: what
+// its slopes are rounded by counts as often as there are pixels from there on, and a clipped triangle's corners may be
+// 32,766 pixels away.
+void vitrailBeginInPicture(inout VitrailTriangle t) {
+  int way0 = vitrailWayToPicture(t.p0);
+  if (way0 == 0) return; // most
+  int way1 = vitrailWayToPicture(t.p1);
+  int way2 = vitrailWayToPicture(t.p2);
+  ivec2 p0 = t.p0;
+  if (way1 < way0 && way1 <= way2) {
+    t.p0 = t.p1;
+    t.p1 = t.p2;
+    t.p2 = p0;
+    t.depths = t.depths.yzx;
+  } else if (way2 < way0) {
+    t.p0 = t.p2;
+    t.p2 = t.p1;
+    t.p1 = p0;
+    t.depths = t.depths.zxy;
+  }
+}
+
 // False: it covers nothing, or is culled. Otherwise its corners run clockwise in the picture.
 bool vitrailOrientTriangle(inout VitrailTriangle t, uint draw, out VitrailSource source) {
+  vitrailBeginInPicture(t);
   float area = vitrailArea(t.p0, t.p1, t.p2);
   bool front;
   if (area == 0.0 || !vitrailSideOf(draw, area > 0.0, front)) return false;
@@ -174,11 +203,13 @@ uint vitrailMakeRecord(ivec2 tile, uvec2 covered, VitrailSource source) {
   uint at = vitrailTileNumber(tile);
   uint place = vitrailTakePlace(at);
   if (place >= vitrailRaster.recordCapacity) return place; // the frame is drawn again
-  if (place * 0x9e3779b9u < 0xffffffffu / VITRAIL_RASTER_SHARE) { // some, of any tile and triangle
-    atomicAdd(vitrailTiles[at * VITRAIL_RASTER_TILE_WORDS + 1u], uint(bitCount(covered.x) + bitCount(covered.y)));
-  }
   ivec2 middle = tile * (VITRAIL_TILE_SIDE * VITRAIL_SUBPIXELS) + VITRAIL_SUBPIXELS / 2;
   vec3 depth = vitrailPlaneAt(source.plane, middle);
+  // Some, of any tile and triangle, and the same ones in any frame and order: a tile's class hangs on them.
+  uint some = (covered.x ^ covered.y * 0x85ebca6bu ^ floatBitsToUint(depth.x) ^ at * 0xc2b2ae35u) * 0x9e3779b9u;
+  if (some < 0xffffffffu / VITRAIL_RASTER_SHARE) {
+    atomicAdd(vitrailTiles[at * VITRAIL_RASTER_TILE_WORDS + 1u], uint(bitCount(covered.x) + bitCount(covered.y)));
+  }
   float steps = float(VITRAIL_TILE_SIDE - 1);
   // At the middle of a pixel of which another part is covered a plane may be nearer than any corner.
   float nearest = depth.x + (max(depth.y, 0.0) + max(depth.z, 0.0)) * steps;

@@ -628,7 +628,7 @@ TEST_F(RasterTest, DeepTiles) {
 
 // More surfaces at one depth than their colours can order: the host's orders decide.
 TEST_F(RasterTest, OrdersOfTheHosts) {
-  constexpr std::uint32_t kLayers = 24;
+  constexpr std::uint32_t kLayers = 40;
   std::vector<Rectangle> rectangles;
   for (std::uint32_t i = 0; i < kLayers; ++i) {
     const float shade = static_cast<float>(i) / static_cast<float>(kLayers);
