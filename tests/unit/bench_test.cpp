@@ -242,6 +242,15 @@ TEST(Measurement, CostIsAllButTheOpaquePass) {
   EXPECT_DOUBLE_EQ(measured.passes[2].second.median, 4.0);
 }
 
+TEST(Measurement, CostIsThatOfFramesWithoutTimedSteps) {
+  const std::vector<PassTimes> wholes = {{{"opaque", 1.0}, {"resolve", 5.0}}, {{"opaque", 1.0}, {"resolve", 6.0}}};
+  const Measurement measured = summarize(listOptions(), {}, {listFrame(1.0), listFrame(3.0)}, wholes);
+  EXPECT_DOUBLE_EQ(measured.costMs.median, 5.5);
+  EXPECT_DOUBLE_EQ(measured.frameMs.median, 6.5);
+  ASSERT_EQ(measured.passes.size(), 4U);
+  EXPECT_DOUBLE_EQ(measured.passes[2].second.median, 4.0);
+}
+
 TEST(Measurement, RatiosRatesAndFloorsByHand) {
   std::vector<Measurement> both = twoMeasurements();
   compare(both, 28e6);

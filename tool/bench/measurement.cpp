@@ -67,13 +67,14 @@ void addFloor(Measurement& measured, const FrameReport* counted, double bytesPer
 
 } // namespace
 
-Measurement summarize(const MethodOptions& options, const FrameReport& report, const std::vector<PassTimes>& frames) {
+Measurement summarize(const MethodOptions& options, const FrameReport& report, const std::vector<PassTimes>& frames,
+                      const std::vector<PassTimes>& wholes) {
   Measurement result;
   result.options = options;
   result.report = report;
   std::vector<double> costs;
   std::vector<double> totals;
-  for (const PassTimes& frame : frames) {
+  for (const PassTimes& frame : wholes.empty() ? frames : wholes) {
     costs.push_back(sumOf(frame, false));
     totals.push_back(sumOf(frame, true));
   }

@@ -21,6 +21,7 @@ struct Measurement {
   MethodOptions options;
   FrameReport report;                                 // of one frame: what it held. Its times are not used.
   std::vector<std::pair<std::string, Spread>> passes; // milliseconds, in order
+  // Of frames in which steps are not timed: those of `passes` take somewhat longer together.
   Spread costMs;  // of what transparency costs in a frame: all passes but the opaque one
   Spread frameMs; // of all passes
   // Over the baseline's in the same scene with as many samples and the same API, from medians. NaN where there is none,
@@ -62,9 +63,11 @@ struct BenchReport : Machine {
   std::vector<std::string> warnings; // of the scenes
 };
 
-// What a setting's frames say, all of which have the same passes. There is at least one. Ratios and rates are filled in
-// by compare().
-Measurement summarize(const MethodOptions& options, const FrameReport& report, const std::vector<PassTimes>& frames);
+// What a setting's frames say, all of which have the same passes. There is at least one. What a frame takes is what
+// `wholes` say, frames with fewer time stamps; where there are none, `frames`. Ratios and rates are filled in by
+// compare().
+Measurement summarize(const MethodOptions& options, const FrameReport& report, const std::vector<PassTimes>& frames,
+                      const std::vector<PassTimes>& wholes = {});
 
 // Fills in ratios, rates and floors of all measurements of a scene. Each sample count of an API has its baseline.
 // Without a bandwidth, 0, there are no floors.

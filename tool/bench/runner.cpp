@@ -19,8 +19,9 @@ struct Contender {
   MethodOptions options;
   RenderOptions picture;
   std::unique_ptr<Renderer> renderer;
-  FrameReport report; // of the first frame
-  std::vector<PassTimes> frames;
+  FrameReport report;            // of the first frame
+  std::vector<PassTimes> frames; // with each step timed
+  std::vector<PassTimes> wholes; // without
 };
 
 // A scene whose settings are set up and warm.
@@ -99,7 +100,8 @@ WarmScene prepareScene(Device& device, const Scene& scene, const BenchRun& run, 
   return warm;
 }
 
-// Draws all rounds of scenes that are measured with as many. Every frame of a round is of another setting or scene.
+// Draws all rounds of scenes that are measured with as many. Every frame of a round is of another setting or scene, but
+// that methods of several steps draw one more, in which these are timed.
 void drawRounds(std::vector<WarmScene>& scenes) {
   std::vector<Contender*> all;
   for (WarmScene& warm : scenes) {
@@ -110,7 +112,12 @@ void drawRounds(std::vector<WarmScene>& scenes) {
     if (first.progress) first.progress(fmt::format("round {} of {}", round + 1, first.repeats));
     for (std::size_t i = 0; i < all.size(); ++i) {
       Contender& contender = *all[(round + i) % all.size()];
-      contender.frames.push_back(contender.renderer->measure(contender.picture).passesMs);
+      contender.picture.timesSteps = false;
+      contender.wholes.push_back(contender.renderer->measure(contender.picture).passesMs);
+      contender.picture.timesSteps = true;
+      const bool hasSteps = contender.wholes.back().size() < contender.report.passesMs.size();
+      contender.frames.push_back(hasSteps ? contender.renderer->measure(contender.picture).passesMs
+                                          : contender.wholes.back());
     }
   }
 }
@@ -123,7 +130,7 @@ SceneMeasurement finish(WarmScene& warm) {
   result.skipped = std::move(warm.skipped);
   for (const Contender& contender : warm.contenders) {
     if (warm.run.takePicture) warm.run.takePicture(contender.options, contender.renderer->render(contender.picture));
-    result.measurements.push_back(summarize(contender.options, contender.report, contender.frames));
+    result.measurements.push_back(summarize(contender.options, contender.report, contender.frames, contender.wholes));
   }
   compare(result.measurements, warm.run.bytesPerSecond);
   return result;

@@ -26,6 +26,9 @@ struct RenderOptions {
   std::uint32_t peel = 0;
   // Whether fragments are counted also where that takes time: of a frame that is only timed nobody asks.
   bool counts = true;
+  // Whether passes of a method behind which others come are timed, which takes time; else they are a part of those.
+  // Where that makes no difference there is none.
+  bool timesSteps = true;
   std::function<void(std::uint32_t tiles)> onTile; // told how many tiles are done, for people who wait
 };
 

@@ -26,7 +26,7 @@ struct StillRenderer::Impl {
   MethodTarget targetOf(const RenderOptions& picture);
   std::vector<std::string> warningsOf(const RenderOptions& picture, const FrameStats& stats) const;
   void prepare(const RenderOptions& picture);
-  bool draw(const Background& background, bool encoded);
+  bool draw(const RenderOptions& picture, bool encoded);
   FrameReport drawUntilComplete(const RenderOptions& picture, bool encoded);
   bool isBackgroundAlone(const RenderOptions& picture, const RenderResult& drawn);
 };
@@ -89,9 +89,9 @@ std::vector<std::string> StillRenderer::Impl::warningsOf(const RenderOptions& pi
 }
 
 // Draws a picture. False: the method has made room, and the picture must be drawn again.
-bool StillRenderer::Impl::draw(const Background& background, bool encoded) {
-  Frame frame(submitter, timers, stage.images(), stage.surfaces());
-  stage.drawOpaque(frame, background);
+bool StillRenderer::Impl::draw(const RenderOptions& picture, bool encoded) {
+  Frame frame(submitter, timers, stage.images(), stage.surfaces(), picture.timesSteps);
+  stage.drawOpaque(frame, picture.background);
   method->draw(frame);
   stage.finishPicture(frame);
   if (encoded) {
@@ -107,7 +107,7 @@ FrameReport StillRenderer::Impl::drawUntilComplete(const RenderOptions& picture,
   prepare(picture);
   const std::string device = stage.gpu().properties().deviceName;
   const FrameStats stats = tool::drawUntilComplete(
-      device, [&] { return draw(picture.background, encoded); }, [&] { return method->stats(); });
+      device, [&] { return draw(picture, encoded); }, [&] { return method->stats(); });
   FrameReport report = reportOf(stats, picture, options, timers.milliseconds());
   report.device = device;
   report.api = kVulkanApi;

@@ -26,7 +26,7 @@ constexpr const char* kNone = "-";
 constexpr char kBenchRow[] = " {:<{}}{:>3}{:>10}{:>7}{:>8}{:>10}{:>8}{:>9}{:>9}{:>7}{:>12}\n";
 
 constexpr const char* kBenchLegend =
-    R"(Milliseconds, medians. cost: all passes but the opaque one, summed in each frame; IQR: its interquartile
+    R"(Milliseconds, medians. cost: all passes but the opaque one, of frames that time no steps; IQR: its interquartile
 range over its median; x: times unsorted's; frame: all passes; M/s: million fragments a second of cost; floor: the least
 time that a frame with lists, or of tiles, takes to move its bytes at the measured bandwidth; bw: floor over cost.
 )";

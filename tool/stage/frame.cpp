@@ -2,8 +2,13 @@
 
 namespace vitrail::tool {
 
-Frame::Frame(Submitter& submitter, Timers& timers, PictureImages& images, const Surfaces& surfaces)
-    : submitter_(submitter), timers_(timers), images_(images), surfaces_(surfaces), commands_(submitter.begin()) {
+Frame::Frame(Submitter& submitter, Timers& timers, PictureImages& images, const Surfaces& surfaces, bool timesSteps)
+    : submitter_(submitter),
+      timers_(timers),
+      images_(images),
+      surfaces_(surfaces),
+      timesSteps_(timesSteps),
+      commands_(submitter.begin()) {
   timers_.startFrame();
   timers_.cmdStart(commands_);
 }
@@ -18,6 +23,10 @@ void Frame::drawSurfaces(const SurfacePipelines& pipelines, VkDescriptorSet set,
 }
 
 void Frame::endPass(const std::string& name) { timers_.cmdEndPass(commands_, name); }
+
+void Frame::endStep(const std::string& name) {
+  if (timesSteps_) endPass(name);
+}
 
 void Frame::addHostPass(const std::string& name, double milliseconds) { timers_.addHostPass(name, milliseconds); }
 

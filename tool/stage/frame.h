@@ -14,8 +14,8 @@ namespace vitrail::tool {
 
 class Frame {
  public:
-  // Begins the first submission. All outlive the frame.
-  Frame(Submitter& submitter, Timers& timers, PictureImages& images, const Surfaces& surfaces);
+  // Begins the first submission. All outlive the frame. Without `timesSteps` passes have fewer time stamps: endStep().
+  Frame(Submitter& submitter, Timers& timers, PictureImages& images, const Surfaces& surfaces, bool timesSteps = true);
 
   // What is recorded into, until submitAndWait(). Outside a rendering scope, unless the method has begun one.
   VkCommandBuffer commands() const { return commands_; }
@@ -34,6 +34,9 @@ class Frame {
   // The pass `name` ends here and another begins: how the frame's time is reported. Passes of one name are summed.
   // Outside a rendering scope. Throws std::logic_error where the submission has kMostPasses.
   void endPass(const std::string& name);
+  // The same of a pass behind which another one of the method's is sure to come. Of a frame that does not time steps it
+  // is a part of that one, as stamps take time.
+  void endStep(const std::string& name);
   // The host worked so long on the frame: reported as a pass of that name.
   void addHostPass(const std::string& name, double milliseconds);
 
@@ -51,6 +54,7 @@ class Frame {
   Timers& timers_;
   PictureImages& images_;
   const Surfaces& surfaces_;
+  bool timesSteps_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
 };
 

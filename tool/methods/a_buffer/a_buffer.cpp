@@ -146,13 +146,13 @@ void ABuffer::releaseTarget() {
 
 void ABuffer::draw(Frame& frame) {
   clear(frame);
-  frame.endPass("clear");
+  frame.endStep("clear");
   cmdDrawStoring(frame, count_, set_.set(), &extent_);
-  frame.endPass("count");
+  frame.endStep("count");
   sumUp(frame);
-  frame.endPass("sum");
+  frame.endStep("sum");
   cmdDrawStoring(frame, fill_, set_.set(), &extent_);
-  frame.endPass("fill");
+  frame.endStep("fill");
   sortAndBlend(frame);
   frame.endPass("resolve");
 }

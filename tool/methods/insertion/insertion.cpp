@@ -88,9 +88,9 @@ void Insertion::releaseTarget() {
 
 void Insertion::draw(Frame& frame) {
   clear(frame);
-  frame.endPass("clear");
+  frame.endStep("clear");
   collect(frame);
-  frame.endPass("collect");
+  frame.endStep("collect");
   sortAndBlend(frame);
   frame.endPass("resolve");
 }

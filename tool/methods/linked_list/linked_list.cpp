@@ -353,15 +353,15 @@ void LinkedList::drawArea(const VitrailRect& part, std::span<const SurfaceRun> r
   VkCommandBuffer commands = frame.commands();
   PictureImages& images = frame.images();
   target_.begin(commands, {nullptr, ++frame_, area});
-  frame.endPass("clear");
+  frame.endStep("clear");
   cmdBeginScope(commands, images.transparentScope(area));
   drawCollecting(runs);
   vkCmdEndRendering(commands);
-  if (pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE) frame.endPass("collect");
+  if (pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE) frame.endStep("collect");
   target_.collected(commands);
-  frame.endPass(pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE ? "build lists" : "collect");
+  frame.endStep(pipelines_.listBuild == VITRAIL_LIST_BUILD_COMPUTE ? "build lists" : "collect");
   cmdResolve(commands, area);
-  frame.endPass("resolve");
+  frame.endStep("resolve");
   target_.end(commands);
   frame.endPass("statistics");
 }

@@ -87,9 +87,9 @@ void MultiLayer::draw(Frame& frame) {
   vkCmdFillBuffer(commands, memory_.get(), 0, memory_.size(), 0);
   // The clear -> the draw reads and writes the layers.
   cmdMemoryBarrier(commands, kClear, kFragmentReadWrite);
-  frame.endPass("clear");
+  frame.endStep("clear");
   cmdDrawStoring(frame, surfaces_, set_.set(), &extent_);
-  frame.endPass("collect");
+  frame.endStep("collect");
   // The draw wrote the layers -> the resolve reads them.
   cmdMemoryBarrier(commands, kFragmentWrite, kComputeRead);
   frame.images().cmdToComputeResolve(commands);

@@ -277,7 +277,15 @@ void Tiles::draw(Frame& frame) {
   info.color = target_.color;
   info.depth = target_.depth;
   info.opaque = target_.opaque;
-  info.onPass = [](const char* pass, VkCommandBuffer, void* user) { static_cast<Frame*>(user)->endPass(pass); };
+  info.onPass = [](const char* pass, VkCommandBuffer, void* user) {
+    const std::string name = pass;
+    Frame& drawn = *static_cast<Frame*>(user);
+    if (name == "clear" || name == "set up" || name == "bin") {
+      drawn.endStep(name); // "blend" comes
+    } else {
+      drawn.endPass(name);
+    }
+  };
   info.user = &frame;
   const std::uint32_t bands = raster_.bands();
   drawnBefore_ = true;
