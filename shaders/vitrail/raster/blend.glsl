@@ -133,8 +133,10 @@ uint vitrailFindNearest(uint count, uint from, ivec2 corner, float farthest, boo
       vitrailNewKeys[4] = vitrailNewKeys[5] = vitrailNewKeys[6] = vitrailNewKeys[7] = VITRAIL_NO_FRAGMENT;
       if ((bits.x | bits.y | more.x | more.y) != 0u) {
         VITRAIL_TAKE_KEY(4) VITRAIL_TAKE_KEY(5) VITRAIL_TAKE_KEY(6) VITRAIL_TAKE_KEY(7)
+        vitrailSortNewKeys();
+      } else {
+        vitrailSortFourKeys();
       }
-      vitrailSortNewKeys();
       if (isEmpty) {
 #define VITRAIL_TAKE_NEW(i) vitrailNearestKeys[i] = vitrailNewKeys[i];
         VITRAIL_EACH_OF_8(VITRAIL_TAKE_NEW, 0)

@@ -23,8 +23,13 @@ void vitrailSortNewKeys() {
   VITRAIL_SORT_NEW(2, 4) VITRAIL_SORT_NEW(3, 5)
   VITRAIL_SORT_NEW(1, 4) VITRAIL_SORT_NEW(3, 6)
   VITRAIL_SORT_NEW(1, 2) VITRAIL_SORT_NEW(3, 4) VITRAIL_SORT_NEW(5, 6)
-#undef VITRAIL_SORT_NEW
 }
+
+// The same where there are only the first four.
+void vitrailSortFourKeys() {
+  VITRAIL_SORT_NEW(0, 2) VITRAIL_SORT_NEW(1, 3) VITRAIL_SORT_NEW(0, 1) VITRAIL_SORT_NEW(2, 3) VITRAIL_SORT_NEW(1, 2)
+}
+#undef VITRAIL_SORT_NEW
 
 // Batcher's merge of what first rises and then falls, by halves.
 #define VITRAIL_MERGE_KEYS(a, b) VITRAIL_SORT_KEYS(vitrailNearestKeys, a, b)
