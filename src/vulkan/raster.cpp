@@ -314,12 +314,13 @@ RasterNeeds guessOf(std::uint64_t triangles) {
   return guess;
 }
 
-RasterTables tablesOf(const VitrailVkRasterHints& hints, bool keepsPositions) {
-  constexpr std::uint64_t kTriangles = raster::VITRAIL_RASTER_SET_UP * raster::VITRAIL_RASTER_TURNS;
+RasterTables tablesOf(const VitrailVkRasterHints& hints, std::uint32_t samples, bool keepsPositions) {
+  const std::uint64_t triangles =
+      std::uint64_t{raster::VITRAIL_RASTER_SET_UP} * rasterTurns(samples); // of a work group
   constexpr std::uint64_t kVertices = raster::VITRAIL_RASTER_GROUP * raster::VITRAIL_RASTER_VERTICES;
   const auto atLeast = [](std::uint64_t value) { return std::max<std::uint64_t>(value, 1); };
   return {.draws = atLeast(hints.draws),
-          .groups = atLeast(hints.triangles / kTriangles + hints.draws),
+          .groups = atLeast(hints.triangles / triangles + hints.draws),
           .vertexGroups = keepsPositions ? atLeast(hints.vertices / kVertices + hints.draws) : 1,
           .items = atLeast(hints.instances),
           .vertices = keepsPositions ? atLeast(hints.vertices) : 1};
@@ -347,7 +348,8 @@ VkResult build(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc) {
   raster.guess = guessOf(desc.hints.triangles);
   if (result == VK_SUCCESS) result = makeRoom(raster, raster.guess, {});
   if (result == VK_SUCCESS) {
-    result = resizeRasterTables(raster, tablesOf(desc.hints, raster.keepsPositions), raster.context->log);
+    result =
+        resizeRasterTables(raster, tablesOf(desc.hints, raster.samples, raster.keepsPositions), raster.context->log);
   }
   if (result == VK_SUCCESS) result = createRasterPipelines(raster, desc);
   if (result == VK_SUCCESS) result = createRasterSets(raster);
@@ -560,6 +562,16 @@ void shrink(VitrailVkRaster_T& raster, const RasterNeeds& needs) {
   if (planRasterRoom(most, {}, raster.bounds(rows), next) <= 1.0) resizeRasterRoom(raster, next, rows, kQuiet);
 }
 
+// What frames like this one take: how many work groups are ready. Whatever it is, pictures are the same.
+void learn(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals& totals, const RasterFacts& facts) {
+  if (facts.empty || facts.misused) return;
+  raster.mediums = totals.medium;
+  raster.anyLarge = totals.large > 0;
+  if (facts.tables != raster.tableNumber || totals.bands == 0) return;
+  raster.start = totals.start;
+  raster.startOf = facts.tables;
+}
+
 // Makes what frames like this one need.
 VkResult follow(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals& totals, const RasterFacts& facts) {
   VkResult result = VK_SUCCESS;
@@ -666,6 +678,7 @@ extern "C" VkResult vitrailVkUpdateRaster(VitrailVkRaster raster, uint64_t frame
   const RasterFacts& facts = raster->facts[raster->slotOf(newest)];
   if (!read || facts.tag <= raster->newestNews) return VK_SUCCESS;
   tellWrong(*raster, wrongOf(totals, facts), facts.frame);
+  learn(*raster, totals, facts);
   if (!facts.empty) {
     const VkResult result = follow(*raster, totals, facts);
     if (result != VK_SUCCESS) return result;
@@ -707,6 +720,7 @@ extern "C" VkResult vitrailVkReadRasterStats(VitrailVkRaster raster, uint64_t fr
   if (!read) return VK_NOT_READY;
   const RasterFacts& facts = raster->facts[raster->slotOf(found)];
   decode(totals, facts, *stats);
+  learn(*raster, totals, facts);
   tellWrong(*raster, wrongOf(totals, facts), facts.frame);
   return VK_SUCCESS;
 }

@@ -77,6 +77,9 @@ enum class RasterSet : std::uint8_t {
   Blend,    // of blending
   Count
 };
+// Turns of a work group that sets up triangles. With several samples one takes long enough.
+constexpr std::uint32_t rasterTurns(std::uint32_t samples) { return samples > 1 ? 1 : 2; }
+
 constexpr std::size_t kRasterBlends = 4; // pipelines for tiles, from few records to deep ones
 constexpr std::size_t kRasterSets = static_cast<std::size_t>(RasterSet::Count);
 bool hasRasterBinding(RasterSet set, std::uint32_t samples, std::uint32_t binding);
@@ -122,7 +125,8 @@ struct RasterFacts {
   bool counted = false;
   std::uint32_t bands = 0;
   std::uint32_t draws = 0;
-  bool deep = false; // its passes of deep tiles are there, with so many
+  std::uint64_t tables = 0; // VitrailVkRaster_T::tableNumber
+  bool deep = false;        // its passes of deep tiles are there, with so many
   std::uint32_t mergePasses = 0;
   std::uint32_t slices = 0;
   bool empty = false;   // nothing was to be drawn
@@ -198,8 +202,16 @@ struct VitrailVkRaster_T {
   std::uint32_t slices = 1;
   vitrail::RasterLow low;
   std::uint64_t newestNews = 0; // the tag of the frame whose statistics were looked at last
-  bool tablesAreMade = false;   // by a frame before, in the present buffers
-  std::uint32_t tableDraws = 0; // of how many draws they are
+  // The medium and large triangles of a band of the frame whose statistics were looked at last: so many work groups
+  // await them.
+  std::uint32_t mediums = vitrail::raster::VITRAIL_RASTER_GROUP * vitrail::raster::VITRAIL_RASTER_MEDIUM;
+  bool anyLarge = true;
+  bool tablesAreMade = false;    // by a frame before, in the present buffers
+  std::uint32_t tableDraws = 0;  // of how many draws they are
+  std::uint64_t tableNumber = 0; // another one for each time that they are made
+  // What the draws of such tables come to, and of which: 0: nobody knows yet.
+  vitrail::raster::VitrailRasterStart start{};
+  std::uint64_t startOf = 0;
 
   vitrail::Buffer stats; // RasterSlot[framesInFlight + 1]
   std::vector<vitrail::RasterFacts> facts;

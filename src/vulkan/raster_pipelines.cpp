@@ -24,6 +24,7 @@ struct RasterConstants {
   VkBool32 onlyTriangles = VK_FALSE;
   VkBool32 nearestIsZero = VK_FALSE;
   std::uint32_t indexBytes = 4;
+  std::uint32_t turns = 2;
 };
 constexpr std::uint32_t kConstantCount = sizeof(RasterConstants) / sizeof(std::uint32_t);
 
@@ -36,6 +37,7 @@ RasterConstants constantsOf(const VitrailVkRaster_T& raster) {
   constants.onlyTriangles = raster.solids ? VK_FALSE : VK_TRUE;
   constants.nearestIsZero = raster.nearestIsZero ? VK_TRUE : VK_FALSE;
   constants.indexBytes = raster.indexBytes;
+  constants.turns = rasterTurns(raster.samples);
   return constants;
 }
 

@@ -52,6 +52,12 @@ class Recording {
             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
   }
 
+  // The same where no sizes of dispatches have been written: not to wait for these takes half as long.
+  void plainBarrier() const {
+    barrier(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+  }
+
   void bind(RasterSet set);
   void push(const std::array<std::uint32_t, 3>& words, RasterSet set) const {
     vk_.CmdPushConstants(commands_, raster_.layout(set), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(words), words.data());
@@ -70,6 +76,15 @@ class Recording {
     dispatch(pipeline, std::min(groups, raster::VITRAIL_RASTER_ROW),
              (groups + raster::VITRAIL_RASTER_ROW - 1) / raster::VITRAIL_RASTER_ROW);
   }
+  // What a frame's draws come to, whose sizes are known where a frame of the same ones was read: dispatches that need
+  // not be looked up begin somewhat sooner.
+  void dispatchDraws(VkPipeline pipeline, raster::VitrailRasterDispatch raster::VitrailRasterStart::*sizes) const {
+    const bool known = raster_.tablesAreMade && raster_.startOf == raster_.tableNumber;
+    if (known) return dispatch(pipeline, (raster_.start.*sizes).x, (raster_.start.*sizes).y);
+    const bool vertices = sizes == &raster::VitrailRasterStart::vertices;
+    dispatch(pipeline, RasterBuffer::Start,
+             vertices ? offsetof(raster::VitrailRasterStart, vertices) : offsetof(raster::VitrailRasterStart, groups));
+  }
   void fill(RasterBuffer which) const {
     vk_.CmdFillBuffer(commands_, raster_.buffer(which).buffer, 0, VK_WHOLE_SIZE, 0);
   }
@@ -82,10 +97,12 @@ class Recording {
     return (raster_.tilesX() + raster::VITRAIL_RASTER_LARGE_BLOCK - 1) / raster::VITRAIL_RASTER_LARGE_BLOCK;
   }
   [[nodiscard]] std::uint32_t largeGroups() const;
+  [[nodiscard]] std::uint32_t mediumGroups() const;
+  [[nodiscard]] std::uint32_t largeRows(const Band& band) const;
   [[nodiscard]] raster::VitrailRasterFrame frameOf(const Band& band) const;
   void clear(const Band& band, bool isFirst);
   void readDraws(bool isFirst);
-  void setUp();
+  void setUp(const Band& band);
   void place(const Band& band);
   void bin(const Band& band);
   void blend();
@@ -168,6 +185,29 @@ std::uint32_t Recording::largeGroups() const {
   return blocks * shares;
 }
 
+// Work groups that set up medium triangles: as many as triangles.glsl says for somewhat more than there were, and so
+// many that none takes long whatever comes.
+std::uint32_t Recording::mediumGroups() const {
+  constexpr std::uint64_t kLeastGroups = 64;
+  constexpr std::uint64_t kMostTurns = 1024;
+  const auto groupsOf = [](std::uint64_t triangles, std::uint64_t each) { return (triangles + each - 1) / each; };
+  const std::uint64_t count = raster_.mediums + std::uint64_t{raster_.mediums} / 8;
+  const std::uint64_t few =
+      std::min<std::uint64_t>(groupsOf(count, raster::VITRAIL_RASTER_FEW_MEDIUM), raster::VITRAIL_RASTER_MEDIUM);
+  const std::uint64_t groups = std::max({kLeastGroups, few, groupsOf(count, raster::VITRAIL_RASTER_GROUP),
+                                         groupsOf(raster_.room.records, raster::VITRAIL_RASTER_GROUP * kMostTurns)});
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(groups, raster::VITRAIL_RASTER_ROW));
+}
+
+// Rows of work groups that set up large triangles: one for each row of tiles, or where there were none and cannot be
+// many a few.
+std::uint32_t Recording::largeRows(const Band& band) const {
+  constexpr std::uint64_t kFewTriangles = 4096;
+  constexpr std::uint32_t kFewRows = 8;
+  const bool few = !raster_.anyLarge && raster_.room.large <= kFewTriangles;
+  return few ? std::min(kFewRows, band.tilesY()) : band.tilesY();
+}
+
 // A dispatch takes less time than clearing by transfers, and it runs beside the one for positions.
 void Recording::begin(const Band& band, bool isFirst) {
   const raster::VitrailRasterFrame data = frameOf(band);
@@ -190,19 +230,24 @@ void Recording::clear(const Band& band, bool isFirst) {
   constexpr VkPipelineStageFlags kStages =
       VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT;
   constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-  // The last frame's or band's passes read and wrote them -> they are cleared, set and made.
-  barrier(kStages, kWrites, kStages,
-          kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+  const bool transfers = raster_.deepPlanned || raster_.clipPlanes > 0;
+  const VkPipelineStageFlags used =
+      VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | (transfers ? VkPipelineStageFlags{VK_PIPELINE_STAGE_TRANSFER_BIT} : 0);
+  const VkAccessFlags written =
+      VK_ACCESS_SHADER_WRITE_BIT | (transfers ? VkAccessFlags{VK_ACCESS_TRANSFER_WRITE_BIT} : 0);
+  // The last frame's or band's passes read and wrote them -> they are cleared, set and made. The sizes of dispatches
+  // that come before the next passBarrier() are those of a frame before, which had one.
+  barrier(kStages, kWrites, used, written | VK_ACCESS_SHADER_READ_BIT);
   // Nothing of what is cleared is looked at for positions. Where the draws are new their tables come first.
   if (isFirst && raster_.keepsPositions && raster_.tablesAreMade) {
     bind(RasterSet::Geometry);
-    dispatch(raster_.positions, RasterBuffer::Start, offsetof(raster::VitrailRasterStart, vertices));
+    dispatchDraws(raster_.positions, &raster::VitrailRasterStart::vertices);
   }
   begin(band, isFirst);
   if (raster_.deepPlanned) fill(RasterBuffer::DeepPixels);
   // The clears, the frame's data and the positions -> all passes.
-  barrier(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT, kWrites, kStages,
-          kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+  barrier(used, written, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_UNIFORM_READ_BIT);
 }
 
 // Of a frame whose draws are new: what they come to, and their positions.
@@ -215,22 +260,28 @@ void Recording::readDraws(bool isFirst) {
   passBarrier();
   if (raster_.keepsPositions) {
     bind(RasterSet::Geometry);
-    dispatch(raster_.positions, RasterBuffer::Start, offsetof(raster::VitrailRasterStart, vertices));
+    dispatchDraws(raster_.positions, &raster::VitrailRasterStart::vertices);
     passBarrier();
   }
 }
 
-void Recording::setUp() {
+void Recording::setUp(const Band& band) {
   bind(RasterSet::Geometry);
-  dispatch(raster_.setUp, RasterBuffer::Start, offsetof(raster::VitrailRasterStart, groups));
+  dispatchDraws(raster_.setUp, &raster::VitrailRasterStart::groups);
   // Triangles were put aside -> they are taken up; records and counts go on.
-  passBarrier();
-  dispatch(raster_.setUpMedium, RasterBuffer::Counts,
-           kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, medium));
-  dispatch(raster_.setUpLarge, RasterBuffer::Counts,
-           kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, large));
+  if (raster_.context->limits.isCpu) { // where work groups that have nothing to do take longest
+    passBarrier();
+    dispatch(raster_.setUpMedium, RasterBuffer::Counts,
+             kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, medium));
+    dispatch(raster_.setUpLarge, RasterBuffer::Counts,
+             kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, large));
+  } else {
+    plainBarrier();
+    dispatch(raster_.setUpMedium, mediumGroups(), 1);
+    dispatch(raster_.setUpLarge, largeGroups(), largeRows(band));
+  }
   // Tiles counted their records -> they are listed; records have pages -> they are brought there.
-  passBarrier();
+  plainBarrier();
 }
 
 // After a turn of setting up that only counted.
@@ -322,10 +373,10 @@ void Recording::drawBand(const Band& band, bool isFirst, bool isLast) {
   passed("clear");
   if (!empty) {
     if (raster_.counted) {
-      setUp();
+      setUp(band);
       place(band);
     }
-    setUp();
+    setUp(band);
     passed("set up");
     bin(band);
     passed("bin");
@@ -452,6 +503,8 @@ extern "C" void vitrailVkCmdRaster(VkCommandBuffer commandBuffer, VitrailVkRaste
     return;
   }
   if (info->firstBand == 0) writeRasterSets(*raster, *info);
+  if (info->firstBand == 0 && !raster->tablesAreMade) ++raster->tableNumber;
+  facts.tables = raster->tableNumber;
   Recording recording(commandBuffer, *raster, *info);
   const std::uint32_t step = raster->bandRows * kSide;
   for (std::uint32_t i = info->firstBand; i < info->firstBand + count; ++i) {

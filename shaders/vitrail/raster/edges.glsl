@@ -165,22 +165,31 @@ VitrailRows vitrailRows(ivec2 p0, ivec2 p1, ivec2 p2, ivec2 pixel) {
   return rows;
 }
 
-uint vitrailFourRows(VitrailRows rows, vec3 at) {
-  uint covered = 0u;
-  for (int y = 0; y < 4; ++y) {
-    vec4 ends = clamp(fma(at.xyzz, rows.scale, rows.bias), 0.0, 1.0) * 8.0;
-    uint first = uint(max(ends.x, ends.z));
-    uint count = uint(min(ends.y, ends.w));
-    covered |= (0xffu << first & ((1u << count) - 1u)) << (8 * y);
-    at += rows.down * 16.0;
-  }
+#define VITRAIL_COVER_ROWS(count_) \
+  uint covered = 0u; \
+  for (int y = 0; y < count_; ++y) { \
+    vec4 ends = clamp(fma(at.xyzz, rows.scale, rows.bias), 0.0, 1.0); \
+    uint first = uint(max(ends.x, ends.z) * 8.0); \
+    uint count = uint(min(ends.y, ends.w) * 8.0); \
+    covered |= (0xffu << first & ((1u << count) - 1u)) << (8 * y); \
+    at += rows.down * 16.0; \
+  } \
   return covered;
-}
+uint vitrailTwoRows(VitrailRows rows, vec3 at) { VITRAIL_COVER_ROWS(2) }
+uint vitrailFourRows(VitrailRows rows, vec3 at) { VITRAIL_COVER_ROWS(4) }
 
 // `place` is where in its pixel the sample is, in 1/16 pixel; rows from `count` on cover nothing.
 uvec2 vitrailRowCoverage(VitrailRows rows, ivec2 place, int count) {
   vec3 at = rows.corner + rows.right * float(place.x) + rows.down * float(place.y);
   return uvec2(vitrailFourRows(rows, at), count > 4 ? vitrailFourRows(rows, at + rows.down * 64.0) : 0u);
+}
+
+// The same of the middles of pixels, of small triangles: many have two rows or one.
+uvec2 vitrailFewRowCoverage(VitrailRows rows, int count) {
+  vec3 at = rows.corner + (rows.right + rows.down) * 8.0;
+  uint upper = vitrailTwoRows(rows, at);
+  if (count > 2) upper |= vitrailTwoRows(rows, at + rows.down * 32.0) << 16;
+  return uvec2(upper, count > 4 ? vitrailFourRows(rows, at + rows.down * 64.0) : 0u);
 }
 
 // The pixels of a tile from `low` up to and without `high`, both relative to its first.

@@ -19,6 +19,7 @@ layout(constant_id = 1716) const uint VITRAIL_RASTER_BLENDS = 15u; // a bit for 
 layout(constant_id = 1717) const bool VITRAIL_RASTER_ONLY_TRIANGLES = false;
 layout(constant_id = 1718) const bool VITRAIL_RASTER_NEAREST_IS_ZERO = false;
 layout(constant_id = 1719) const uint VITRAIL_RASTER_INDEX_BYTES = 4u; // 2, 4, or 0: there are none
+layout(constant_id = 1720) const uint VITRAIL_RASTER_TURNS = 2u; // of a work group that sets up triangles
 
 // What a stage does with them. A host's stages say what they only read: compilers then know that it stays as it is.
 #define VITRAIL_TILES_ARE
@@ -46,15 +47,15 @@ layout(VITRAIL_RASTER_BOUND(1), std430) buffer VitrailRasterControlBlock { Vitra
 // Of each tile VITRAIL_RASTER_TILE_WORDS: how many records it has; the pixels that one in VITRAIL_RASTER_SHARE of them
 // cover; where its pages begin (pages.glsl). Setting up reads of a dispatch what it has written.
 layout(VITRAIL_RASTER_BOUND(2), std430) VITRAIL_TILES_ARE buffer VitrailTileBlock { uint vitrailTiles[]; };
-// Two for a record, which is a triangle in a tile: the pixels that it covers, the primitive (and in the highest bit
-// whether its front shows) and the item; and behind these of all records the depth at the middle of the first pixel,
-// what pixels to the right and down add, and the nearest depth. Triangles that are side by side are so here, most
-// often, and what GPUs write at once is then side by side as well.
+// Two for a record, which is a triangle in a tile: the pixels that it covers, the name of the primitive (and in the
+// highest bit whether its front shows) and the item; and behind these of all records the depth at the middle of the
+// first pixel, what pixels to the right and down add, and the nearest depth. Triangles that are side by side are so
+// here, most often, and what GPUs write at once is then side by side as well.
 layout(VITRAIL_RASTER_BOUND(3), std430) VITRAIL_RECORDS_ARE buffer VitrailRecordBlock { uvec4 vitrailRecords[]; };
 // Of each record that is not on its page yet the tile, which one it is there, and where it is.
 layout(VITRAIL_RASTER_BOUND(4), std430) buffer VitrailAstrayBlock { uint vitrailAstray[]; };
-layout(VITRAIL_RASTER_BOUND(5), std430) buffer VitrailMediumBlock { uvec2 vitrailMedium[]; }; // primitive and item
-layout(VITRAIL_RASTER_BOUND(6), std430) buffer VitrailLargeBlock { uvec2 vitrailLarge[]; }; // primitive and item
+layout(VITRAIL_RASTER_BOUND(5), std430) buffer VitrailMediumBlock { uvec2 vitrailMedium[]; }; // name and item
+layout(VITRAIL_RASTER_BOUND(6), std430) buffer VitrailLargeBlock { uvec2 vitrailLarge[]; }; // name and item
 // Tiles by class: each has room for all.
 layout(VITRAIL_RASTER_BOUND(7), std430) buffer VitrailTileListBlock { uint vitrailTileList[]; };
 // Of each record, where there are several samples, the pixels whose samples the triangle covers: samples.glsl.
@@ -139,12 +140,24 @@ uint vitrailCornersOf(uint flags) {
   return kind == VITRAIL_RASTER_LINES ? 2u : kind == VITRAIL_RASTER_POINTS ? 1u : 3u;
 }
 
-// Where the indices of one of its triangles begin.
-uint vitrailIndexInDraw(uint corners, uint primitive) {
-  return corners == 3u ? 3u * primitive : corners * (primitive / 2u);
+// Lists and records name a primitive by where its indices begin, of those of all draws: so indices are looked up
+// together with the item, and not after it. Where there are none, and with lines and points, by its number in its
+// instance.
+const bool VITRAIL_NAMED_BY_INDEX = VITRAIL_RASTER_ONLY_TRIANGLES && VITRAIL_RASTER_INDEX_BYTES != 0u;
+uint vitrailNameOf(uint firstOfDraw, uint primitive) {
+  return VITRAIL_NAMED_BY_INDEX ? firstOfDraw + 3u * primitive : primitive;
 }
-uint vitrailFirstIndex(uint draw, uint corners, uint primitive) {
-  return vitrailDrawPlaces[draw].lookup.x + vitrailIndexInDraw(corners, primitive);
+uint vitrailPrimitiveOf(uint firstOfDraw, uint name) {
+  return VITRAIL_NAMED_BY_INDEX ? (name - firstOfDraw) / 3u : name;
+}
+
+// Where the indices of one of a draw's triangles begin.
+uint vitrailFirstIndexOf(uint firstOfDraw, uint corners, uint name) {
+  if (VITRAIL_NAMED_BY_INDEX) return name;
+  return firstOfDraw + (corners == 3u ? 3u * name : corners * (name / 2u));
+}
+uint vitrailFirstIndex(uint draw, uint corners, uint name) {
+  return vitrailFirstIndexOf(vitrailDrawPlaces[draw].lookup.x, corners, name);
 }
 
 // An index of a draw, without its vertexOffset.

@@ -18,8 +18,7 @@ struct vec4 {
 
 const uint VITRAIL_RASTER_GROUP = 128u;     // threads of a work group of most passes
 const uint VITRAIL_RASTER_VERTICES = 2u;    // vertices for each of those that ask for positions
-const uint VITRAIL_RASTER_SET_UP = 128u;    // of one that sets up triangles, each one of them
-const uint VITRAIL_RASTER_TURNS = 2u;       // so many times
+const uint VITRAIL_RASTER_SET_UP = 128u;    // of one that sets up triangles, each one of them a turn
 const uint VITRAIL_RASTER_FEW_MEDIUM = 16u; // medium triangles for a work group, at least, up to so many work groups
 const uint VITRAIL_RASTER_MEDIUM = 1024u;
 const uint VITRAIL_RASTER_PIXELS = 64u;        // of a tile, a thread each
@@ -53,7 +52,7 @@ const float VITRAIL_RASTER_STOP = 0.35f;     // of 1/255: what may be left out o
 
 // What a stage was compiled for: where its numbers begin in the word that the library reads in its SPIR-V, the default
 // of a specialization constant (raster.glsl).
-const uint VITRAIL_RASTER_COMPILED_ID = 1720u;
+const uint VITRAIL_RASTER_COMPILED_ID = 1730u;
 const uint VITRAIL_RASTER_COMPILED_STAGE = 0u;      // 3 bits
 const uint VITRAIL_RASTER_COMPILED_SET = 3u;        // 4 bits
 const uint VITRAIL_RASTER_COMPILED_PLANES = 7u;     // 4 bits
@@ -193,6 +192,7 @@ struct VitrailRasterTotals {
   uint bands; // that were drawn
   uint wrongVertex;
   uint inTiles;
+  uint medium;
   VitrailRasterStart start;
 };
 
@@ -204,7 +204,7 @@ static_assert(sizeof(VitrailRasterStart) == 72);
 static_assert(offsetof(VitrailRasterFrame, clipPlanes) == VITRAIL_RASTER_FRAME_WORDS * sizeof(uint));
 static_assert(sizeof(VitrailRasterTileClasses) == 128);
 static_assert(sizeof(VitrailRasterControl) == 92);
-static_assert(sizeof(VitrailRasterTotals) == 124);
+static_assert(sizeof(VitrailRasterTotals) == 128);
 } // namespace vitrail::raster
 #endif
 

@@ -13,7 +13,7 @@ layout(local_size_x = VITRAIL_RASTER_SET_UP) in;
 
 layout(VITRAIL_RASTER_BOUND(17), std430) buffer VitrailTileClassBlock { VitrailRasterTileClasses vitrailTileClasses; };
 
-// The medium triangles of the work group: primitive and item.
+// The medium triangles of the work group: name and item.
 shared uvec2 vitrailGroupMedium[VITRAIL_RASTER_SET_UP * VITRAIL_RASTER_TURNS];
 shared uint vitrailGroupMediums;
 shared uint vitrailGroupFirstMedium;
@@ -71,7 +71,8 @@ void vitrailSetUpSmall(VitrailTriangle t, uint draw, ivec2 first, ivec2 last) {
 #define VITRAIL_COVER_SAMPLE(i) \
   samples[i] = uvec2(0u); \
   if (i < VITRAIL_RASTER_SAMPLES) { \
-    samples[i] = window & vitrailRowCoverage(rows, vitrailSamplePlace(i), count); \
+    samples[i] = window & (VITRAIL_RASTER_SAMPLES == 1u ? vitrailFewRowCoverage(rows, count) \
+                                                        : vitrailRowCoverage(rows, vitrailSamplePlace(i), count)); \
     covered |= samples[i]; \
   }
   VITRAIL_EACH_SAMPLE(VITRAIL_COVER_SAMPLE)
@@ -124,10 +125,7 @@ bool vitrailSetUp(uint draw, uint corners, uvec2 source, uvec3 indices) {
 // Room in the list of all groups' medium triangles, for those of this one.
 void vitrailTakeMediums(uint mediums) {
   uint first = atomicAdd(vitrailRasterControl.medium, mediums);
-  uint count = first + mediums;
-  uint groups = min((count + VITRAIL_RASTER_FEW_MEDIUM - 1u) / VITRAIL_RASTER_FEW_MEDIUM, VITRAIL_RASTER_MEDIUM);
-  groups = max(groups, (count + VITRAIL_RASTER_GROUP - 1u) / VITRAIL_RASTER_GROUP);
-  atomicMax(vitrailTileClasses.medium.x, min(groups, VITRAIL_RASTER_ROW)); // which go on
+  atomicMax(vitrailTileClasses.medium.x, min(vitrailMediumGroups(first + mediums), VITRAIL_RASTER_ROW)); // which go on
   vitrailGroupFirstMedium = first;
 }
 
@@ -140,6 +138,7 @@ void main() {
   uint draw = vitrailDrawOfGroup[group];
   uint corners = vitrailCornersOf(vitrailFlagsOf(draw));
   uvec4 size = vitrailDrawPlaces[draw].size;
+  uint firstOfDraw = vitrailDrawPlaces[draw].lookup.x;
   uint count = size.x * size.y;
   uint first = (group - size.z) * (VITRAIL_RASTER_SET_UP * VITRAIL_RASTER_TURNS);
   uvec2 nextSource = uvec2(0u);
@@ -148,7 +147,7 @@ void main() {
   if ((number_) < count) { \
     uint number = number_; \
     uint instance = number < size.x ? 0u : number / size.x; \
-    nextSource = uvec2(number - instance * size.x, size.w + instance); \
+    nextSource = uvec2(vitrailNameOf(firstOfDraw, number - instance * size.x), size.w + instance); \
     nextIndices = vitrailIndicesAt(draw, corners, nextSource.x); \
   }
   VITRAIL_LOAD_NEXT(first + thread)

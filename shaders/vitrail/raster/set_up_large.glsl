@@ -16,7 +16,7 @@ layout(local_size_x = VITRAIL_RASTER_GROUP) in;
 shared ivec4 vitrailGroupCorners[VITRAIL_RASTER_GROUP]; // the first two
 shared ivec4 vitrailGroupTiles[VITRAIL_RASTER_GROUP];   // the third; the first tile, 16 bits each; tiles in a row
 shared vec4 vitrailGroupPlanes[VITRAIL_RASTER_GROUP];   // the depths at the first corner; the nearest of the corners'
-shared uvec2 vitrailGroupSources[VITRAIL_RASTER_GROUP]; // primitive, item
+shared uvec2 vitrailGroupSources[VITRAIL_RASTER_GROUP]; // name, item
 shared uint vitrailGroupEnds[VITRAIL_RASTER_GROUP];     // of the candidates of each, among those of all
 shared uint vitrailGroupSums[VITRAIL_RASTER_SHUFFLES ? VITRAIL_RASTER_GROUP / 32u : VITRAIL_RASTER_GROUP];
 shared uint vitrailGroupPieces;
@@ -26,7 +26,7 @@ void vitrailShareTriangle(uint i, VitrailTriangle t, VitrailSource source, ivec2
   vitrailGroupCorners[i] = ivec4(t.p0, t.p1);
   vitrailGroupTiles[i] = ivec4(t.p2, low.x | low.y << 16, high.x - low.x);
   vitrailGroupPlanes[i] = vec4(source.plane.depth, source.nearest);
-  vitrailGroupSources[i] = uvec2(source.primitive, source.item);
+  vitrailGroupSources[i] = uvec2(source.name, source.item);
 }
 
 // What records of the i-th have in common, which is shared; `corner` is its first.
@@ -141,14 +141,14 @@ void vitrailCoverAll(uint mine) {
   for (uint i = gl_LocalInvocationIndex; i < count; i += VITRAIL_RASTER_GROUP) vitrailCoverCandidate(i);
 }
 
-// A work group takes as many as others, and where there are few, few: then all of them wait for fewer tiles.
+// There may be more work groups than there are shares, or fewer.
 void vitrailSetUpMedium() {
   uint count = min(vitrailRasterControl.medium, vitrailMediumCapacity());
-  uint share_ = (count + gl_NumWorkGroups.x - 1u) / gl_NumWorkGroups.x;
-  uint first = gl_WorkGroupID.x * share_;
-  uint end = min(first + share_, count);
-  for (; first < end; first += VITRAIL_RASTER_GROUP) {
-    uint i = first + gl_LocalInvocationIndex;
+  uint groups = vitrailMediumGroups(count);
+  uint share_ = groups > 0u ? (count + groups - 1u) / groups : 0u; // at most VITRAIL_RASTER_GROUP
+  for (uint group = gl_WorkGroupID.x; group < groups; group += gl_NumWorkGroups.x) {
+    uint end = min((group + 1u) * share_, count);
+    uint i = group * share_ + gl_LocalInvocationIndex;
     uint candidates_ = 0u;
     if (i < end) {
       uvec2 source = vitrailMedium[i];
@@ -175,10 +175,10 @@ uint vitrailLargeBlocks() {
   return (vitrailRaster.tilesX + VITRAIL_RASTER_LARGE_BLOCK - 1u) / VITRAIL_RASTER_LARGE_BLOCK;
 }
 
-// The tiles of this work group.
-void vitrailBlockOf(out ivec2 low, out ivec2 high) {
+// The tiles of this work group in a row of the band.
+void vitrailBlockOf(uint rowOfBand, out ivec2 low, out ivec2 high) {
   int first = int((gl_WorkGroupID.x % vitrailLargeBlocks()) * VITRAIL_RASTER_LARGE_BLOCK);
-  int row = int(gl_WorkGroupID.y) + int(vitrailRaster.top) / VITRAIL_TILE_SIDE;
+  int row = int(rowOfBand) + int(vitrailRaster.top) / VITRAIL_TILE_SIDE;
   low = ivec2(first, row);
   high = ivec2(min(first + int(VITRAIL_RASTER_LARGE_BLOCK), int(vitrailRaster.tilesX)), row + 1);
 }
@@ -206,11 +206,11 @@ VitrailPolygon vitrailClippedOf(VitrailViewport viewport, uint draw, uint corner
 }
 
 // A polygon is a fan of triangles, most often one.
-void vitrailSetUpLarge() {
+void vitrailSetUpLarge(uint row) {
   uint thread = gl_LocalInvocationIndex;
   VitrailViewport viewport = vitrailViewportOf();
   ivec2 least, most;
-  vitrailBlockOf(least, most);
+  vitrailBlockOf(row, least, most);
   uint count = min(vitrailRasterControl.large, vitrailRaster.largeCapacity);
   uint shares = gl_NumWorkGroups.x / vitrailLargeBlocks(); // of them, each by a work group of a block
   uint share_ = gl_WorkGroupID.x / vitrailLargeBlocks();
@@ -256,7 +256,8 @@ void main() {
   if (VITRAIL_RASTER_CLASS == 0u) {
     vitrailSetUpMedium();
   } else {
-    vitrailSetUpLarge();
+    if (vitrailRasterControl.large == 0u) return;
+    for (uint row = gl_WorkGroupID.y; row < vitrailRaster.tilesY; row += gl_NumWorkGroups.y) vitrailSetUpLarge(row);
   }
 }
 

@@ -29,7 +29,11 @@ vec4 vitrailAskPosition(uint draw, uint item, uint index) {
 
 #if VITRAIL_RASTER_STAGE != VITRAIL_RASTER_STAGE_POSITIONS
 vec4 vitrailClipPosition(uint draw, uint item, uint index) {
+#if VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_SET_UP
   if (VITRAIL_RASTER_POSITIONS) return vitrailPositions[vitrailVertexPlace(draw, item, index)];
+#else // which knows the item sooner than the draw
+  if (VITRAIL_RASTER_POSITIONS) return vitrailPositions[vitrailItems[item].y + index];
+#endif
   return vitrailAskPosition(draw, item, index);
 }
 #endif
@@ -79,7 +83,7 @@ void vitrailDerivatives(VitrailSurface surface, out vec3 right, out vec3 down) {
 }
 
 #if VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_BLEND || VITRAIL_RASTER_STAGE == VITRAIL_RASTER_STAGE_BLEND_DEEP
-// `source`: the primitive, with the side in its highest bit, and the item.
+// `source`: the name of the primitive, with the side in its highest bit, and the item.
 VitrailSurface vitrailSurfaceOf(uvec2 source, ivec2 pixel) {
   uvec4 item = vitrailItems[source.y];
   uint draw = item.z;
@@ -87,11 +91,12 @@ VitrailSurface vitrailSurfaceOf(uvec2 source, ivec2 pixel) {
   surface.pixel = pixel;
   surface.draw = draw;
   surface.instance = item.w;
-  surface.primitive = source.x & 0x7fffffffu;
+  uint name = source.x & 0x7fffffffu;
+  surface.primitive = vitrailPrimitiveOf(item.x, name);
   surface.front = (source.x & 0x80000000u) != 0u;
   surface.word = vitrailWordOf(draw);
   surface.corners = vitrailCornersOf(vitrailFlagsOf(draw));
-  uint first = item.x + vitrailIndexInDraw(surface.corners, surface.primitive);
+  uint first = vitrailFirstIndexOf(item.x, surface.corners, name);
   for (uint i = 0u; i < 3u; ++i) {
     uint index = vitrailIndex(draw, first + (i < surface.corners ? i : 0u));
     surface.vertices[i] = vitrailVertexOf(draw, index);

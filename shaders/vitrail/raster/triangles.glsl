@@ -14,7 +14,7 @@ struct VitrailTriangle {
   ivec2 p1;
   ivec2 p2;
   vec3 depths;
-  uint primitive;
+  uint name; // of the primitive
   uint item;
 };
 
@@ -31,7 +31,7 @@ VitrailTriangle vitrailTriangleOf(VitrailViewport viewport, vec4 a, vec4 b, vec4
   t.p0 = vitrailSnap(vitrailPixels(viewport, a, t.depths.x));
   t.p1 = vitrailSnap(vitrailPixels(viewport, b, t.depths.y));
   t.p2 = vitrailSnap(vitrailPixels(viewport, c, t.depths.z));
-  t.primitive = source.x;
+  t.name = source.x;
   t.item = source.y;
   return t;
 }
@@ -55,7 +55,7 @@ VitrailTriangle vitrailHalfOf(VitrailViewport viewport, vec4 a, vec4 b, uint cor
   t.p1 = vitrailSnap(to + along + (second ? across : -across));
   t.p2 = vitrailSnap((second ? from - along : to + along) + across);
   t.depths = vec3(depthA, depthB, second ? depthA : depthB);
-  t.primitive = source.x;
+  t.name = source.x;
   t.item = source.y;
   return t;
 }
@@ -97,7 +97,7 @@ uint vitrailCandidates(ivec2 first, ivec2 last, ivec2 least, ivec2 most, out ive
 
 // What a triangle's records have in common.
 struct VitrailSource {
-  uint primitive; // and in the highest bit whether its front shows
+  uint name; // of the primitive, and in the highest bit whether its front shows
   uint item;
   VitrailPlane plane;
   float nearest; // of its corners
@@ -116,7 +116,7 @@ bool vitrailSideOf(uint draw, bool isClockwise, out bool front) {
 
 VitrailSource vitrailSourceOf(VitrailTriangle t, bool front, float area) {
   VitrailSource source;
-  source.primitive = t.primitive | (front ? 0x80000000u : 0u);
+  source.name = t.name | (front ? 0x80000000u : 0u);
   source.item = t.item;
   source.plane = vitrailPlane(t.p0, t.p1, t.p2, t.depths, area);
   source.nearest = max(t.depths.x, max(t.depths.y, t.depths.z));
@@ -167,8 +167,8 @@ bool vitrailOrientTriangle(inout VitrailTriangle t, uint draw, out VitrailSource
 }
 
 // The indices of a triangle, line or point.
-uvec3 vitrailIndicesAt(uint draw, uint corners, uint primitive) {
-  uint first = vitrailFirstIndex(draw, corners, primitive);
+uvec3 vitrailIndicesAt(uint draw, uint corners, uint name) {
+  uint first = vitrailFirstIndex(draw, corners, name);
   return uvec3(vitrailIndex(draw, first), vitrailIndex(draw, first + (corners > 1u ? 1u : 0u)),
                vitrailIndex(draw, first + (corners > 2u ? 2u : 0u)));
 }
@@ -197,6 +197,13 @@ uint vitrailTileNumber(ivec2 tile) {
   return uint(tile.y - int(vitrailRaster.top) / VITRAIL_TILE_SIDE) * vitrailRaster.tilesX + uint(tile.x);
 }
 
+// How many work groups so many medium triangles are for: few for each where there are few, so that all of them wait for
+// fewer tiles.
+uint vitrailMediumGroups(uint count) {
+  uint groups = min((count + VITRAIL_RASTER_FEW_MEDIUM - 1u) / VITRAIL_RASTER_FEW_MEDIUM, VITRAIL_RASTER_MEDIUM);
+  return max(groups, (count + VITRAIL_RASTER_GROUP - 1u) / VITRAIL_RASTER_GROUP);
+}
+
 // Makes the record of a triangle in a tile, of the pixels that it covers there: its place, or one that there is no room
 // for.
 uint vitrailMakeRecord(ivec2 tile, uvec2 covered, VitrailSource source) {
@@ -214,7 +221,7 @@ uint vitrailMakeRecord(ivec2 tile, uvec2 covered, VitrailSource source) {
   // At the middle of a pixel of which another part is covered a plane may be nearer than any corner.
   float nearest = depth.x + (max(depth.y, 0.0) + max(depth.z, 0.0)) * steps;
   if (VITRAIL_RASTER_SAMPLES == 1u) nearest = min(source.nearest, nearest);
-  vitrailRecords[place] = uvec4(covered, source.primitive, source.item);
+  vitrailRecords[place] = uvec4(covered, source.name, source.item);
   vitrailRecords[vitrailRaster.recordCapacity + place] = floatBitsToUint(vec4(depth, nearest));
   return place;
 }

@@ -30,6 +30,7 @@ void main() {
   RAISE(totals.fragments, totals.fragmentsHigh, vitrailRasterControl.fragments, vitrailRasterControl.fragmentsHigh)
   totals.inTiles = max(totals.inTiles, vitrailRasterControl.inTiles);
   totals.large = max(totals.large, vitrailRasterControl.large);
+  totals.medium = max(totals.medium, mediums);
   totals.deep = max(totals.deep, vitrailRasterControl.deep.count);
   totals.blocks = max(totals.blocks, vitrailRasterControl.blocks.count);
   totals.chunks = max(totals.chunks, vitrailRasterControl.chunks.count);
