@@ -44,15 +44,6 @@ vec4 vitrailClipPosition(uint draw, uint item, uint index) {
 vec3 vitrailWeightsOf(vec2 a, vec2 b, vec2 c) {
   vec3 e = vec3(b.x * c.y - b.y * c.x, c.x * a.y - c.y * a.x, a.x * b.y - a.y * b.x);
   float sum = e.x + e.y + e.z;
-  if (!(abs(sum) > 1e-30 && abs(sum) < 1e30)) { // products may have been too small or too large for floats
-    vec2 most = max(abs(a), max(abs(b), abs(c)));
-    float scale = 1.0 / max(max(most.x, most.y), 1e-37);
-    a *= scale;
-    b *= scale;
-    c *= scale;
-    e = vec3(b.x * c.y - b.y * c.x, c.x * a.y - c.y * a.x, a.x * b.y - a.y * b.x);
-    sum = e.x + e.y + e.z;
-  }
   return sum != 0.0 ? e / sum : vec3(1.0 / 3.0);
 }
 
