@@ -133,7 +133,7 @@ HWY_INLINE std::uint32_t TileWorker::emitPlain(const Frame& frame, std::uint32_t
     if (HWY_UNLIKELY(row > head.last)) break;
     if constexpr (kTracked) {
       if (hidden != 0) {
-        countHidden(block, hidden);
+        if (frame.counts) countHidden(block, hidden);
         if (mask == 0) continue;
       }
       trackHidden(frame, block, here, key, hidingOf<kKept>(frame, draws[t]));

@@ -254,8 +254,13 @@ HWY_INLINE void binSixteen(const Frame& frame, const DrawInfo& info, std::uint32
   if (nearest == nullptr) return;
   const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
   const F known = nearestOfDepths(z[0], z[1], z[2], nearestIsOne);
+  const F depth = select(maskOf(clipped), set(nearestIsOne ? 1.0F : 0.0F), known);
+  if (HWY_LIKELY(count == kLanes)) { // a copy by way of memory would read in parts what was stored as a whole, and wait
+    storeAnywhere(nearest, depth);
+    return;
+  }
   alignas(64) float depths[kLanes];
-  store(depths, select(maskOf(clipped), set(nearestIsOne ? 1.0F : 0.0F), known));
+  store(depths, depth);
   std::memcpy(nearest, depths, count * sizeof(float));
 }
 

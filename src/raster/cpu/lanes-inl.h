@@ -88,6 +88,8 @@ HWY_INLINE I load(const std::int32_t* p) {
 }
 HWY_INLINE void store(float* p, const F& a) { VITRAIL_EACH hn::Store(a.v[i], kF, p + i * kVectorLanes); }
 HWY_INLINE void store(std::int32_t* p, const I& a) { VITRAIL_EACH hn::Store(a.v[i], kI, p + i * kVectorLanes); }
+// At any address.
+HWY_INLINE void storeAnywhere(float* p, const F& a) { VITRAIL_EACH hn::StoreU(a.v[i], kF, p + i * kVectorLanes); }
 
 VITRAIL_BINARY(F, F, F, operator+, hn::Add(a.v[i], b.v[i]))
 VITRAIL_BINARY(F, F, F, operator-, hn::Sub(a.v[i], b.v[i]))

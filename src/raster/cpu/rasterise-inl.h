@@ -209,9 +209,10 @@ HWY_INLINE void TileWorker::countHidden(std::uint32_t block, std::uint32_t mask)
 }
 
 // Lists in work_ which triangles cover what of which blocks, of the `items` pairs of both in pairs_. `kIsBig`: edges of
-// some triangle need more than 16 bits. `kHides`: triangles that are behind all that shows of a block are only counted
-// there. They are set aside first: a branch that nobody can foresee would cost as much as it spares.
-template <bool kIsBig, bool kHides>
+// some triangle need more than 16 bits. Triangles that are behind all that shows of a block are only counted there, or,
+// where nobody asks for statistics, dropped. They are set aside first: a branch that nobody can foresee would cost as
+// much as it spares.
+template <bool kIsBig, TileWorker::Hidden kHidden>
 HWY_INLINE std::uint32_t TileWorker::cover(std::uint32_t items) {
   std::uint32_t count = 0;
   std::uint32_t hidden = 0;
@@ -237,16 +238,18 @@ HWY_INLINE std::uint32_t TileWorker::cover(std::uint32_t items) {
     const auto isThere = static_cast<std::uint32_t>(mask != 0);
     const Work work{pair | mask << 16U};
     work_[count] = work;
-    if constexpr (kHides) {
+    if constexpr (kHidden != Hidden::None) {
       const auto isHidden = static_cast<std::uint32_t>(batchNearest_[t] >= allUntil_[block]);
-      hiddenWork_[hidden] = work;
-      hidden += isThere & isHidden;
+      if constexpr (kHidden == Hidden::Counted) {
+        hiddenWork_[hidden] = work;
+        hidden += isThere & isHidden;
+      }
       count += isThere & (isHidden ^ 1U);
     } else {
       count += isThere;
     }
   }
-  for (std::uint32_t i = 0; kHides && i < hidden; ++i) countHidden(hiddenWork_[i].block(), hiddenWork_[i].pixels());
+  for (std::uint32_t i = 0; i < hidden; ++i) countHidden(hiddenWork_[i].block(), hiddenWork_[i].pixels());
   return count;
 }
 
@@ -299,13 +302,17 @@ inline bool TileWorker::drawBatch(const Frame& frame, const Staged& staged, cons
   if (samples > 1) {
     count = coverSamples(items, samples);
   } else if (saturated_ == 0 || hasDepth_) {
-    count = batch_.isBig ? cover<true, false>(items) : cover<false, false>(items);
+    count = batch_.isBig ? cover<true, Hidden::None>(items) : cover<false, Hidden::None>(items);
   } else {
     const bool nearestIsOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
     for (std::uint32_t i = 0; i < triangles; i += kLanes) {
       store(batchNearest_.data() + i, nearestOf(batch_, i, nearestIsOne));
     }
-    count = batch_.isBig ? cover<true, true>(items) : cover<false, true>(items);
+    if (batch_.isBig) {
+      count = cover<true, Hidden::Counted>(items);
+    } else {
+      count = frame.counts ? cover<false, Hidden::Counted>(items) : cover<false, Hidden::Dropped>(items);
+    }
   }
   return emit(count);
 }

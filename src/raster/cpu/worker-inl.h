@@ -104,7 +104,7 @@ struct OpaqueTile {
 // Equal parts of the depths of a tile's triangles, from near to far.
 class DepthSteps {
  public:
-  static constexpr std::uint32_t kCount = 1024;
+  static constexpr std::uint32_t kCount = 512;
 
   DepthSteps() = default;
   DepthSteps(float least, float most, bool nearestIsOne) : first_(nearestIsOne ? most : least) {
@@ -206,7 +206,8 @@ class TileWorker final : public TileWorkspace {
   template <class Emit>
   bool drawBatch(const Frame& frame, const Staged& staged, const StagedPieces* pieces, bool isShaded,
                  std::uint64_t& clipped, Emit emit);
-  template <bool kIsBig, bool kHides>
+  enum class Hidden { None, Counted, Dropped }; // what may be hidden, and what becomes of it
+  template <bool kIsBig, Hidden kHidden>
   HWY_INLINE std::uint32_t cover(std::uint32_t items);
   HWY_INLINE std::uint32_t coverSamples(std::uint32_t items, std::uint32_t samples);
 
