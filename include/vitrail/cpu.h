@@ -287,8 +287,8 @@ typedef struct VitrailCpuFrame {
  * real-number answer.
  *
  * Errors, with the reason in the context's log: VITRAIL_ERROR_INVALID for a field that is not as described,
- * VITRAIL_ERROR_OUT_OF_MEMORY, VITRAIL_ERROR_UNSUPPORTED where a thread cannot be started. Then the arrays may hold a
- * part of the picture. */
+ * VITRAIL_ERROR_OUT_OF_MEMORY, VITRAIL_ERROR_UNSUPPORTED where a thread cannot be started or one of the host's
+ * functions throws. Then the arrays may hold a part of the picture. */
 VITRAIL_API VitrailResult vitrailCpuRender(VitrailCpuContext context, const VitrailCpuFrame* frame,
                                            const VitrailCpuDraw* draws, uint32_t drawCount, VitrailStats* stats);
 

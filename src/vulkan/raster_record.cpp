@@ -78,12 +78,13 @@ class Recording {
   }
   // What a frame's draws come to, whose sizes are known where a frame of the same ones was read: dispatches that need
   // not be looked up begin somewhat sooner.
-  void dispatchDraws(VkPipeline pipeline, raster::VitrailRasterDispatch raster::VitrailRasterStart::*sizes) const {
-    const bool known = raster_.tablesAreMade && raster_.startOf == raster_.tableNumber;
-    if (known) return dispatch(pipeline, (raster_.start.*sizes).x, (raster_.start.*sizes).y);
-    const bool vertices = sizes == &raster::VitrailRasterStart::vertices;
-    dispatch(pipeline, RasterBuffer::Start,
-             vertices ? offsetof(raster::VitrailRasterStart, vertices) : offsetof(raster::VitrailRasterStart, groups));
+  void dispatchDraws(VkPipeline pipeline, const raster::VitrailRasterDispatch& size, VkDeviceSize sizeAt) const {
+    const bool isKnown = raster_.tablesAreMade && raster_.startOf == raster_.tableNumber;
+    if (isKnown) return dispatch(pipeline, size.x, size.y);
+    dispatch(pipeline, RasterBuffer::Start, sizeAt);
+  }
+  void positions() const {
+    dispatchDraws(raster_.positions, raster_.start.vertices, offsetof(raster::VitrailRasterStart, vertices));
   }
   void fill(RasterBuffer which) const {
     vk_.CmdFillBuffer(commands_, raster_.buffer(which).buffer, 0, VK_WHOLE_SIZE, 0);
@@ -241,7 +242,7 @@ void Recording::clear(const Band& band, bool isFirst) {
   // Nothing of what is cleared is looked at for positions. Where the draws are new their tables come first.
   if (isFirst && raster_.keepsPositions && raster_.tablesAreMade) {
     bind(RasterSet::Geometry);
-    dispatchDraws(raster_.positions, &raster::VitrailRasterStart::vertices);
+    positions();
   }
   begin(band, isFirst);
   if (raster_.deepPlanned) fill(RasterBuffer::DeepPixels);
@@ -260,14 +261,14 @@ void Recording::readDraws(bool isFirst) {
   passBarrier();
   if (raster_.keepsPositions) {
     bind(RasterSet::Geometry);
-    dispatchDraws(raster_.positions, &raster::VitrailRasterStart::vertices);
+    positions();
     passBarrier();
   }
 }
 
 void Recording::setUp(const Band& band) {
   bind(RasterSet::Geometry);
-  dispatchDraws(raster_.setUp, &raster::VitrailRasterStart::groups);
+  dispatchDraws(raster_.setUp, raster_.start.groups, offsetof(raster::VitrailRasterStart, groups));
   // Triangles were put aside -> they are taken up; records and counts go on.
   if (raster_.context->limits.isCpu) { // where work groups that have nothing to do take longest
     passBarrier();

@@ -74,6 +74,8 @@ VitrailPixelLight vitrailLightBehind(ivec2 pixel) {
   light.nearest = vitrailOpaqueDepth(pixel, 0u);
   for (uint i = 1u; i < VITRAIL_RASTER_SAMPLES; ++i) light.nearest = max(light.nearest, vitrailOpaqueDepth(pixel, i));
 #endif
+  // What comes through to a background that is not opaque is missing in the picture's alpha, too, which is linear: as
+  // much light counts 0.43958 times as much at least (vitrailHasEnough()).
 #define VITRAIL_SET_SAMPLE(i) \
   light.through[i] = vec4(1.0); \
   if (i < VITRAIL_RASTER_SAMPLES && light.most >= 0.0) { \
@@ -136,8 +138,8 @@ bool vitrailHasEnough(VitrailPixelLight light) {
   return through * light.most * steepness * 255.0 < VITRAIL_RASTER_STOP;
 }
 
-// The order at one depth: by what fragments are, as in fragment lists. With the blend mode, in the lowest bits, its
-// number.
+// The order at one depth: by what fragments are, as in fragment lists: how they are blended, their colours, and the
+// samples that they cover. With these, in the lowest bits, the fragment's number.
 uvec3 vitrailTieKey(vec4 color, uint blend, uint visible, uint number) {
   uvec4 node;
   vitrailPack(color, blend, 0.0, 1u, VITRAIL_TIE_NODES, node);

@@ -95,9 +95,9 @@ HWY_INLINE bool TileWorker::emit(const Frame& frame, std::uint32_t item, Window*
   return emitted == Emitted::IsStored;
 }
 
-// Stores fragments from an entry of work_ on, up to one that takes more than that: a chunk, a look at what is hidden, a
-// triangle that is careful or big. Returns which one that is. A part of emitTransparent(), with half as many
-// instructions.
+// Stores fragments from an entry of work_ on, up to one that takes more than that: a chunk, a look at what is hidden
+// where that is not tracked, a triangle that is careful or big. Returns which one that is. A part of emitTransparent(),
+// with half as many instructions.
 template <TileWorker::Kept kKept>
 HWY_INLINE std::uint32_t TileWorker::emitPlain(const Frame& frame, std::uint32_t item, std::uint32_t count) {
   constexpr bool kTracked = isTracked(kKept);

@@ -280,10 +280,10 @@ void Tiles::draw(Frame& frame) {
   info.onPass = [](const char* pass, VkCommandBuffer, void* user) {
     const std::string name = pass;
     Frame& drawn = *static_cast<Frame*>(user);
-    if (name == "clear" || name == "set up" || name == "bin") {
-      drawn.endStep(name); // "blend" comes
-    } else {
+    if (name.starts_with("blend")) {
       drawn.endPass(name);
+    } else {
+      drawn.endStep(name); // one that blends is sure to come
     }
   };
   info.user = &frame;
