@@ -107,7 +107,7 @@ TEST_F(ApisTest, WaysToDrawListsAreTheSame) {
   const Scene scene = makeBuiltinScene("mannequins", {});
   for (const MethodOptions& method : methodVariety(gpu())) {
     if ((gl().limits().sampleCounts & method.samples) == 0) continue;
-    expectSame("mannequins", scene, usualOptions(scene, 160, 90), method);
+    expectSame("mannequins", scene, usualOptions(scene, 112, 63), method);
   }
 }
 
@@ -147,8 +147,8 @@ TEST_F(ApisTest, VolumesAreTheSame) {
   }
   addRectangle(scene, {glm::vec2(-2.0F, -0.2F), glm::vec2(2.0F, 0.3F), -0.2F}, unlitMaterial({0.9F, 0.5F, 0.2F, 1.0F}));
   RenderOptions picture;
-  picture.width = 120;
-  picture.height = 90;
+  picture.width = 80;
+  picture.height = 60;
   for (const View& view : {straightView(), reference::wideView()}) {
     picture.view = view;
     for (const std::uint32_t samples : {1U, 4U}) {

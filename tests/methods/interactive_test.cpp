@@ -50,7 +50,7 @@ class InteractiveTest : public GpuTest {
 };
 
 TEST_F(InteractiveTest, PicturesInFlightAreThoseOfTheStillRenderer) {
-  const Scene scene = makeBuiltinScene("spheres", {48, 1});
+  const Scene scene = makeBuiltinScene("spheres", {16, 1});
   const std::vector<RenderOptions> views = turned(scene, 96, 54);
   for (const MethodOptions& method : methodVariety(gpu())) {
     if (!InteractiveRenderer::draws(method)) continue;

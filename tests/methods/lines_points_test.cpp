@@ -85,8 +85,9 @@ TEST_F(GpuTest, EveryMethodDrawsLinesAndPoints) {
   for (const std::string_view name : methodNames()) {
     if ((name == "interlock" || name == "multi-layer") && !gpu().features().fragmentInterlock) continue;
     for (const std::uint32_t samples : {1U, 4U}) {
-      if (samples > 1 && (!traitsOf(name).takes(kTakesSamples) || (gpu().features().sampleCounts & samples) == 0))
-        continue;
+      // Kernels of several samples take CPU drivers long: those of the methods that are the library's.
+      const bool isOurs = name == kListMethod || name == "tiles";
+      if (samples > 1 && (!isOurs || (gpu().features().sampleCounts & samples) == 0)) continue;
       SCOPED_TRACE(std::string(name) + ", " + std::to_string(samples) + " samples");
       MethodOptions method;
       method.name = name;

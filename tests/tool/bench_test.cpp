@@ -496,7 +496,7 @@ TEST(Bench, ResolvesOfSamplesAndTheStencilMark) {
 TEST(Bench, MemoryBudgetsMakeTiles) {
   TemporaryFolder folder;
   const ProcessResult result =
-      vitrail(folder, {"bench", "--scene", "mannequins", "--size", "320x180", "--repeat", "1", "--methods",
+      vitrail(folder, {"bench", "--scene", "mannequins", "--size", "240x135", "--repeat", "1", "--methods",
                        "linked-list,cpu", "--memory-budget", "1,64", "--samples", "4", "--json", "a.json"});
   ASSERT_EQ(result.exitCode, 0) << result.error;
   const Json all = readJson(folder.file("a.json")).at("scenes")[0].at("measurements");

@@ -52,9 +52,9 @@ bool vitrailIsHidden(uint inBatch, float depth, float farthest) {
   return depth + vitrailBatchSlacks[inBatch] < farthest;
 }
 
-// Those that cover the vitrailThread's pixel, a bit each, of the first batch or of the one that begins there. All
-// threads together.
-uvec2 vitrailCovering(uint begin) {
+// Those that cover the vitrailThread's pixel, a bit each, of the first batch or of the one that begins there, which has
+// so many (or more than there is room for). All threads together.
+uvec2 vitrailCovering(uint begin, uint count) {
   uint first = (vitrailThread >> 5) * VITRAIL_BATCHED + begin;
   if (VITRAIL_RASTER_SHUFFLES) {
     uint lane = vitrailThread & 31u;
@@ -63,9 +63,15 @@ uvec2 vitrailCovering(uint begin) {
   }
   uint bit = vitrailThread & 31u;
   uvec2 bits = uvec2(0u);
-  for (uint i = 0u; i < 32u; ++i) {
+  uint i = 0u;
+  do {
     bits.x |= (vitrailBatchMasks[first + i] >> bit & 1u) << i;
-    bits.y |= (vitrailBatchMasks[first + 32u + i] >> bit & 1u) << i;
+  } while (++i < min(count, 32u));
+  if (count > 32u) {
+    i = 0u;
+    do {
+      bits.y |= (vitrailBatchMasks[first + 32u + i] >> bit & 1u) << i;
+    } while (++i < min(count - 32u, 32u));
   }
   return bits;
 }

@@ -121,11 +121,11 @@ uint vitrailFindNearest(uint count, uint from, ivec2 corner, float farthest, boo
       }
       barrier();
     }
-    uvec2 bits = vitrailCovering(0u);
+    uvec2 bits = vitrailCovering(0u, count - base);
     uvec2 more = uvec2(0u); // of the second batch, which begins there
     uint begin = 0u;
     if (VITRAIL_RASTER_BATCHES > 1u && base + VITRAIL_RASTER_PIXELS < count) {
-      more = vitrailCovering(VITRAIL_RASTER_PIXELS);
+      more = vitrailCovering(VITRAIL_RASTER_PIXELS, count - base - VITRAIL_RASTER_PIXELS);
     }
     if (ended) bits = more = uvec2(0u);
     while ((bits.x | bits.y | more.x | more.y) != 0u) {

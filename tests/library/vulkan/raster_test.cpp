@@ -885,8 +885,8 @@ TEST_F(RasterTest, RoomFromTheStartStays) {
 
 // ---- Bands of frames that stay alike
 
-constexpr std::uint32_t kTilesSide = 128; // pixels of the picture
-constexpr std::uint32_t kTies = 40;       // more than registers hold of any tile
+constexpr std::uint32_t kTilesSide = 64; // pixels of the picture
+constexpr std::uint32_t kTies = 40;      // more than registers hold of any tile
 
 // In each of so many tiles triangles at one depth, over one pixel or all of them, which makes it a deep one.
 RasterScene deepTilesOf(std::uint32_t tiles, float pixels) {
@@ -917,12 +917,12 @@ TEST_F(RasterTest, BandsThatDeepTilesBoundStay) {
   RasterHostDesc desc;
   desc.width = desc.height = kTilesSide;
   desc.indexType = VK_INDEX_TYPE_UINT32;
-  desc.hints.triangles = 10'400; // room for twice as many records
-  desc.memoryBudget = 1'000'000; // of which 256 deep tiles take 790,528
+  desc.hints.triangles = 2'600; // room for twice as many records
+  desc.memoryBudget = 250'000;  // of which 64 deep tiles take 197,632
   RasterHost host(desc);
-  host.setScene(deepTilesOf(22, 4.0F)); // many fragments, in few tiles
+  host.setScene(deepTilesOf(6, 4.0F)); // many fragments, in few tiles
   host.draw();
-  const RasterScene scene = deepTilesOf(256, 1.0F);
+  const RasterScene scene = deepTilesOf(64, 1.0F);
   host.setScene(scene);
   const std::vector<float> expected = host.draw();
   const std::uint32_t bands = host.raster().bands();
@@ -936,7 +936,7 @@ TEST_F(RasterTest, BandsThatDeepTilesBoundStay) {
   EXPECT_TRUE(host.picture() == expected);
   EXPECT_EQ(host.raster().bands(), bands);
   // Fewer, where all has room, and none of the frames between is inexact.
-  host.setScene(deepTilesOf(8, 1.0F));
+  host.setScene(deepTilesOf(2, 1.0F));
   for (int i = 0; i < 130 * 5; ++i) {
     ASSERT_EQ(host.raster().update(), VK_SUCCESS);
     if (host.raster().bands() == 1) break;
