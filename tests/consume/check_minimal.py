@@ -39,16 +39,33 @@ def read_png(path):
         packed += body if kind == b"IDAT" else b""
         place += 12 + size
     raw, stride, rows = zlib.decompress(packed), 3 * WIDTH, []
-    above = bytearray(stride)
+    above = bytes(stride)
     for y in range(HEIGHT):
-        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for i in range(stride):
-            left, up, corner = (row[i - 3] if i > 2 else 0), above[i], (above[i - 3] if i > 2 else 0)
-            paeth = min((left, up, corner), key=lambda c: abs(left + up - corner - c))
-            row[i] = (row[i] + (0, left, up, (left + up) // 2, paeth)[kind]) & 255
-        rows.append(row)
-        above = row
+        first = y * (stride + 1)
+        above = unfilter(raw[first], raw[first + 1:first + 1 + stride], above)
+        rows.append(above[3:])
+        above = above[3:]
     return rows
+
+
+def unfilter(kind, row, above):
+    """A row of three bytes a pixel as it was before one of PNG's filters, with a pixel of zeros to its left."""
+    if kind == 2:
+        return bytes(3) + bytes(r + u & 255 for r, u in zip(row, above))
+    out, above = bytearray(3 + len(row)), bytes(3) + above
+    if kind == 0:
+        out[3:] = row
+    for i, value in enumerate(row if kind else b"", 3):
+        left, up = out[i - 3], above[i]
+        if kind == 3:
+            left = (left + up) // 2
+        elif kind == 4:
+            corner = above[i - 3]
+            from_left, from_up, from_corner = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
+            if from_left > from_up or from_left > from_corner:
+                left = up if from_up <= from_corner else corner
+        out[i] = value + left & 255
+    return out
 
 
 def read_ppm(path):
