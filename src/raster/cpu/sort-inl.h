@@ -65,9 +65,23 @@ HWY_INLINE void sortColumn(double* keys, std::index_sequence<kSteps...> /*steps*
   for (std::size_t r = 0; r < kRows; ++r) hn::Store(rows[r], kD, keys + r * kLanes);
 }
 
+// Whether no key of a row is behind that of its pixel in another row.
+HWY_INLINE bool areInOrder(const double* column, const double* behind) {
+  return hn::AllTrue(kD, hn::Le(hn::Load(kD, column), hn::Load(kD, behind)));
+}
+
+// The same of all rows of a column, each with the next. Where they come in any order the first pairs tell.
+HWY_INLINE bool areInOrder(const double* column, std::size_t rows) {
+  for (std::size_t r = 1; r < rows; ++r) {
+    if (!areInOrder(column + (r - 1) * kLanes, column + r * kLanes)) return false;
+  }
+  return true;
+}
+
 template <std::size_t kRows>
 HWY_NOINLINE void sortRows(double* keys) {
   for (std::size_t v = 0; v < kKeyVectors; ++v) {
+    if (kRows > 8 && areInOrder(keys + v * kKeyLanes, kRows)) continue;
     sortColumn<kRows>(keys + v * kKeyLanes, std::make_index_sequence<comparisonsOf(kRows)>());
   }
 }
@@ -163,6 +177,7 @@ HWY_INLINE void clean(double* column, std::size_t rows, std::size_t width) {
 // Merges two sorted runs, of `width` rows and of `behind`, at most as many.
 HWY_INLINE void mergeTwo(double* low, std::size_t width, std::size_t behind) {
   double* const high = low + width * kLanes;
+  if (areInOrder(high - kLanes, high)) return;
   if (behind == width && width >= 2 * kRun) {
     const std::size_t half = width / 2;
     for (std::size_t r = 0; r < half; ++r) {
