@@ -105,6 +105,33 @@ TEST(OpaqueTest, OfOneDepthTheLastOneIsSeen) {
   }
 }
 
+// Within a draw, too: the small square lies in one tile, the large one in many.
+TEST(OpaqueTest, OfOneDrawAndDepthTheLastTriangleIsSeen) {
+  const auto addSquare = [](std::vector<Position>& to, double low, double high) {
+    const auto at = [](double x, double y) { return inPixels(kPromisedSide, kPromisedSide, x, y); };
+    to.insert(to.end(), {at(low, low), at(high, low), at(low, high), at(low, high), at(high, low), at(high, high)});
+  };
+  Raster raster;
+  for (const std::uint32_t samples : {1U, 4U}) {
+    for (const bool isSmallLast : {false, true}) {
+      std::vector<Position> squares;
+      if (!isSmallLast) addSquare(squares, 4, 12);
+      addSquare(squares, 0, kPromisedSide);
+      if (isSmallLast) addSquare(squares, 4, 12);
+      VitrailCpuDraw draw = drawOf(squares);
+      draw.surface = VITRAIL_CPU_OPAQUE;
+      draw.shade = [](void* /*user*/, VitrailCpuFragments* f) {
+        for (std::size_t i = 0; i < VITRAIL_CPU_LANES; ++i) f->color[0][i] = static_cast<float>(f->triangle[i] / 2);
+      };
+      Picture picture(kPromisedSide, kPromisedSide);
+      VitrailCpuFrame frame = picture.frame();
+      frame.samples = samples;
+      ASSERT_EQ(raster.render(frame, {&draw, 1}), VITRAIL_SUCCESS);
+      EXPECT_EQ(picture.at(8, 8)[0], 1.0F) << samples << " samples, " << isSmallLast;
+    }
+  }
+}
+
 struct Watched {
   std::uint32_t triangles;
   std::uint64_t calls = 0;

@@ -205,8 +205,8 @@ HWY_INLINE F nearestOfDepths(const F& a, const F& b, const F& c, bool nearestIsO
   return nearestIsOne ? most + margin : least - margin;
 }
 
-// Up to sixteen triangles of a job, from its `first`th on, in any order, but always the same. `nearest`: null, or takes
-// how near each comes.
+// Up to sixteen triangles of a job, from its `first`th on. Transparent ones in any order, but always the same; opaque
+// ones in theirs, since of those at one depth the last one shows. `nearest`: null, or takes how near each comes.
 HWY_INLINE void binSixteen(const Frame& frame, const DrawInfo& info, std::uint32_t jobNumber, std::uint32_t first,
                            std::uint32_t count, float* nearest, Bins& bins) {
   const VitrailCpuDraw& draw = info.draw;
@@ -238,12 +238,14 @@ HWY_INLINE void binSixteen(const Frame& frame, const DrawInfo& info, std::uint32
   const std::uint32_t seen = tilesOfSixteen(frame, left, min(y[0], min(y[1], y[2])), max(x[0], max(x[1], x[2])),
                                             max(y[0], max(y[1], y[2])), ranges);
   const std::uint32_t number = jobNumber << kJobBits | first;
-  const std::uint32_t single = ranges.single & here & ~clipped;
+  const std::uint32_t binned = (seen | clipped) & here;
+  std::uint32_t single = ranges.single & here & ~clipped;
+  if (HWY_UNLIKELY(draw.surface == VITRAIL_CPU_OPAQUE && single != binned)) single = 0; // one by one
   for (std::uint32_t lanes = single; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
     bins.add(static_cast<std::uint32_t>(ranges.first[lane]), number + lane);
   }
-  for (std::uint32_t lanes = (seen | clipped) & here & ~single; lanes != 0; lanes &= lanes - 1) {
+  for (std::uint32_t lanes = binned & ~single; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
     if (HWY_UNLIKELY((clipped >> lane & 1U) != 0)) {
       binPieces(frame, info, job.first + first + lane, number + lane, bins);
