@@ -186,6 +186,88 @@ TEST(ShadeTest, LanesWithoutAFragmentNameTrianglesOfTheDraw) {
   }
 }
 
+void shadeNumbers(void* user, VitrailCpuFragments* f) {
+  std::uint64_t& wrong = *static_cast<std::uint64_t*>(user);
+  for (std::size_t i = 0; i < VITRAIL_CPU_LANES; ++i) {
+    for (const auto& values : {f->depth, f->second, f->third, f->secondDx, f->secondDy, f->thirdDx, f->thirdDy})
+      wrong += std::isfinite(values[i]) ? 0 : 1;
+    for (auto& channel : f->color) channel[i] = 0.5F;
+  }
+}
+
+// The smallest w that can be drawn and the largest, in one triangle, whose corners may lie in the middles of pixels.
+TEST(ShadeTest, WeightsAreNumbersWhateverTheCornersAre) {
+  Random random(70);
+  for (const VitrailCpuInstructions instructions : instructionsHere()) {
+    Raster raster(instructions);
+    for (const std::uint32_t samples : {1U, 8U}) {
+      for (int round = 0; round < 60; ++round) {
+        std::vector<Position> corners;
+        for (int i = 0; i < 60; ++i) {
+          const double size = round % 2 == 0 ? 1.0 : 20.0;
+          const auto place = [&] { return i % 4 == 0 ? random.whole(0, 31) + 0.5 : 16.0 + random.real(-size, size); };
+          const auto w = static_cast<float>(std::pow(10.0, random.below(2) == 0 ? -37.9 : random.real(-37.9, 30.0)));
+          corners.push_back(inPixels(32, 32, place(), place(), random.single(0.0, 1.0), w));
+        }
+        for (const VitrailCpuSurface surface : {VITRAIL_CPU_TRANSPARENT, VITRAIL_CPU_OPAQUE}) {
+          std::uint64_t wrong = 0;
+          VitrailCpuDraw draw = drawOf(corners);
+          draw.surface = surface;
+          draw.shade = shadeNumbers;
+          draw.shadeUser = &wrong;
+          draw.shadeFlags = VITRAIL_CPU_SHADE_DERIVATIVES | VITRAIL_CPU_SHADE_DISCARD;
+          Picture picture(32, 32);
+          VitrailCpuFrame frame = picture.frame();
+          frame.samples = samples;
+          ASSERT_EQ(raster.render(frame, {&draw, 1}), VITRAIL_SUCCESS);
+          EXPECT_EQ(wrong, 0U) << "round " << round << ", " << samples << " samples, surface " << surface;
+        }
+      }
+    }
+  }
+}
+
+// Beyond the horizon of a triangle that ends in the block.
+TEST(ShadeTest, LanesBesideAnOpaqueTriangleAreNumbers) {
+  const std::vector<Position> corners = {inPixels(16, 16, 0.5, 0.5, 0.5F, 1.0F), inPixels(16, 16, 1.5, 0.5, 0.5F, 2.0F),
+                                         inPixels(16, 16, 0.5, 4.5, 0.5F, 1.0F)};
+  std::uint64_t wrong = 0;
+  VitrailCpuDraw draw = drawOf(corners);
+  draw.surface = VITRAIL_CPU_OPAQUE;
+  draw.shade = shadeNumbers;
+  draw.shadeUser = &wrong;
+  draw.shadeFlags = VITRAIL_CPU_SHADE_DERIVATIVES | VITRAIL_CPU_SHADE_DISCARD;
+  Picture picture(16, 16);
+  Raster raster;
+  ASSERT_EQ(raster.render(picture.frame(), {&draw, 1}), VITRAIL_SUCCESS);
+  EXPECT_EQ(wrong, 0U);
+}
+
+// Where the w of the corners differ so much that one over the smallest is nothing beside one over the largest.
+TEST(ShadeTest, TheFarthestCornerHasItsOwnWeight) {
+  const std::vector<Position> corners = {inPixels(16, 16, 8.5, 0.5, 0.5F, 1e-6F),
+                                         inPixels(16, 16, 0.5, 8.5, 0.5F, 1e6F),
+                                         inPixels(16, 16, 15.5, 15.5, 0.5F, 1e-6F)};
+  std::array<float, 2> second{-1.0F, -1.0F};
+  VitrailCpuDraw draw = drawOf(corners);
+  draw.shade = [](void* user, VitrailCpuFragments* f) {
+    for (std::size_t i = 0; i < VITRAIL_CPU_LANES; ++i) {
+      for (auto& channel : f->color) channel[i] = 0.5F;
+      const bool isFar = f->x + i % 4 == 0 && f->y + i / 4 == 8;
+      if (isFar && (f->mask >> i & 1U) != 0) static_cast<std::array<float, 2>*>(user)->front() = f->second[i];
+      if (!isFar && (f->mask >> i & 1U) != 0)
+        static_cast<std::array<float, 2>*>(user)->back() =
+            std::max(f->second[i], static_cast<std::array<float, 2>*>(user)->back());
+    }
+  };
+  draw.shadeUser = &second;
+  Picture picture(16, 16);
+  Raster raster;
+  ASSERT_EQ(raster.render(picture.frame(), {&draw, 1}), VITRAIL_SUCCESS);
+  EXPECT_NEAR(second[0], 1.0F, 1e-6F);
+  EXPECT_LE(second[1], 1e-9F);
+}
+
 // One triangle, and random colours behind it.
 TEST(SamplesTest, PixelsWithoutAFragmentStayAsTheyAre) {
   const std::vector<Position> triangle = {inPixels(kPromisedSide, kPromisedSide, 1.5, 1.5),

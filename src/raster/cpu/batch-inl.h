@@ -53,7 +53,7 @@ struct Batch {
   alignas(64) float offset[2][kBatch];
   alignas(64) double exactC[2][kBatch]; // the same where numbers are too large for 32 bits: undivided
   alignas(64) double inverseArea[kBatch];
-  // Depth and 1 / w: at corner 0, and from there to corners 1 and 2.
+  // Depth and 1 / w, of which only the proportions matter: at corner 0, and from there to corners 1 and 2.
   alignas(64) float z[3][kBatch];
   alignas(64) float w[3][kBatch];
   alignas(64) float from[kBatch];
@@ -63,6 +63,7 @@ struct Batch {
   alignas(64) float down[kBatch];
   alignas(64) float w1[kBatch]; // at corners 1 and 2
   alignas(64) float w2[kBatch];
+  alignas(64) float leastW[kBatch];                   // how near to 0 it comes at pixels' centres
   alignas(64) float sampleDepth[kMaxSamples][kBatch]; // from a pixel's centre to a sample
   alignas(64) std::int32_t x0[kBatch];                // blocks; x1 is -1: none
   alignas(64) std::int32_t x1[kBatch];
@@ -178,7 +179,20 @@ HWY_INLINE M setUpDepth(Batch& batch, std::uint32_t at, const I* x, const I* y, 
   return careful;
 }
 
-HWY_INLINE void setUpValues(Batch& batch, std::uint32_t at, const F* z, const F* w) {
+// Where some samples of a pixel are covered its centre may lie outside: how near to 0 its 1 / w comes, as a part of
+// that of the farthest corner.
+constexpr float kBeyondCorners = 1.0F / 1024.0F;
+
+HWY_INLINE void setUpValues(Batch& batch, std::uint32_t at, const F* z, const F* inverseW, std::uint32_t samples) {
+  // Times a power of two, so that the largest is at least 1 and below 2: products of the smallest and the largest w
+  // that there are have no place in a float. What is less than 2^-60 of the largest decides nothing farther from its
+  // corner than that.
+  const F most = max(inverseW[0], max(inverseW[1], inverseW[2]));
+  const F scale = floatOf(set(254 << 23) - (bitsOf(most) & set(0xff << 23)));
+  F w[3];
+  for (std::size_t i = 0; i < 3; ++i) w[i] = max(inverseW[i] * scale, set(0x1.0p-60F));
+  const F least = min(w[0], min(w[1], w[2]));
+  store(batch.leastW + at, samples == 1 ? least : least * set(kBeyondCorners));
   store(batch.z[0] + at, z[0]);
   store(batch.z[1] + at, z[1] - z[0]);
   store(batch.z[2] + at, z[2] - z[0]);
@@ -262,7 +276,7 @@ HWY_INLINE std::uint32_t setUpSixteen(Batch& batch, const Staged& staged, std::u
   store(batch.big + at, keep(isBig, set(1)));
   batch.isBig = batch.isBig || !none(kept & isBig);
   const M careful = setUpDepth(batch, at, x, y, z, s, samples);
-  setUpValues(batch, at, z, w);
+  setUpValues(batch, at, z, w, samples);
   if (weights || !none(kept & careful)) setUpWeights(batch, at, s);
   store(batch.number + at, load(staged.number + at) | keep(isFront, set(static_cast<std::int32_t>(kFrontBit))));
   return ~bitsOf(unclipped) & 0xffffU;

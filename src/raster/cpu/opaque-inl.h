@@ -56,9 +56,10 @@ HWY_INLINE void TileWorker::emitOpaque(const Frame& frame, std::uint32_t item) {
     s.numbers = set(batch_.number[t]);
     s.present = maskOf(mask);
     s.depth = depthOf(centre, frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE);
-    s.second = weights[0];
-    s.third = weights[1];
-    for (std::size_t i = 0; i < 4; ++i) s.derivatives[i] = weights[2 + i];
+    // Beside the triangle weights may be infinite: there they are 0.
+    s.second = keep(s.present, weights[0]);
+    s.third = keep(s.present, weights[1]);
+    for (std::size_t i = 0; i < 4; ++i) s.derivatives[i] = keep(s.present, weights[2 + i]);
     shadeAll(frame, s, frame.needs.opaqueDerivatives, fragments_,
              [&](const VitrailCpuDraw& /*draw*/, const VitrailCpuFragments& f, std::uint32_t /*mask*/) {
                mask &= ~f.discarded;

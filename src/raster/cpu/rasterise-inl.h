@@ -317,6 +317,9 @@ inline bool TileWorker::drawBatch(const Frame& frame, const Staged& staged, cons
   return emit(count);
 }
 
+// Those of a pixel's centre that is not covered grow beyond all bounds towards the horizon.
+constexpr float kFarthestWeight = 0x1.0p20F;
+
 // Perspective-correct weights of what the host handed over, and how they change: second, third, and with derivatives
 // second to the right and down, third to the right and down. `kPlain`: the triangle is not big, and no piece.
 template <bool kPlain>
@@ -327,11 +330,21 @@ HWY_INLINE void TileWorker::perspective(const Work& work, bool derivatives, F* w
   weightsAt<kPlain>(batch_, t, load(kBlockLanes.position[work.block()]), flatSecond, flatThird);
   const F slope1 = set(batch_.w[1][t]);
   const F slope2 = set(batch_.w[2][t]);
-  const F inverse = set(1.0F) / fma(flatThird, slope2, fma(flatSecond, slope1, set(batch_.w[0][t])));
+  const F least = set(batch_.leastW[t]);
+  F sum = fma(flatThird, slope2, fma(flatSecond, slope1, set(batch_.w[0][t])));
+  if (kPlain || shape_.coverage == 0) {
+    sum = max(sum, least); // what is 0 at the farthest corner, but for rounding
+  } else {                 // the centre may lie outside, beyond the horizon even
+    sum = select(max(sum, set(0.0F) - sum) >= least, sum, least);
+  }
+  const F inverse = set(1.0F) / sum;
   const F w1 = set(batch_.w1[t]);
   const F w2 = set(batch_.w2[t]);
   weights[0] = flatSecond * w1 * inverse;
   weights[1] = flatThird * w2 * inverse;
+  if (!kPlain && shape_.coverage != 0) {
+    for (std::size_t i = 0; i < 2; ++i) weights[i] = max(min(weights[i], set(kFarthestWeight)), set(-kFarthestWeight));
+  }
   if (derivatives) {
     const F scale = set(batch_.scale[t]);
     for (std::size_t axis = 0; axis < 2; ++axis) {
