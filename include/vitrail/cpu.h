@@ -266,9 +266,10 @@ typedef struct VitrailCpuFrame {
   VitrailCpuProgress progress; /* optional */
   void* progressUser;
   /* Bytes that the fragments of all tiles in work may take, at least 65536: where they need more, a tile is drawn in
-   * parts and layers, for the same picture. Default: 256 MiB, or 4 MiB a thread where that is more; tiles that
-   * need little touch little of it. Beside it a frame takes about 20 bytes a vertex, 4 to 8 bytes for each tile of 32
-   * x 32 pixels that a triangle may touch, and 4 a triangle where what is near may hide what is behind it. */
+   * parts and layers, for the same picture, and where it is less than 22 KiB a thread, on fewer threads. Default: 256
+   * MiB, or 4 MiB a thread where that is more; tiles that need little touch little of it. Beside it a frame takes about
+   * 20 bytes a vertex, 80 bytes a thread for each tile of 32 x 32 pixels, 4 to 8 bytes for each tile that a triangle may
+   * touch, and 4 a triangle where what is near may hide what is behind it. */
   uint64_t memoryBudget;
 } VitrailCpuFrame;
 
@@ -287,8 +288,8 @@ typedef struct VitrailCpuFrame {
  * real-number answer.
  *
  * Errors, with the reason in the context's log: VITRAIL_ERROR_INVALID for a field that is not as described,
- * VITRAIL_ERROR_OUT_OF_MEMORY, VITRAIL_ERROR_UNSUPPORTED where a thread cannot be started or one of the host's
- * functions throws. Then the arrays may hold a part of the picture. */
+ * VITRAIL_ERROR_OUT_OF_MEMORY, VITRAIL_ERROR_UNSUPPORTED where a thread cannot be started, one of the host's functions
+ * throws, or the draws are too many: cut into parts of up to 4,096 triangles of one draw, a frame takes 524,287. Then the arrays may hold a part of the picture. */
 VITRAIL_API VitrailResult vitrailCpuRender(VitrailCpuContext context, const VitrailCpuFrame* frame,
                                            const VitrailCpuDraw* draws, uint32_t drawCount, VitrailStats* stats);
 

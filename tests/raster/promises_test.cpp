@@ -2,9 +2,14 @@
 // depth that are not plain triangles, lanes in which nothing is, pixels that nobody draws on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <span>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include "host.h"
@@ -56,6 +61,54 @@ TEST(BudgetTest, FragmentsOfOneDepthBesideManyAreDrawnOnce) {
     EXPECT_EQ(again.layersMax, kCount) << budget;
     EXPECT_EQ(again.fragmentsRequested, stats.fragmentsRequested) << budget;
   }
+}
+
+// Takes its time in each tile, so that all threads get some.
+void shadeSlowly(void* /*user*/, VitrailCpuFragments* f) {
+  if (f->x % 32 == 0 && f->y % 32 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  for (auto& channel : f->color) std::fill_n(channel, VITRAIL_CPU_LANES, 0.01F);
+}
+
+// Threads for which there is no room do not draw.
+TEST(BudgetTest, HoldsForAnyNumberOfThreads) {
+  constexpr std::uint32_t kWide = 8 * kPromisedSide;
+  std::vector<Position> vertices;
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    const float depth = 0.01F + 0.02F * static_cast<float>(i);
+    for (const auto& [x, y] : {std::pair{-1.0F, -1.0F}, {3.0F, -1.0F}, {-1.0F, 3.0F}})
+      vertices.push_back({x, y, depth, 1.0F});
+  }
+  VitrailCpuDraw draw = drawOf(vertices);
+  draw.shade = shadeSlowly;
+  Raster one(VITRAIL_CPU_BEST, 1);
+  Raster many(VITRAIL_CPU_BEST, 64);
+  Picture whole(kWide, 32);
+  VitrailCpuFrame frame = whole.frame();
+  frame.samples = 8;
+  ASSERT_EQ(one.render(frame, {&draw, 1}), VITRAIL_SUCCESS);
+  for (const std::uint64_t budget : {65536U, 100'000U}) {
+    Picture little(kWide, 32);
+    frame.color = little.pixels.data();
+    frame.memoryBudget = budget;
+    ASSERT_EQ(many.render(frame, {&draw, 1}), VITRAIL_SUCCESS);
+    EXPECT_TRUE(little.pixels == whole.pixels) << budget;
+    EXPECT_LE(vitrailCpuFragmentBytes(many.get()), budget);
+  }
+}
+
+// Draws, and every 4,096 triangles of one, count.
+TEST(ManyDrawsTest, AreRefusedByTheirNumber) {
+  const std::vector<Position> triangle = corner();
+  VitrailCpuDraw draw = drawOf(triangle);
+  draw.vertexCount = 3'000'000'000U; // nobody reads them
+  const std::array<VitrailCpuDraw, 3> draws = {draw, draw, draw};
+  Picture picture(8, 8);
+  Raster raster;
+  EXPECT_EQ(raster.render(picture.frame(), draws), VITRAIL_ERROR_UNSUPPORTED);
+  const std::vector<std::string> lines = raster.takeLog();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NE(lines[0].find("732423 parts"), std::string::npos) << lines[0];
+  EXPECT_NE(lines[0].find("a frame takes 524287"), std::string::npos) << lines[0];
 }
 
 // The first draw is clipped, a line or a point: such are drawn in batches of their own.

@@ -91,11 +91,13 @@ class Queue {
   std::atomic<std::uint64_t> next_ = 0;
 };
 
+// On at most so many of the workers.
 template <class Work>
-void forAll(raster::Workers& workers, std::uint64_t count, Work work) {
+void forAll(raster::Workers& workers, std::uint32_t most, std::uint64_t count, Work work) {
   if (count == 0) return;
   Queue queue(count);
   workers.run([&](std::uint32_t worker) {
+    if (worker >= most) return;
     try {
       for (std::uint64_t i = 0; queue.take(i);) work(worker, i);
     } catch (...) {
@@ -129,9 +131,9 @@ VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
     bins.opaque.reset(frame.tiles());
     bins.transparent.reset(frame.tiles());
   }
-  forAll(workers, frame.vertexChunks.size(),
+  forAll(workers, workers.count(), frame.vertexChunks.size(),
          [&](std::uint32_t /*worker*/, std::uint64_t i) { stages.placeVertices(frame, frame.vertexChunks[i]); });
-  forAll(workers, frame.jobs.size(), [&](std::uint32_t worker, std::uint64_t i) {
+  forAll(workers, workers.count(), frame.jobs.size(), [&](std::uint32_t worker, std::uint64_t i) {
     stages.binJob(frame, static_cast<std::uint32_t>(i), frame.bins[worker]);
   });
 
@@ -144,7 +146,7 @@ VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
     if (each != nullptr && !each->begin(frame)) each.reset();
   }
   std::vector<raster::TileCounts> counts(workers.count());
-  forAll(workers, frame.tiles(), [&](std::uint32_t worker, std::uint64_t i) {
+  forAll(workers, frame.tileThreads, frame.tiles(), [&](std::uint32_t worker, std::uint64_t i) {
     if (progress.isGivenUp()) return;
     if (workspaces[worker] == nullptr) workspaces[worker] = stages.makeWorkspace(frame);
     raster::TileCounts tile; // not in `counts`, whose entries lie side by side: threads would wait for each other

@@ -124,6 +124,8 @@ struct FrameNeeds {
 
 // How far an 8-bit sRGB picture may be off for what is left out as hidden, in steps: as of the rasteriser for GPUs.
 constexpr float kLeftOut = 0.35F;
+// The least room for fragments that a thread can draw a tile with, in bytes.
+constexpr std::uint64_t kLeastOfThread = 22528;
 // What is behind less light than this shows nothing, however much light it sends.
 constexpr float kNoTransmittance = 1e-30F;
 
@@ -150,9 +152,10 @@ struct Frame {
   std::vector<float> opticalDepths;
   std::uint32_t tilesX = 0;
   std::uint32_t tilesY = 0;
-  bool counts = false;          // the host asks how many fragments there are, hidden or not
-  std::uint64_t budget = 0;     // bytes of one thread's fragments
-  std::vector<ThreadBins> bins; // one for each thread
+  bool counts = false;           // the host asks how many fragments there are, hidden or not
+  std::uint64_t budget = 0;      // bytes of one thread's fragments
+  std::uint32_t tileThreads = 1; // how many threads draw tiles: as many as have room for theirs
+  std::vector<ThreadBins> bins;  // one for each thread
 
   std::uint32_t tiles() const { return tilesX * tilesY; }
 

@@ -10,6 +10,7 @@ namespace {
 
 constexpr float kBrightest = 65504.0F;
 constexpr std::uint64_t kLeastBudget = 65536;
+static_assert(kLeastBudget >= kLeastOfThread);
 constexpr std::uint64_t kBudget = std::uint64_t{256} << 20U; // only what deep tiles need of it is ever touched
 constexpr std::uint64_t kBudgetOfThread = std::uint64_t{4} << 20U;
 // What is behind less light than this, for colours up to 1, changes the sRGB picture by at most kLeftOut of 1/255: the
@@ -276,9 +277,11 @@ VitrailResult checkFrame(const Log& log, const VitrailCpuFrame* frame, const Vit
     jobs += (corners / cornersOf(draw.topology) + kJobTriangles - 1) / kJobTriangles;
   }
   if (jobs > kMaxJobs) {
-    return log.fail(VITRAIL_ERROR_UNSUPPORTED,
-                    "the draws have more than 2^31 triangles, in %llu parts of up to %u: draw them in several frames",
-                    static_cast<unsigned long long>(jobs), kJobTriangles);
+    return log.fail(
+        VITRAIL_ERROR_UNSUPPORTED,
+        "the draws come in %llu parts, each of one draw and of up to %u triangles: a frame takes %u; put draws "
+        "together",
+        static_cast<unsigned long long>(jobs), kJobTriangles, kMaxJobs);
   }
   return VITRAIL_SUCCESS;
 }
@@ -298,7 +301,8 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
   frame.tilesY = (info.height + kTileSide - 1) / kTileSide;
   const std::uint64_t budget =
       info.memoryBudget == 0 ? std::max(kBudget, kBudgetOfThread * threads) : info.memoryBudget;
-  frame.budget = budget / threads;
+  frame.tileThreads = static_cast<std::uint32_t>(std::min<std::uint64_t>(threads, budget / kLeastOfThread));
+  frame.budget = budget / frame.tileThreads;
 
   frame.draws.clear();
   frame.jobs.clear();

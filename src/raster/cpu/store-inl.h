@@ -82,6 +82,9 @@ class Store {
   static constexpr std::uint32_t kNoLimit = ~0U;
   static constexpr std::uint32_t kRoomForAll = 16 * kBlocks; // chunks
 
+  static constexpr std::uint32_t kLeastChunks = 4;
+  static_assert(kLeastChunks * kChunkRows * RowShape::kMost * kVectorBytes <= kLeastOfThread);
+
   // Where pairs are is told in 32 bits, in units of 16 bytes.
   static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 36U;
 
@@ -265,7 +268,7 @@ class Store {
 
   std::uint32_t chunksWithin(std::uint64_t budget) const {
     const std::uint64_t chunks = std::min(budget, kMostBytes) / chunkBytes_;
-    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(chunks, 4, 1U << 24U));
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(chunks, kLeastChunks, 1U << 24U));
   }
 
   std::int32_t* allocate(std::size_t chunks) const {
