@@ -216,7 +216,8 @@ typedef enum VitrailCpuColorFormat {
   VITRAIL_CPU_COLOR_FORMAT_MAX_ENUM = 0x7fffffff
 } VitrailCpuColorFormat;
 
-/* Takes the sorted fragments of a pixel, nearest first, those behind opaque surfaces left out. Those of
+/* Takes the sorted fragments of a pixel, nearest first, those behind opaque surfaces left out; those of one depth in an
+ * order that does not depend on that of the draws: by what they do to light, then by blend mode and word. Those of
  * VITRAIL_BLEND_ADDITIVE and _MULTIPLY come with what they amount to at an alpha of 1. A fragment with a filter
  * (VITRAIL_CPU_SHADE_FILTER) is two layers at one depth, the first VITRAIL_BLEND_PREMULTIPLIED, the second
  * VITRAIL_BLEND_MULTIPLY. Called on several threads at once, for each pixel that has layers. x and y are in the
@@ -268,8 +269,8 @@ typedef struct VitrailCpuFrame {
   /* Bytes that the fragments of all tiles in work may take, at least 65536: where they need more, a tile is drawn in
    * parts and layers, for the same picture, and where it is less than 22 KiB a thread, on fewer threads. Default: 256
    * MiB, or 4 MiB a thread where that is more; tiles that need little touch little of it. Beside it a frame takes about
-   * 20 bytes a vertex, 80 bytes a thread for each tile of 32 x 32 pixels, 4 to 8 bytes for each tile that a triangle may
-   * touch, and 4 a triangle where what is near may hide what is behind it. */
+   * 20 bytes a vertex, 80 bytes a thread for each tile of 32 x 32 pixels, 4 to 8 bytes for each tile that a triangle
+   * may touch, and 4 a triangle where what is near may hide what is behind it. */
   uint64_t memoryBudget;
 } VitrailCpuFrame;
 
@@ -289,7 +290,8 @@ typedef struct VitrailCpuFrame {
  *
  * Errors, with the reason in the context's log: VITRAIL_ERROR_INVALID for a field that is not as described,
  * VITRAIL_ERROR_OUT_OF_MEMORY, VITRAIL_ERROR_UNSUPPORTED where a thread cannot be started, one of the host's functions
- * throws, or the draws are too many: cut into parts of up to 4,096 triangles of one draw, a frame takes 524,287. Then the arrays may hold a part of the picture. */
+ * throws, or the draws are too many: cut into parts of up to 4,096 triangles of one draw, a frame takes 524,287. Then
+ * the arrays may hold a part of the picture. */
 VITRAIL_API VitrailResult vitrailCpuRender(VitrailCpuContext context, const VitrailCpuFrame* frame,
                                            const VitrailCpuDraw* draws, uint32_t drawCount, VitrailStats* stats);
 

@@ -137,5 +137,40 @@ TEST_P(ListTest, IsBlendedByTheHost) {
   EXPECT_NEAR(static_cast<double>(own), plain.stats.coveredPixels / 2.0, plain.stats.coveredPixels / 8.0);
 }
 
+// Draws that do the same at one depth come to the hook in an order of their own, too.
+TEST(ListOrderTest, OfEqualFragmentsDoesNotDependOnThatOfDraws) {
+  for (const std::uint32_t samples : {1U, 4U}) {
+    const std::vector<Position> triangle = {
+        {-1.0F, -1.0F, 0.5F, 1.0F}, {3.0F, -1.0F, 0.5F, 1.0F}, {-1.0F, 3.0F, 0.5F, 1.0F}};
+    std::vector<VitrailCpuDraw> draws(5, drawOf(triangle));
+    for (std::uint32_t i = 0; i < draws.size(); ++i) {
+      std::fill_n(draws[i].color, 4, 0.5F);
+      draws[i].word = 5 - i;
+      if (i % 2 == 0) continue; // of the same light
+      draws[i].blend = VITRAIL_BLEND_PREMULTIPLIED;
+      std::fill_n(draws[i].color, 3, 0.25F);
+    }
+    Raster raster;
+    const auto wordsOf = [&] {
+      std::vector<std::uint32_t> words;
+      Picture picture(1, 1);
+      VitrailCpuFrame frame = picture.frame();
+      frame.samples = samples;
+      frame.list = [](void* user, std::uint32_t, std::uint32_t, const VitrailLayer* layers, std::uint32_t count,
+                      float*) {
+        for (std::uint32_t i = 0; i < count; ++i)
+          static_cast<std::vector<std::uint32_t>*>(user)->push_back(layers[i].word);
+        return 0;
+      };
+      frame.listUser = &words;
+      EXPECT_EQ(raster.render(frame, draws), VITRAIL_SUCCESS);
+      return words;
+    };
+    EXPECT_EQ(wordsOf(), (std::vector<std::uint32_t>{1, 3, 5, 2, 4})) << samples << " samples";
+    std::reverse(draws.begin(), draws.end());
+    EXPECT_EQ(wordsOf(), (std::vector<std::uint32_t>{1, 3, 5, 2, 4})) << samples << " samples, reversed";
+  }
+}
+
 } // namespace
 } // namespace vitrail::tests::raster

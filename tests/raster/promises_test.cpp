@@ -388,6 +388,59 @@ TEST(FilterTest, LetsAllThroughAtMost) {
   EXPECT_EQ(picture.at(2, 2)[0], 0.5F);
 }
 
+// ---- Light that is no number
+
+// Filters whose product is more than a float holds.
+TEST(FilterTest, ProductsBeyondAllNumbersAreNumbers) {
+  std::vector<Position> middle;
+  std::vector<Position> back;
+  for (int i = 0; i < 12; ++i) {
+    for (const Position& p : corner()) middle.push_back({p[0], p[1], 0.2F + 0.01F * static_cast<float>(i), 1.0F});
+  }
+  for (const Position& p : corner()) back.push_back({p[0], p[1], 0.9F, 1.0F});
+  std::array<VitrailCpuDraw, 2> draws{drawOf(middle), drawOf(back)};
+  draws[0].blend = draws[1].blend = VITRAIL_BLEND_MULTIPLY;
+  std::fill_n(draws[0].color, 3, 65504.0F);
+  draws[1].color[2] = 1.0F;
+  draws[0].color[3] = draws[1].color[3] = 1.0F;
+  for (const VitrailCpuInstructions instructions : instructionsHere()) {
+    Raster raster(instructions);
+    for (const std::uint32_t samples : {1U, 4U}) {
+      // Over darkness and light; then darkness by a filter behind them; then black that hides.
+      for (int kind = 0; kind < 3; ++kind) {
+        draws[1].blend = kind == 2 ? VITRAIL_BLEND_OVER : VITRAIL_BLEND_MULTIPLY;
+        Picture picture(kPromisedSide, kPromisedSide, {0.0F, 1.0F, 1e-3F, 1.0F});
+        VitrailCpuFrame frame = picture.frame();
+        frame.samples = samples;
+        ASSERT_EQ(raster.render(frame, std::span(draws).first(kind == 0 ? 1 : 2)), VITRAIL_SUCCESS);
+        const float* pixel = picture.at(2, 2);
+        EXPECT_EQ(pixel[0], 0.0F) << kind;
+        EXPECT_TRUE(kind == 0 ? pixel[1] > 1e38F : pixel[1] == 0.0F) << kind << ": " << pixel[1];
+        EXPECT_GT(pixel[2], 1e35F) << kind;
+        EXPECT_EQ(pixel[3], 1.0F) << kind;
+      }
+    }
+  }
+}
+
+TEST(BehindTest, WhatIsHiddenMayBeAnything) {
+  const std::vector<Position> triangle = corner();
+  VitrailCpuDraw draw = drawOf(triangle);
+  draw.color[1] = 0.5F;
+  draw.color[3] = 1.0F;
+  Raster raster;
+  for (const float behind : {INFINITY, NAN}) {
+    for (const std::uint32_t samples : {1U, 2U}) {
+      Picture picture(kPromisedSide, kPromisedSide, {behind, behind, behind, behind});
+      VitrailCpuFrame frame = picture.frame();
+      frame.samples = samples;
+      ASSERT_EQ(raster.render(frame, {&draw, 1}), VITRAIL_SUCCESS);
+      const float* pixel = picture.at(2, 2);
+      EXPECT_TRUE(pixel[0] == 0.0F && pixel[1] == 0.5F && pixel[3] == 1.0F) << behind << ", " << samples << " samples";
+    }
+  }
+}
+
 void shadeBright(void* /*user*/, VitrailCpuFragments* f) {
   for (std::size_t i = 0; i < VITRAIL_CPU_LANES; ++i) {
     for (auto& channel : f->color) channel[i] = 50'000.0F;

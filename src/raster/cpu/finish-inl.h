@@ -117,7 +117,12 @@ inline SortedRows TileWorker::sortBlock(const Frame& frame, std::uint32_t block)
     // What comes first is told by what the fragments do.
     if (!sorted.isShaded) shadeRowsFrom(frame, block, store_.shadedRows(block));
     sorted.isShaded = true;
-    orderTies(sorted, frame.needs.filters);
+    if (frame.info.list == nullptr) {
+      orderTies(sorted, frame.needs.filters, [](std::uint64_t, std::size_t) { return 0; });
+    } else { // the hook sees more of them than what they do
+      orderTies(sorted, frame.needs.filters,
+                [&](std::uint64_t key, std::size_t lane) { return hookOrderOf(frame, key, lane); });
+    }
   }
   return sorted;
 }
@@ -204,10 +209,29 @@ inline void TileWorker::coveragesOf(const SortedRows& sorted, std::uint32_t* cov
   }
 }
 
+// What tells fragments apart that do the same, for those that see all of it.
+inline std::array<std::uint32_t, 4> TileWorker::hookOrderOf(const Frame& frame, std::uint64_t key,
+                                                            std::size_t lane) const {
+  const std::int32_t* const values = rowAt(static_cast<std::uint32_t>(key), lane) + lane;
+  const VitrailCpuDraw& draw = drawOfNumber(frame, values[kLanes * RowShape::kNumber]);
+  const std::int32_t coverage = shape_.coverage == 0 ? 1 : values[kLanes * shape_.coverage];
+  return {static_cast<std::uint32_t>(draw.blend), draw.shadeFlags & VITRAIL_CPU_SHADE_FILTER, draw.word,
+          static_cast<std::uint32_t>(coverage)};
+}
+
+inline const VitrailCpuDraw& TileWorker::drawOfNumber(const Frame& frame, std::int32_t number) {
+  const std::uint32_t job = (static_cast<std::uint32_t>(number) & ~kFrontBit) >> kJobBits;
+  return frame.draws[frame.jobs[job].draw].draw;
+}
+
 // The row of a sorted fragment. Of flat ones, whose place is that of their draw's pair, nobody asks: with several
 // samples or a hook everything is shaded (frame_rules.cpp).
 inline Row TileWorker::rowOf(const SortedRows& sorted, std::size_t r, std::size_t lane) const {
-  const std::size_t first = sorted.placeOf(r, lane) - placeOfFour(lane); // of the row's pairs, in units of four
+  return rowAt(sorted.placeOf(r, lane), lane);
+}
+
+inline Row TileWorker::rowAt(std::uint32_t place, std::size_t lane) const {
+  const std::size_t first = place - placeOfFour(lane); // of the row's pairs, in units of four
   return store_.arena() + first * 4 - kLanes * RowShape::kPairs;
 }
 
@@ -379,8 +403,7 @@ inline void TileWorker::layersOf(const Frame& frame, const SortedRows& sorted, s
     const std::uint32_t key = sorted.depthKeyOf(r, lane);
     if (key >= static_cast<std::uint32_t>(kFarKey)) break;
     const Row row = rowOf(sorted, r, lane);
-    const auto number = static_cast<std::uint32_t>(row[kLanes * RowShape::kNumber + lane]) & ~kFrontBit;
-    const VitrailCpuDraw& draw = frame.draws[frame.jobs[number >> kJobBits].draw].draw;
+    const VitrailCpuDraw& draw = drawOfNumber(frame, row[kLanes * RowShape::kNumber + lane]);
     const bool isOne = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE;
     const std::int32_t bits =
         isOne ? kOneBits + kNearestKey - static_cast<std::int32_t>(key) : static_cast<std::int32_t>(key) - kNearestKey;

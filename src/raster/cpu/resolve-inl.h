@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "raster/cpu/colors-inl.h"
@@ -72,8 +73,11 @@ HWY_INLINE bool hasTies(const double* keys, std::size_t rows) {
   return false;
 }
 
-// Fragments of one depth in a pixel are ordered by what they do, never by when they came.
-HWY_NOINLINE inline void orderTies(const SortedRows& sorted, bool filters) {
+// Fragments of one depth in a pixel are ordered by what they do, never by when they came; those that do the same by
+// what restOf(key, lane) gives.
+template <class RestOf>
+HWY_NOINLINE void orderTies(const SortedRows& sorted, bool filters, RestOf restOf) {
+  std::size_t lane = 0;
   const auto compareBits = [](const void* a, const void* b, std::size_t floats) {
     return std::memcmp(a, b, floats * sizeof(float));
   };
@@ -84,11 +88,12 @@ HWY_NOINLINE inline void orderTies(const SortedRows& sorted, bool filters) {
     const int byPair = compareBits(sorted.pairs + at, sorted.pairs + bt, 4);
     if (sorted.pairs[at + 3] != sorted.pairs[bt + 3]) return sorted.pairs[at + 3] > sorted.pairs[bt + 3];
     if (byPair != 0) return byPair < 0;
-    return filters && compareBits(sorted.filters + at, sorted.filters + bt, 3) < 0;
+    const int byFilter = filters ? compareBits(sorted.filters + at, sorted.filters + bt, 3) : 0;
+    return byFilter != 0 ? byFilter < 0 : restOf(a, lane) < restOf(b, lane);
   };
   const auto depthOf = [](std::uint64_t key) { return static_cast<std::uint32_t>(key >> 32U); };
   std::vector<std::uint64_t> group;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+  for (; lane < kLanes; ++lane) {
     std::uint64_t last = sorted.keyOf(0, lane);
     for (std::size_t r = 1; r < sorted.rows; ++r) {
       const std::uint64_t key = sorted.keyOf(r, lane);
@@ -130,9 +135,11 @@ HWY_INLINE M isAlive(const Blended& b, const F& least) {
 template <bool kFilters>
 HWY_INLINE void put(Blended& b, const M& alive, const F* color, const F& alpha, const F* filter) {
   if constexpr (kFilters) {
+    // Filters may multiply light beyond what a float holds, and an infinite filter makes a NaN of darkness.
+    const F most = set(std::numeric_limits<float>::max());
     for (std::size_t c = 0; c < 3; ++c) {
       b.color[c] = fma(keep(alive, b.filter[c]), color[c], b.color[c]);
-      b.filter[c] = select(alive, b.filter[c] * filter[c], b.filter[c]);
+      b.filter[c] = select(alive, min(b.filter[c] * filter[c], most), b.filter[c]);
     }
     b.through = select(alive, fnma(b.through, alpha, b.through), b.through);
   } else {
@@ -211,15 +218,16 @@ HWY_INLINE void blendSamples(const SortedRows& sorted, const std::uint32_t* cove
   }
 }
 
-// Over what is behind: r, g, b, alpha.
+// Over what is behind: r, g, b, alpha. Where none of it shows it may be anything, infinite, too.
 template <bool kFilters>
 HWY_INLINE void over(const Blended& b, float leastTransmittance, F* behind) {
   const M alive = isAlive<kFilters>(b, set(leastTransmittance));
   const F through = keep(alive, b.through);
   for (std::size_t c = 0; c < 3; ++c) {
-    behind[c] = fma(kFilters ? keep(alive, b.filter[c]) : through, behind[c], b.color[c]);
+    const F light = kFilters ? keep(alive, b.filter[c]) : through;
+    behind[c] = fma(light, keep(light > set(0.0F), behind[c]), b.color[c]);
   }
-  behind[3] = fma(through, behind[3], set(1.0F) - through);
+  behind[3] = fma(through, keep(through > set(0.0F), behind[3]), set(1.0F) - through);
 }
 
 } // namespace vitrail::raster::HWY_NAMESPACE

@@ -273,7 +273,10 @@ class TileWorker final : public TileWorkspace {
   static bool isHidden(const Frame& frame, const State& state);
   void blendInto(const Frame& frame, std::uint32_t block, const SortedRows& sorted, State& state);
   void coveragesOf(const SortedRows& sorted, std::uint32_t* coverages) const;
+  std::array<std::uint32_t, 4> hookOrderOf(const Frame& frame, std::uint64_t key, std::size_t lane) const;
+  static const VitrailCpuDraw& drawOfNumber(const Frame& frame, std::int32_t number);
   Row rowOf(const SortedRows& sorted, std::size_t r, std::size_t lane) const;
+  Row rowAt(std::uint32_t place, std::size_t lane) const;
   void behind(const Frame& frame, std::uint32_t block, std::uint32_t sample, F* color);
   void behindAll(const Frame& frame, std::uint32_t block, std::uint32_t sample, F* color);
   float* pixelsOf(const Frame& frame, std::uint32_t block, std::size_t& stride) const;
