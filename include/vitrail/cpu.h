@@ -14,11 +14,12 @@
  *
  * Coverage is that of graphics hardware, bit for bit: corners are rounded to 1/256 pixel, edges are exact, pixels (or
  * samples, at Vulkan's standard places) on an edge belong to the triangle of which it is a top or left edge. A triangle
- * that reaches over the near plane or far out of the picture is clipped.
+ * that reaches over the near plane or far out of the picture is clipped, in doubles: corners may be 10^10 times as far
+ * away as the picture is wide. Where one has a coordinate that is no finite number nothing of it is drawn.
  *
  * Depth and the position within a triangle are interpolated in 32-bit floats from exact edge functions: depth is off by
- * at most 2^-22 of the largest depth of the triangle's corners, barycentric coordinates by at most 2^-20, whatever the
- * triangle's shape.
+ * at most 2^-22 of the largest depth of the triangle's corners, barycentric coordinates by at most 2^-20, times how
+ * many times as large the w of one corner is as that of another, whatever the triangle's shape.
  *
  * The same frame gives the same bits for any number of threads and any order of transparent draws, as far as what is
  * shaded is the same; of opaque surfaces at one depth the one that is drawn last shows. Between instruction sets

@@ -351,7 +351,7 @@ TEST(NowhereTest, IsNotDrawn) {
   for (const VitrailCpuInstructions instructions : instructionsHere()) {
     Raster raster(instructions);
     for (const Position& corner : hard) {
-      const bool isNan = std::isnan(corner[0] + corner[1] + corner[2] + corner[3]);
+      const bool isFinite = std::isfinite(0.0F * (corner[0] + corner[1] + corner[2] + corner[3]));
       for (const VitrailCpuTopology topology : {VITRAIL_CPU_TRIANGLES, VITRAIL_CPU_LINES, VITRAIL_CPU_POINTS}) {
         std::vector<Position> positions(6, corner);
         positions[1] = {1.0F, -1.0F, 0.5F, 1.0F};
@@ -364,9 +364,7 @@ TEST(NowhereTest, IsNotDrawn) {
         VitrailStats stats{};
         ASSERT_EQ(raster.render(picture.frame(), {&nowhere, 1}, &stats), VITRAIL_SUCCESS);
         for (const float value : picture.pixels) ASSERT_TRUE(std::isfinite(value));
-        // Of what only has an infinite coordinate, clipping may leave something.
-        EXPECT_TRUE(!isNan || topology == VITRAIL_CPU_LINES || stats.coveredPixels == 0)
-            << corner[0] << " " << corner[3];
+        EXPECT_TRUE(isFinite || stats.coveredPixels == 0) << corner[0] << " " << corner[3] << ", " << topology;
       }
     }
   }
@@ -376,6 +374,33 @@ TEST(NowhereTest, IsNotDrawn) {
 TEST(FarAwayTest, CoversHalfOfThePicture) {
   const std::vector<Position> far{{1e6F, 0.0F, 0.5F, 1.0F}, {0.0F, -1e6F, 0.5F, 1.0F}, {0.0F, 1e6F, 0.5F, 1.0F}};
   EXPECT_EQ(coveredPixels(drawOf(far), 40), 800U);
+}
+
+// Both ends of an edge so far away that floats round what lies between them to anything.
+TEST(FarAwayTest, EdgesThroughThePictureStayWhereTheyAre) {
+  for (const float far : {1e4F, 1.1e6F, 1.3e8F, 1.7e10F}) {
+    // Below a quarter of the lower half; over all of it.
+    const std::vector<Position> below{
+        {-far, 0.25F, 0.5F, 1.0F}, {far, 0.25F, 0.5F, 1.0F}, {0.3F * far, far, 0.5F, 1.0F}};
+    EXPECT_EQ(coveredPixels(drawOf(below), 64), 24U * 64U) << far;
+    const std::vector<Position> all{
+        {-far, -far, 0.5F, 1.0F}, {far, 0.1F * far, 0.5F, 1.0F}, {-far, 0.9F * far, 0.5F, 1.0F}};
+    EXPECT_EQ(coveredPixels(drawOf(all), 64), 64U * 64U) << far;
+  }
+}
+
+// A floor of which the near plane cuts off what is behind the eye, as much again, and its edge right of the middle.
+TEST(FarAwayTest, FloorsBeginAtTheEye) {
+  constexpr double kNear = 0.01;
+  for (const double extent : {1e3, 1e5, 1e6, 1e7, 1e8}) {
+    const double far = 1.01 * extent;
+    const auto at = [&](double x, double z) {
+      return Position{static_cast<float>(x), 1.0F, static_cast<float>((z - kNear) * far / (far - kNear)),
+                      static_cast<float>(z)};
+    };
+    const std::vector<Position> floor{at(0.003, -extent), at(0.003, extent), at(extent, 0.0)};
+    EXPECT_EQ(coveredPixels(drawOf(floor), 256), 128U * 128U) << extent;
+  }
 }
 
 } // namespace
