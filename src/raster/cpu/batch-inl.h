@@ -183,7 +183,7 @@ HWY_INLINE M setUpDepth(Batch& batch, std::uint32_t at, const I* x, const I* y, 
 // that of the farthest corner.
 constexpr float kBeyondCorners = 1.0F / 1024.0F;
 
-HWY_INLINE void setUpValues(Batch& batch, std::uint32_t at, const F* z, const F* inverseW, std::uint32_t samples) {
+HWY_INLINE void setUpPerspective(Batch& batch, std::uint32_t at, const F* inverseW, std::uint32_t samples) {
   // Times a power of two, so that the largest is at least 1 and below 2: products of the smallest and the largest w
   // that there are have no place in a float. What is less than 2^-60 of the largest decides nothing farther from its
   // corner than that.
@@ -193,9 +193,6 @@ HWY_INLINE void setUpValues(Batch& batch, std::uint32_t at, const F* z, const F*
   for (std::size_t i = 0; i < 3; ++i) w[i] = max(inverseW[i] * scale, set(0x1.0p-60F));
   const F least = min(w[0], min(w[1], w[2]));
   store(batch.leastW + at, samples == 1 ? least : least * set(kBeyondCorners));
-  store(batch.z[0] + at, z[0]);
-  store(batch.z[1] + at, z[1] - z[0]);
-  store(batch.z[2] + at, z[2] - z[0]);
   store(batch.w[0] + at, w[0]);
   store(batch.w[1] + at, w[1] - w[0]);
   store(batch.w[2] + at, w[2] - w[0]);
@@ -276,7 +273,10 @@ HWY_INLINE std::uint32_t setUpSixteen(Batch& batch, const Staged& staged, std::u
   store(batch.big + at, keep(isBig, set(1)));
   batch.isBig = batch.isBig || !none(kept & isBig);
   const M careful = setUpDepth(batch, at, x, y, z, s, samples);
-  setUpValues(batch, at, z, w, samples);
+  store(batch.z[0] + at, z[0]);
+  store(batch.z[1] + at, z[1] - z[0]);
+  store(batch.z[2] + at, z[2] - z[0]);
+  if (weights) setUpPerspective(batch, at, w, samples);
   if (weights || !none(kept & careful)) setUpWeights(batch, at, s);
   store(batch.number + at, load(staged.number + at) | keep(isFront, set(static_cast<std::int32_t>(kFrontBit))));
   return ~bitsOf(unclipped) & 0xffffU;

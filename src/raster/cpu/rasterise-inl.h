@@ -317,7 +317,8 @@ inline bool TileWorker::drawBatch(const Frame& frame, const Staged& staged, cons
   return emit(count);
 }
 
-// Those of a pixel's centre that is not covered grow beyond all bounds towards the horizon.
+// Weights at a pixel's centre that is not covered grow without bound towards the horizon: how they change has to be a
+// number all the same.
 constexpr float kFarthestWeight = 0x1.0p20F;
 
 // Perspective-correct weights of what the host handed over, and how they change: second, third, and with derivatives
@@ -342,10 +343,11 @@ HWY_INLINE void TileWorker::perspective(const Work& work, bool derivatives, F* w
   const F w2 = set(batch_.w2[t]);
   weights[0] = flatSecond * w1 * inverse;
   weights[1] = flatThird * w2 * inverse;
-  if (!kPlain && shape_.coverage != 0) {
-    for (std::size_t i = 0; i < 2; ++i) weights[i] = max(min(weights[i], set(kFarthestWeight)), set(-kFarthestWeight));
-  }
   if (derivatives) {
+    if (!kPlain && shape_.coverage != 0) {
+      for (std::size_t i = 0; i < 2; ++i)
+        weights[i] = max(min(weights[i], set(kFarthestWeight)), set(-kFarthestWeight));
+    }
     const F scale = set(batch_.scale[t]);
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const auto& edges = axis == 0 ? batch_.a : batch_.b;
