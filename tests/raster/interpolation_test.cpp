@@ -201,5 +201,52 @@ TEST(InterpolationTest, InStrongPerspective) {
   expectValues(triangles(random, 1500, 15.0, 7.0), "w up to 16,384 times as large");
 }
 
+// ---- Depth at samples, as opaque triangles leave it
+
+void expectSampleDepths(const std::vector<Position>& positions, const std::string& what) {
+  const vitrail::raster::Viewport viewport{kWeightsSide, kWeightsSide, 0, 0, false, false};
+  for (const VitrailCpuInstructions instructions : instructionsHere()) {
+    Raster raster(instructions);
+    for (const std::uint32_t samples : {2U, 4U, 8U}) {
+      std::uint64_t covered = 0;
+      double worst = 0.0;
+      for (std::size_t i = 0; i < positions.size(); i += 3) {
+        const std::array<Corner, 3> corners = {vitrail::raster::placed(viewport, positions[i]),
+                                               vitrail::raster::placed(viewport, positions[i + 1]),
+                                               vitrail::raster::placed(viewport, positions[i + 2])};
+        const TrueValues truth(corners);
+        VitrailCpuDraw draw = drawOf(positions);
+        draw.positions = positions[i].data();
+        draw.vertexCount = 3;
+        draw.surface = VITRAIL_CPU_OPAQUE;
+        Picture picture(kWeightsSide, kWeightsSide);
+        std::vector<float> depth(std::size_t{kWeightsSide} * kWeightsSide * samples, 1.0F);
+        VitrailCpuFrame frame = picture.frame();
+        frame.samples = samples;
+        frame.depth = depth.data();
+        ASSERT_EQ(raster.render(frame, {&draw, 1}), VITRAIL_SUCCESS);
+        for (std::size_t at = 0; at < depth.size(); ++at) {
+          if (depth[at] == 1.0F) continue;
+          const auto pixel = static_cast<std::int64_t>(at / samples);
+          const auto place = vitrail::raster::samplePlaces(samples)[at % samples];
+          const Values values =
+              truth.at(pixel % kWeightsSide * 256 + place.x * 16, pixel / kWeightsSide * 256 + place.y * 16);
+          const auto error = static_cast<double>(std::fabs(depth[at] - values.depth));
+          worst = std::max(worst, error / (0x1.0p-22 * double{truth.largestDepth()}));
+          ++covered;
+        }
+      }
+      EXPECT_GT(covered, 200U) << what;
+      EXPECT_LE(worst, 1.0) << what << ", " << samples << " samples, " << nameOf(instructions);
+    }
+  }
+}
+
+TEST(InterpolationTest, OfDepthAtSamples) {
+  Random random(34);
+  expectSampleDepths(triangles(random, 100, 15.0, 1.0), "ordinary triangles");
+  expectSampleDepths(slivers(random, 300, 60.0, 1.0), "slivers");
+}
+
 } // namespace
 } // namespace vitrail::tests::raster

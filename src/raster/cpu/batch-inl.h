@@ -315,6 +315,21 @@ HWY_INLINE F depthAt(const Batch& batch, std::uint32_t t, const I& position, con
   return fma(third, set(batch.z[2][t]), fma(second, set(batch.z[1][t]), set(batch.z[0][t])));
 }
 
+// Of a careful one depth at a sample of the block's pixels, from the weights there: a pixel's centre may lie so far
+// outside that a step from its depth would round more than is promised.
+HWY_NOINLINE inline F carefulDepthAt(const Batch& batch, std::uint32_t t, const I& position, const SamplePlace& place) {
+  const D x =
+      exactly(position & set(0xffff)) * setDouble(kSubpixels) + setDouble(place.x * (kSubpixels / 16) - kSubpixels / 2);
+  const D y = exactly(shiftRight<16>(position)) * setDouble(kSubpixels) +
+              setDouble(place.y * (kSubpixels / 16) - kSubpixels / 2);
+  F weights[2];
+  for (std::size_t k = 0; k < 2; ++k) {
+    const D e = setDouble(batch.exactC[k][t]) + (setDouble(batch.a[k + 1][t]) * x + setDouble(batch.b[k + 1][t]) * y);
+    weights[k] = toFloat(e * setDouble(batch.inverseArea[t]));
+  }
+  return fma(weights[1], set(batch.z[2][t]), fma(weights[0], set(batch.z[1][t]), set(batch.z[0][t])));
+}
+
 } // namespace vitrail::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

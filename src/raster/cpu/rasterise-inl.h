@@ -387,8 +387,14 @@ HWY_INLINE std::uint32_t TileWorker::testDepth(const Frame& frame, const Work& w
     return work.pixels() & ~bitsOf(keys[0] > load(opaque_->depth[0].value[work.block()]));
   }
   std::uint32_t any = 0;
+  const std::uint32_t t = work.triangle();
+  const bool isCareful = batch_.careful[t] != 0;
   for (std::uint32_t s = 0; s < samples; ++s) {
-    keys[s] = keyOfInner(depth + set(batch_.sampleDepth[s][work.triangle()]), nearestIsOne);
+    F own = depth + set(batch_.sampleDepth[s][t]);
+    if (HWY_UNLIKELY(isCareful)) {
+      own = carefulDepthAt(batch_, t, load(kBlockLanes.position[work.block()]), samplePlaces(samples)[s]);
+    }
+    keys[s] = keyOfInner(own, nearestIsOne);
     std::uint16_t& mask = sampleMasks_[s][item];
     mask = static_cast<std::uint16_t>(mask & ~bitsOf(keys[s] > load(opaque_->depth[s].value[work.block()])));
     any |= mask;
