@@ -159,8 +159,9 @@ typedef enum VitrailCpuCull {
   VITRAIL_CPU_CULL_MAX_ENUM = 0x7fffffff
 } VitrailCpuCull;
 
-/* The most clip planes of a draw. */
+/* The most clip planes of a draw, and pixels of a point's side. */
 #define VITRAIL_CPU_MAX_CLIP_PLANES 8
+#define VITRAIL_CPU_MAX_POINT_SIZE 2048
 
 typedef struct VitrailCpuDraw {
   const void* next; /* null */
@@ -185,7 +186,7 @@ typedef struct VitrailCpuDraw {
    * `transform` and after `model`. At most VITRAIL_CPU_MAX_CLIP_PLANES. */
   const float* clipPlanes;
   uint32_t clipPlaneCount;
-  float pointSize; /* of points; default 1 */
+  float pointSize; /* of points, at most VITRAIL_CPU_MAX_POINT_SIZE; default 1 */
   float color[4];  /* where `shade` is null: linear r, g, b, alpha, as `blend` takes them */
   VitrailCpuShade shade;
   void* shadeUser;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "png_reader.h"
@@ -258,6 +259,24 @@ TEST(Device, ALargePictureIsDrawnInBands) {
   EXPECT_EQ(report.at("tiles"), 2);
   EXPECT_TRUE(report.at("passes_ms").contains("encode")) << report;
   EXPECT_EQ(readPng(folder.file("a.png")).height, 2560U);
+}
+
+TEST(Device, PointsOfTheProcessorAreAsLargeAsMayBe) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.file("point.ply"))
+      << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+         "property float z\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+  const auto draw = [&](const Words& what) {
+    Words words = {"render", "--device", "cpu", "--size", "48x32", "-o", "a.png", "--point-size", "5000"};
+    words.insert(words.end(), what.begin(), what.end());
+    return vitrail(words, {.folder = folder.path(), .environment = {}, .running = {}});
+  };
+  const ProcessResult points = draw({"point.ply"});
+  EXPECT_EQ(points.exitCode, 0) << points.error;
+  EXPECT_NE(points.error.find("points of 5000 pixels are drawn with 2048"), std::string::npos) << points.error;
+  const ProcessResult others = draw({"--scene", "interlocked"});
+  EXPECT_EQ(others.exitCode, 0) << others.error;
+  EXPECT_EQ(others.error.find("points"), std::string::npos) << others.error;
 }
 
 TEST(Device, MemoryThatIsNotThereIsOneLine) {

@@ -214,7 +214,7 @@ void CpuScene::Impl::describe(Group& group, const Scene& scene, VitrailCpuInstru
   draw.indices = group.surface.mesh.indices;
   draw.indexCount = static_cast<std::uint32_t>(mesh.indices.size());
   draw.clipPlaneCount = static_cast<std::uint32_t>(scene.clipPlanes.size());
-  draw.pointSize = scene.pointSize;
+  draw.pointSize = cpuPointSize(scene);
   const ShadeFunction function = shadeFunction(group.surface, instructions);
   draw.shade = function.shade;
   draw.shadeFlags = function.flags;
@@ -268,6 +268,8 @@ std::span<const VitrailCpuDraw> CpuScene::Impl::draws(const View& view, std::uin
   for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].brightest = brightest[groupOf_[i]];
   return draws_;
 }
+
+float cpuPointSize(const Scene& scene) { return std::min(scene.pointSize, float{VITRAIL_CPU_MAX_POINT_SIZE}); }
 
 bool CpuScene::Impl::hasTransparent() const { return !groups_.empty() && groups_.back().isTransparent; }
 

@@ -47,6 +47,9 @@ class CpuScene {
   std::unique_ptr<Impl> impl_;
 };
 
+// How many pixels the scene's points are across as the rasteriser draws them: it has a largest size.
+float cpuPointSize(const Scene& scene);
+
 // Fills `rows` rows, from `firstRow` on, of a picture's background: RGBA32F, linear, premultiplied; `rgba` is where the
 // first of them begins, without gaps between them.
 void drawBackground(const Background& background, const View& view, std::uint32_t width, std::uint32_t height,

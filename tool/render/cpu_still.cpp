@@ -197,6 +197,7 @@ struct CpuStillRenderer::Totals {
 struct CpuStillRenderer::Impl {
   MethodOptions method;
   Rasterizer rasterizer;
+  std::vector<std::string> warnings; // of the scene
   CpuScene scene;
   std::string device;
   std::span<const VitrailCpuDraw> draws; // of the picture at hand
@@ -204,7 +205,18 @@ struct CpuStillRenderer::Impl {
 
   template <class GivenScene>
   Impl(GivenScene&& given, std::optional<float> opacity, DrawOrder order, const MethodOptions& chosen)
-      : method(chosen), scene(std::forward<GivenScene>(given), opacity, order), device(rasterizer.name()) {}
+      : method(chosen),
+        warnings(pointWarnings(given)),
+        scene(std::forward<GivenScene>(given), opacity, order),
+        device(rasterizer.name()) {
+    warnings.insert(warnings.begin(), scene.warnings().begin(), scene.warnings().end());
+  }
+
+  std::vector<std::string> pointWarnings(const Scene& given) const {
+    std::vector<std::string> made;
+    warnOfPoints(given, cpuPointSize(given), rasterizer.name(), made);
+    return made;
+  }
 
   FrameReport draw(const RenderOptions& picture, Encoded* encoded);
   void drawCodes(const RenderOptions& picture, VitrailCpuFrame& frame, Encoded& encoded, Totals& totals);
@@ -317,7 +329,7 @@ void CpuStillRenderer::Impl::finish(FrameReport& report, const RenderOptions& pi
   report.height = picture.height;
   report.samples = method.samples;
   report.peeled = picture.peel;
-  report.warnings = scene.warnings();
+  report.warnings = warnings;
   report.peakBytes = peakMemory();
   report.passesMs = passes;
   for (const auto& [name, milliseconds] : passes) report.frameMs += milliseconds;

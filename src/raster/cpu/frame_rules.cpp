@@ -61,7 +61,9 @@ const char* whatIsWrongWithVertices(const VitrailCpuDraw& draw) {
   }
   if (draw.clipPlaneCount > VITRAIL_CPU_MAX_CLIP_PLANES) return "more than VITRAIL_CPU_MAX_CLIP_PLANES clip planes";
   if (draw.clipPlaneCount > 0 && draw.clipPlanes == nullptr) return "clipPlanes is null";
-  if (!(draw.pointSize >= 0.0F) || draw.pointSize > 2048.0F) return "pointSize is not between 0 and 2048";
+  if (!(draw.pointSize >= 0.0F) || draw.pointSize > VITRAIL_CPU_MAX_POINT_SIZE) {
+    return "pointSize is not between 0 and VITRAIL_CPU_MAX_POINT_SIZE (2048)";
+  }
   if (draw.indices == nullptr && draw.indexCount > 0) return "indices is null";
   const std::uint32_t count = draw.indices == nullptr ? draw.vertexCount : draw.indexCount;
   if (count % cornersOf(draw.topology) != 0)
