@@ -277,9 +277,10 @@ typedef struct VitrailCpuFrame {
 } VitrailCpuFrame;
 
 /* Draws a frame. `stats` is optional: a frame without it is faster where much is hidden, which need not be counted
- * then; the picture is the same. `exact` and `complete` are 1 for every frame that was not given up, fragmentsRequested
- * counts the transparent fragments in front of opaque surfaces (as far as they are known: those behind what is nearly
- * opaque may be left out before they are counted; layersMax and coveredPixels likewise), fragmentsMissing is 0.
+ * then; the picture is the same. `exact` and `complete` are 1 for every frame that was not given up (`exact` is 0 where
+ * more than 98,000 surfaces of a pixel may add light without hiding any, see below), fragmentsRequested counts the
+ * transparent fragments in front of opaque surfaces (as far as they are known: those behind what is nearly opaque may
+ * be left out before they are counted; layersMax and coveredPixels likewise), fragmentsMissing is 0.
  *
  * A fragment is not blended, and where that saves time not shaded, where so little light comes through what is in front
  * of it, at most 0.000106 divided by the brightest colour of the frame (see VitrailCpuDraw::brightest; at least 1),

@@ -268,6 +268,32 @@ TEST(LittleLightTest, AddsUp) {
   }
 }
 
+// Lights that are rounded the same way each time.
+TEST(ManyLightsTest, AreWithinTheErrorBound) {
+  constexpr std::uint32_t kLights = 40'000;
+  constexpr double kLight = 100.4 * 0x1.0p-24;
+  std::vector<Position> first;
+  std::vector<Position> others;
+  addFull(first, 0.1F);
+  for (std::uint32_t i = 0; i < kLights; ++i) addFull(others, 0.2F + 1e-5F * static_cast<float>(i));
+  std::vector<VitrailCpuDraw> draws{drawOf(first), drawOf(others)};
+  for (VitrailCpuDraw& draw : draws) {
+    draw.blend = VITRAIL_BLEND_ADDITIVE;
+    draw.color[3] = 1.0F;
+  }
+  draws[0].color[0] = 0.5F;
+  draws[1].color[0] = static_cast<float>(kLight);
+  Raster raster;
+  Picture picture(1, 1);
+  VitrailStats stats{};
+  ASSERT_EQ(raster.render(picture.frame(), draws, &stats), VITRAIL_SUCCESS);
+  EXPECT_EQ(stats.layersMax, kLights + 1);
+  EXPECT_EQ(stats.exact, 1U);
+  const double error = std::fabs(srgbOf(picture.pixels[0]) - srgbOf(0.5 + kLight * kLights)) * 255.0;
+  EXPECT_GT(error, 0.1); // that it is a hard case
+  EXPECT_LE(error, double{stats.errorBound} - 0.5);
+}
+
 // Filters that make light brighter, behind a surface that lets next to none through.
 TEST(LittleLightTest, IsNotMadeBrightAgainUnseen) {
   std::vector<Position> front;

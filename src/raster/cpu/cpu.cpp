@@ -107,14 +107,17 @@ void forAll(raster::Workers& workers, std::uint32_t most, std::uint64_t count, W
   });
 }
 
-void setStats(const raster::TileCounts& counts, float leastTransmittance, VitrailStats& stats) {
+void setStats(const raster::Frame& frame, const raster::TileCounts& counts, VitrailStats& stats) {
   void* const next = stats.next;
   stats = {};
   stats.next = next;
   stats.complete = 1;
-  // Half a step of rounding, what is behind too little light, and the rounding of so many sums and products.
-  const float leftOut = leastTransmittance > raster::kNoTransmittance ? raster::kLeftOut : 0.0F;
-  stats.errorBound = 0.51F + leftOut + 2e-5F * std::sqrt(static_cast<float>(counts.layersMax));
+  // Half a step of rounding, what is behind too little light, and the rounding of so many sums and products. Where
+  // surfaces hide what they add light to, roundings go either way. Where they need not, equal ones add up: at most
+  // 2^-25 each, where the curve rises by 0.66.
+  const float leftOut = frame.leastTransmittance > raster::kNoTransmittance ? raster::kLeftOut : 0.0F;
+  const auto layers = static_cast<float>(counts.layersMax);
+  stats.errorBound = 0.51F + leftOut + (frame.addsUp ? 5e-6F * layers : 2e-5F * std::sqrt(layers));
   stats.exact = stats.errorBound <= 1.0F ? 1 : 0;
   stats.fragmentsRequested = counts.fragments;
   stats.fragmentsStored = counts.fragments;
@@ -160,7 +163,7 @@ VitrailResult drawFrame(VitrailCpuContext_T& context, VitrailStats* stats) {
   if (progress.isGivenUp()) return VITRAIL_INCOMPLETE;
   raster::TileCounts all;
   for (const raster::TileCounts& each : counts) all.add(each);
-  if (stats != nullptr) setStats(all, frame.leastTransmittance, *stats);
+  if (stats != nullptr) setStats(frame, all, *stats);
   return VITRAIL_SUCCESS;
 }
 

@@ -136,6 +136,7 @@ struct Frame {
   float leastTransmittance = 0.0F; // what is behind less than that does not count
   // Less than that, for what rounds otherwise where light is multiplied up in the order in which fragments come.
   float trackedTransmittance = 0.0F;
+  bool addsUp = false; // surfaces may add light without hiding any
   std::vector<DrawInfo> draws;
   std::vector<Job> jobs;
   // Of each job's primitives a depth, nearer than all that it covers. Empty: their order does not matter.

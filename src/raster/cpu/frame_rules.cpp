@@ -316,7 +316,7 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
   frame.needs = {};
   frame.needs.shaded = frame.info.samples > 1 || info.list != nullptr;
   frame.needs.opaque = info.depth != nullptr;
-  float brightest = std::max(1.0F, frame.info.brightest);
+  float brightest = std::max(1.0F, std::min(frame.info.brightest, std::numeric_limits<float>::max()));
   bool isBrightened = false; // filters make light brighter: what is behind too little of it may be seen after all
   std::uint64_t vertices = 0;
   for (std::uint32_t i = 0; i < draws.size(); ++i) {
@@ -340,6 +340,7 @@ void prepareFrame(Frame& frame, const VitrailCpuFrame& info, std::span<const Vit
   frame.leastTransmittance =
       info.list != nullptr || isBrightened ? 0.0F : std::max(kLeastTransmittance / brightest, kNoTransmittance);
   frame.trackedTransmittance = trackedOf(frame);
+  frame.addsUp = std::isinf(brightest);
   frame.corners.resize(vertices);
   addNearest(frame);
 }
