@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "scene.h"
@@ -81,6 +82,101 @@ TEST(LongListsTest, AreBlendedInOrder) {
       EXPECT_EQ(stats.layersMax, length);
       EXPECT_EQ(stats.fragmentsRequested, 6U * length);
       EXPECT_EQ(stats.coveredPixels, 6U);
+    }
+  }
+}
+
+// Panes across several tiles that cross each other. From the second tile on they are put in order before they are drawn
+// (TileWorker::orderLarge()), which no picture shows.
+class CrossingPanes {
+ public:
+  static constexpr std::uint32_t kWidth = 100;
+  static constexpr std::uint32_t kHeight = 70;
+
+  // Of so many a few have a corner behind the eye.
+  explicit CrossingPanes(std::uint32_t behindTheEye) : positions_(90) {
+    Random random(6);
+    for (std::uint32_t i = 0; i < positions_.size(); ++i) {
+      std::vector<Position>& corners = positions_[i];
+      const float middle = random.single(0.3, 0.7);
+      addFull(corners, middle);
+      for (Position& corner : corners) corner[2] += random.single(-0.1, 0.1);
+      if (i % 15 == 7 && i / 15 < behindTheEye) corners[1] = {1.0F, 0.3F, -0.25F * middle, -0.25F};
+    }
+  }
+
+  std::vector<VitrailCpuDraw> draws() const {
+    std::vector<VitrailCpuDraw> draws;
+    for (std::uint32_t i = 0; i < positions_.size(); ++i) {
+      draws.push_back(drawOf(positions_[i]));
+      for (float& channel : draws.back().color) channel = brightness(i);
+      draws.back().color[3] = kAlpha;
+    }
+    return draws;
+  }
+
+  // At a pixel's centre, the first channel; nothing where two depths are too near to tell.
+  std::optional<double> at(std::uint32_t x, std::uint32_t y, bool nearestIsOne) const {
+    const double right = (x + 0.5) / kWidth / 2.0; // the second corner's share, and the third's
+    const double down = (y + 0.5) / kHeight / 2.0;
+    std::vector<std::pair<double, std::uint32_t>> seen;
+    for (std::uint32_t i = 0; i < positions_.size(); ++i) {
+      const auto z = [&](std::size_t c) { return double{positions_[i][c][2]}; };
+      const double depth = z(0) + right * (z(1) - z(0)) + down * (z(2) - z(0));
+      seen.emplace_back(nearestIsOne ? -depth : depth, i);
+    }
+    std::sort(seen.begin(), seen.end());
+    double color = 0.0;
+    double through = 1.0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (i > 0 && seen[i].first - seen[i - 1].first < 1e-6) return std::nullopt;
+      color += through * double{kAlpha} * double{brightness(seen[i].second)};
+      through *= 1.0 - double{kAlpha};
+    }
+    return color + through * double{kBehind[0]};
+  }
+
+ private:
+  static constexpr float kAlpha = 0.05F;
+  static float brightness(std::uint32_t pane) { return 0.1F + 0.1F * static_cast<float>(pane % 7); }
+
+  std::vector<std::vector<Position>> positions_;
+};
+
+TEST(LongListsTest, OfLargeTrianglesThatCross) {
+  for (const VitrailCpuInstructions instructions : instructionsHere()) {
+    for (const VitrailDepthOrder order : {VITRAIL_DEPTH_NEAREST_IS_ZERO, VITRAIL_DEPTH_NEAREST_IS_ONE}) {
+      for (const std::uint32_t behindTheEye : {0U, 4U}) {
+        SCOPED_TRACE(std::string(nameOf(instructions)) + ", order " + std::to_string(order) + ", " +
+                     std::to_string(behindTheEye) + " behind the eye");
+        const CrossingPanes panes(behindTheEye);
+        Random random(9);
+        Picture first(CrossingPanes::kWidth, CrossingPanes::kHeight, kBehind);
+        for (int turn = 0; turn < 5; ++turn) {
+          Raster raster(instructions, turn == 4 ? 3 : 1);
+          std::vector<VitrailCpuDraw> draws = panes.draws();
+          if (turn == 1) std::reverse(draws.begin(), draws.end());
+          if (turn > 1) std::shuffle(draws.begin(), draws.end(), random.engine());
+          Picture picture(CrossingPanes::kWidth, CrossingPanes::kHeight, kBehind);
+          VitrailCpuFrame frame = picture.frame();
+          frame.depthOrder = order;
+          if (turn == 3) frame.memoryBudget = 65536;
+          ASSERT_EQ(raster.render(frame, draws), VITRAIL_SUCCESS);
+          if (turn == 0) first.pixels = picture.pixels;
+          EXPECT_TRUE(picture.pixels == first.pixels) << "turn " << turn;
+        }
+        if (behindTheEye > 0) continue;
+        std::uint32_t compared = 0;
+        for (std::uint32_t y = 0; y < CrossingPanes::kHeight; ++y) {
+          for (std::uint32_t x = 0; x < CrossingPanes::kWidth; ++x) {
+            const auto expected = panes.at(x, y, order == VITRAIL_DEPTH_NEAREST_IS_ONE);
+            if (!expected) continue;
+            ++compared;
+            ASSERT_NEAR(first.at(x, y)[0], *expected, 2e-5) << x << ' ' << y;
+          }
+        }
+        EXPECT_GT(compared, CrossingPanes::kWidth * CrossingPanes::kHeight * 9 / 10);
+      }
     }
   }
 }

@@ -204,6 +204,7 @@ inline void TileWorker::drawParts(const Frame& frame, std::uint64_t blocks, Tile
         }
         continue;
       }
+      rowsBefore_ += store_.rows(block);
       const std::uint64_t next = left & (left - 1);
       if (next != 0) prefetchPixels(frame, static_cast<std::uint32_t>(std::countr_zero(next)));
       if (tracksHidden_ && frame.needs.shaded && (saturated_ >> block & 1U) != 0) dropTracked(block);

@@ -78,6 +78,46 @@ inline bool TileWorker::orderByDepth(const Frame& frame) {
   return true;
 }
 
+// The same where triangles are few and large and pixels deep, as they were in the last tile: by the depths of their
+// planes at the tile's middle. Rows then come nearly sorted, which sorting notices (areInOrder()). Elsewhere it would
+// take triangles apart that are neighbours.
+inline bool TileWorker::orderLarge(const Frame& frame) {
+  constexpr std::size_t kDeep = std::size_t{16} * kBlocks;
+  constexpr std::size_t kLarge = 16; // blocks of a triangle
+  if (rowsBefore_ < std::max(kDeep, kLarge * trianglesBefore_)) return false;
+  const double middleX = (tile_.x + kTileSide / 2) * double{kSubpixels};
+  const double middleY = (tile_.y + kTileSide / 2) * double{kSubpixels};
+  const double away = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE ? -1.0 : 1.0;
+  farther_.clear();
+  for (const std::uint32_t number : numbers_) {
+    const Job& job = frame.jobs[number >> kJobBits];
+    const DrawInfo& info = frame.draws[job.draw];
+    double depth = 0.0; // of what is clipped, and no triangle: first
+    if (info.draw.topology == VITRAIL_CPU_TRIANGLES) {
+      const std::uint64_t at = (std::uint64_t{job.first} + (number & (kJobTriangles - 1))) * 3;
+      const Corner* const corners = frame.corners.data() + info.firstVertex;
+      const Corner& a = corners[vertexOf(info.draw, at)];
+      const Corner& b = corners[vertexOf(info.draw, at + 1)];
+      const Corner& c = corners[vertexOf(info.draw, at + 2)];
+      if (a.x != kNeedsClipping && b.x != kNeedsClipping && c.x != kNeedsClipping) {
+        const double bx = b.x - a.x;
+        const double by = b.y - a.y;
+        const double cx = c.x - a.x;
+        const double cy = c.y - a.y;
+        const double area = bx * cy - by * cx;
+        const double toB = (middleX - a.x) * cy - (middleY - a.y) * cx;
+        const double toC = (middleY - a.y) * bx - (middleX - a.x) * by;
+        const double rise = toB * (double{b.depth} - a.depth) + toC * (double{c.depth} - a.depth);
+        depth = away * (area == 0.0 ? a.depth : a.depth + rise / area);
+      }
+    }
+    farther_.emplace_back(static_cast<float>(depth), number);
+  }
+  std::sort(farther_.begin(), farther_.end());
+  for (std::size_t i = 0; i < numbers_.size(); ++i) numbers_[i] = farther_[i].second;
+  return true;
+}
+
 // Whether all of numbers_ from one on are behind what shows of some blocks.
 inline bool TileWorker::areBehind(const Frame& frame, std::size_t first, std::uint64_t blocks) const {
   if (!tracksHidden_ || (blocks & ~saturated_) != 0) return false;

@@ -35,7 +35,9 @@ inline void TileWorker::draw(const Frame& frame, std::uint32_t tile, TileCounts&
   if (!frame.needs.shaded) colors_.begin(frame);
   drawOpaque(frame, tile);
   takeNumbers(frame, tile, false);
-  if (!orderByDepth(frame)) merge();
+  if (!orderByDepth(frame) && !orderLarge(frame)) merge();
+  rowsBefore_ = 0;
+  trianglesBefore_ = numbers_.size();
   if (!numbers_.empty() || (opaque_ != nullptr && opaque_->drawn != 0) || frame.info.sampleColors != nullptr) {
     untouched_ = 0;
     drawParts(frame, blocks, counts);

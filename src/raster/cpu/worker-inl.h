@@ -9,6 +9,7 @@
 #include <array>
 #include <cstring>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "raster/cpu/batch-inl.h"
@@ -155,6 +156,7 @@ class TileWorker final : public TileWorkspace {
   bool begin(const Frame& frame) override {
     if (needs_ != frame.needs || samples_ != frame.info.samples) return false;
     order_ = {};
+    rowsBefore_ = 0;
     shape_ = shapeOf(frame);
     return store_.begin(shape_, frame.budget);
   }
@@ -195,6 +197,7 @@ class TileWorker final : public TileWorkspace {
   void takeNumbers(const Frame& frame, std::uint32_t tile, bool opaque);
   void merge();
   bool orderByDepth(const Frame& frame);
+  bool orderLarge(const Frame& frame);
   bool areBehind(const Frame& frame, std::size_t first, std::uint64_t blocks) const;
   void stage(const Frame& frame, std::size_t first, std::uint32_t count, bool isShaded, Staged& staged);
   template <class Emit>
@@ -304,6 +307,9 @@ class TileWorker final : public TileWorkspace {
   std::vector<Nearest> nearest_; // of numbers_, before they were ordered
   DepthSteps steps_;             // by which they were
   std::vector<std::uint32_t> inOrder_;
+  std::vector<std::pair<float, std::uint32_t>> farther_; // depths, and numbers
+  std::size_t rowsBefore_ = 0;                           // of the last tile: rows of all blocks, and triangles
+  std::size_t trianglesBefore_ = 0;
   std::size_t shownTriangles_ = 0; // of numbers_: those behind them are hidden
   std::array<Staged, 2> staged_{};
   StagedPieces pieces_{};
