@@ -40,7 +40,7 @@ struct RasterBounds {
 
 // Bytes of what a frame's passes keep.
 constexpr std::uint64_t kRasterTileBytes = 128;    // of each of two arrays, the other with kRasterTileListBytes
-constexpr std::uint64_t kRasterTileListBytes = 24; // a place in each class
+constexpr std::uint64_t kRasterTileListBytes = 48; // a place in each class, two words
 constexpr std::uint64_t kRasterRecordBytes = 32;
 constexpr std::uint64_t rasterAstrayBytes(bool counted) { // for a record: one in four at most is listed, in three words
   return counted ? 0 : 3;

@@ -237,9 +237,12 @@ uint vitrailAlikeFrom(uint i, uint ties) { return 1u + uint(findLSB(~(ties >> i)
 void main() {
   vitrailThread = gl_LocalInvocationIndex;
   uint place = vitrailFlatGroup();
-  if (place >= vitrailTileClasses.of[vitrailClass].count) return;
-  uint tile = vitrailTileList[vitrailClass * vitrailRaster.tilesX * vitrailRaster.tilesY + place];
-  uint count = vitrailCountIn(tile);
+  // Looked up before it is known whether there is one, as each thing that is waited for takes its time.
+  uint tiles = vitrailRaster.tilesX * vitrailRaster.tilesY;
+  uvec2 listed = vitrailTileList[vitrailClass * tiles + min(place, tiles - 1u)];
+  uint tile = listed.x;
+  uint count = place < vitrailTileClasses.of[vitrailClass].count ? listed.y : 0u;
+  if (count == 0u) return;
   vitrailTile = tile;
   vitrailSharePages(count);
   vitrailInTile = ivec2(vitrailThread & 7u, vitrailThread >> 3);

@@ -80,6 +80,9 @@ ivec2 vitrailSnap(vec2 pixels) {
   return ivec2(roundEven(clamp(pixels, vec2(-most), vec2(most)) * 256.0));
 }
 
+// The same of what needs no clipping: it is within these bounds.
+ivec2 vitrailSnapInside(vec2 pixels) { return ivec2(roundEven(pixels * 256.0)); }
+
 // The corner between one that is inside a plane and one that is outside, always from the inside: both triangles at an
 // edge get the same one.
 vec4 vitrailBetween(vec4 inside, float distanceIn, vec4 outside, float distanceOut) {

@@ -165,12 +165,16 @@ VitrailRows vitrailRows(ivec2 p0, ivec2 p1, ivec2 p2, ivec2 pixel) {
   return rows;
 }
 
+// Of eighths from 0 to 8 the whole ones. The sum has 20 bits behind the point, whichever way it is rounded, and is made
+// at once; converting it takes eight times as long.
+uint vitrailWholeOf(float eighths) { return (floatBitsToUint(fma(eighths, 8.0, 8.0)) >> 20) - 1040u; }
+
 #define VITRAIL_COVER_ROWS(count_) \
   uint covered = 0u; \
   for (int y = 0; y < count_; ++y) { \
     vec4 ends = clamp(fma(at.xyzz, rows.scale, rows.bias), 0.0, 1.0); \
-    uint first = uint(max(ends.x, ends.z) * 8.0); \
-    uint count = uint(min(ends.y, ends.w) * 8.0); \
+    uint first = vitrailWholeOf(max(ends.x, ends.z)); \
+    uint count = vitrailWholeOf(min(ends.y, ends.w)); \
     covered |= (0xffu << first & ((1u << count) - 1u)) << (8 * y); \
     at += rows.down * 16.0; \
   } \

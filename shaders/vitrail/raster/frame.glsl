@@ -56,8 +56,8 @@ layout(VITRAIL_RASTER_BOUND(3), std430) VITRAIL_RECORDS_ARE buffer VitrailRecord
 layout(VITRAIL_RASTER_BOUND(4), std430) buffer VitrailAstrayBlock { uint vitrailAstray[]; };
 layout(VITRAIL_RASTER_BOUND(5), std430) buffer VitrailMediumBlock { uvec2 vitrailMedium[]; }; // name and item
 layout(VITRAIL_RASTER_BOUND(6), std430) buffer VitrailLargeBlock { uvec2 vitrailLarge[]; }; // name and item
-// Tiles by class: each has room for all.
-layout(VITRAIL_RASTER_BOUND(7), std430) buffer VitrailTileListBlock { uint vitrailTileList[]; };
+// Tiles by class, and how many records each has: each class has room for all.
+layout(VITRAIL_RASTER_BOUND(7), std430) buffer VitrailTileListBlock { uvec2 vitrailTileList[]; };
 // Of each record, where there are several samples, the pixels whose samples the triangle covers: samples.glsl.
 layout(VITRAIL_RASTER_BOUND(19), std430) VITRAIL_RECORDS_ARE buffer VitrailSampleBlock { uvec4 vitrailSampleMasks[]; };
 layout(VITRAIL_RASTER_BOUND(19), std430) readonly buffer VitrailSampleWordBlock { uint vitrailSampleWords[]; };

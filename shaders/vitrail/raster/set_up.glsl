@@ -107,10 +107,14 @@ bool vitrailSetUp(uint draw, uint corners, uvec2 source, uvec3 indices) {
   VitrailTriangle t;
   bool isWhole;
   if (!vitrailTriangleAt(draw, corners, source, indices, t, isWhole)) return false;
+  if (!isWhole) {
+    vitrailPutAsideLarge(source);
+    return false;
+  }
   ivec2 first, last, low, high;
   vitrailBoundsOf(t, first, last);
   uint count = vitrailCandidates(first, last, ivec2(0), ivec2(0x7fffffff), low, high);
-  if (!isWhole || count > VITRAIL_RASTER_LARGE) {
+  if (count > VITRAIL_RASTER_LARGE) {
     vitrailPutAsideLarge(source);
     return false;
   }

@@ -173,7 +173,8 @@ uvec3 vitrailIndicesAt(uint draw, uint corners, uint name) {
                vitrailIndex(draw, first + (corners > 2u ? 2u : 0u)));
 }
 
-// The triangle of a source, half of a line or point. False: it covers nothing, or has no such vertices.
+// The triangle of a source, half of a line or point: something else where it is not whole. False: it covers nothing, or
+// has no such vertices.
 bool vitrailTriangleAt(uint draw, uint corners, uvec2 source, uvec3 indices, out VitrailTriangle t, out bool isWhole) {
   VitrailViewport viewport = vitrailViewportOf();
   if (corners == 3u) { // without arrays, which are slow
@@ -183,7 +184,11 @@ bool vitrailTriangleAt(uint draw, uint corners, uvec2 source, uvec3 indices, out
     vec4 c = vitrailClipPosition(draw, source.y, indices.z);
     isWhole = !vitrailNeedsClipping(viewport, a) && !vitrailNeedsClipping(viewport, b) &&
               !vitrailNeedsClipping(viewport, c);
-    t = vitrailTriangleOf(viewport, a, b, c, source);
+    t.p0 = vitrailSnapInside(vitrailPixels(viewport, a, t.depths.x));
+    t.p1 = vitrailSnapInside(vitrailPixels(viewport, b, t.depths.y));
+    t.p2 = vitrailSnapInside(vitrailPixels(viewport, c, t.depths.z));
+    t.name = source.x;
+    t.item = source.y;
     return isWhole || !vitrailIsOutside(a, b, c);
   }
   if (!vitrailHasVertex(draw, max(indices.x, indices.y))) return false;

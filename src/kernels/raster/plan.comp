@@ -28,14 +28,16 @@ void bringRecords() {
 }
 
 void main() {
-  bringRecords();
   uint thread = gl_LocalInvocationIndex;
+  uint tile = vitrailFlatGroup() * 256u + thread;
+  uint tiles = vitrailRaster.tilesX * vitrailRaster.tilesY;
+  // Asked for before there is anything to wait for.
+  uint count = tile < tiles ? vitrailCountIn(tile) : 0u;
+  uint depth = tile < tiles ? vitrailTiles[tile * VITRAIL_RASTER_TILE_WORDS + 1u] : 0u;
+  bringRecords();
   if (thread < VITRAIL_RASTER_CLASSES) groupCount[thread] = 0u;
   if (thread == VITRAIL_RASTER_CLASSES) groupRecords = 0u;
   barrier();
-  uint tile = vitrailFlatGroup() * 256u + thread;
-  uint tiles = vitrailRaster.tilesX * vitrailRaster.tilesY;
-  uint count = tile < tiles ? vitrailCountIn(tile) : 0u;
   if (count > 0u) atomicAdd(groupRecords, count);
   if (!vitrailHasRecords()) {
     if (count > 0u) vitrailTiles[tile * VITRAIL_RASTER_TILE_WORDS] = 0u; // mean.comp
@@ -43,7 +45,6 @@ void main() {
   }
   uint number = 0u;
   // Of the pixels that some of the records cover: triangles.glsl.
-  uint depth = count > 0u ? vitrailTiles[tile * VITRAIL_RASTER_TILE_WORDS + 1u] : 0u;
   depth = depth * VITRAIL_RASTER_SHARE / VITRAIL_RASTER_PIXELS;
   uint most = VITRAIL_RASTER_SAMPLES > 1u      ? VITRAIL_RASTER_SEVERAL_DEPTH
               : count <= VITRAIL_RASTER_PIXELS ? VITRAIL_RASTER_FLAT_DEPTH
@@ -65,6 +66,7 @@ void main() {
   if (count > vitrailRaster.mostWalked) {
     vitrailAddDeep(tile, count);
   } else {
-    vitrailTileList[kind * vitrailRaster.tilesX * vitrailRaster.tilesY + groupList[kind] + number] = tile;
+    vitrailTileList[kind * vitrailRaster.tilesX * vitrailRaster.tilesY + groupList[kind] + number] =
+        uvec2(tile, count);
   }
 }
