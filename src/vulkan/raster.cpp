@@ -567,6 +567,8 @@ void learn(VitrailVkRaster_T& raster, const raster::VitrailRasterTotals& totals,
   if (facts.empty || facts.misused) return;
   raster.mediums = totals.medium;
   raster.anyLarge = totals.large > 0;
+  std::copy(std::begin(totals.ofClass), std::end(totals.ofClass), raster.tilesOf.begin());
+  raster.tilesAreKnown = totals.bands > 0 && hadRoom(totals, facts); // else none were listed
   if (facts.tables != raster.tableNumber || totals.bands == 0) return;
   raster.start = totals.start;
   raster.startOf = facts.tables;

@@ -206,6 +206,10 @@ struct VitrailVkRaster_T {
   // await them.
   std::uint32_t mediums = vitrail::raster::VITRAIL_RASTER_GROUP * vitrail::raster::VITRAIL_RASTER_MEDIUM;
   bool anyLarge = true;
+  // Tiles of each class in the last frame that was read: so many work groups blend them, and go on where there are
+  // more.
+  std::array<std::uint32_t, vitrail::raster::VITRAIL_RASTER_CLASSES> tilesOf{};
+  bool tilesAreKnown = false;
   bool tablesAreMade = false;    // by a frame before, in the present buffers
   std::uint32_t tableDraws = 0;  // of how many draws they are
   std::uint64_t tableNumber = 0; // another one for each time that they are made

@@ -106,7 +106,8 @@ class Recording {
   void setUp(const Band& band);
   void place(const Band& band);
   void bin(const Band& band);
-  void blend();
+  [[nodiscard]] bool knowsTiles() const { return raster_.tilesAreKnown && !raster_.context->limits.oneBlend; }
+  void blend(const Band& band);
   void blendDeep();
   void note(bool isLast);
 
@@ -297,14 +298,29 @@ void Recording::bin(const Band& band) {
   bind(RasterSet::Own);
   dispatchTiles(raster_.kernel(RasterKernel::Plan), band);
   // Records are on their pages, and tiles on lists -> they are blended, and the counts say how many.
-  passBarrier();
+  if (knowsTiles()) {
+    plainBarrier();
+  } else {
+    passBarrier();
+  }
 }
 
-void Recording::blend() {
+// A work group for each tile. Where a frame before told how many there were, as many as these: not to wait for the
+// sizes takes less time, and where there are more tiles now, work groups go on to them. So many that none takes long
+// whatever comes.
+void Recording::blend(const Band& band) {
+  constexpr std::uint32_t kMostTiles = 256;
+  const std::uint32_t least = raster_.tilesX() * band.tilesY() / kMostTiles + 1;
   bind(RasterSet::Blend);
   constexpr std::array<std::uint32_t, raster::VITRAIL_RASTER_CLASSES> kPipelines = {0, 1, 2, 2, 2, 3};
   for (std::uint32_t i = raster::VITRAIL_RASTER_CLASSES; i-- > 0;) { // those that take longest first
     push({i, 0, 0}, RasterSet::Blend);
+    if (knowsTiles()) {
+      const std::uint32_t groups = std::max(raster_.tilesOf.at(i), least);
+      dispatch(raster_.blend(kPipelines.at(i)), std::min(groups, raster::VITRAIL_RASTER_ROW),
+               (groups + raster::VITRAIL_RASTER_ROW - 1) / raster::VITRAIL_RASTER_ROW);
+      continue;
+    }
     dispatch(
         raster_.blend(kPipelines.at(i)), RasterBuffer::Counts,
         kRasterClassesAt + offsetof(raster::VitrailRasterTileClasses, of) + i * sizeof(raster::VitrailRasterDispatch));
@@ -381,7 +397,7 @@ void Recording::drawBand(const Band& band, bool isFirst, bool isLast) {
     passed("set up");
     bin(band);
     passed("bin");
-    blend();
+    blend(band);
   }
   if (raster_.samples > 1) { // beside the blend, in other tiles
     bind(RasterSet::Own);

@@ -234,15 +234,7 @@ void vitrailPartTies(inout uint ties, uint count) {
 // How many fragments from the i-th on have one depth.
 uint vitrailAlikeFrom(uint i, uint ties) { return 1u + uint(findLSB(~(ties >> i))); }
 
-void main() {
-  vitrailThread = gl_LocalInvocationIndex;
-  uint place = vitrailFlatGroup();
-  // Looked up before it is known whether there is one, as each thing that is waited for takes its time.
-  uint tiles = vitrailRaster.tilesX * vitrailRaster.tilesY;
-  uvec2 listed = vitrailTileList[vitrailClass * tiles + min(place, tiles - 1u)];
-  uint tile = listed.x;
-  uint count = place < vitrailTileClasses.of[vitrailClass].count ? listed.y : 0u;
-  if (count == 0u) return;
+void vitrailBlendTile(uint tile, uint count) {
   vitrailTile = tile;
   vitrailSharePages(count);
   vitrailInTile = ivec2(vitrailThread & 7u, vitrailThread >> 3);
@@ -341,6 +333,24 @@ void main() {
 #else
   if (inside && !isEmpty) vitrailBlendOver(pixel, light);
 #endif
+}
+
+// There may be more work groups than tiles, or fewer.
+void main() {
+  vitrailThread = gl_LocalInvocationIndex;
+  uint tiles = vitrailRaster.tilesX * vitrailRaster.tilesY;
+  uint place = vitrailFlatGroup();
+  while (true) {
+    // Looked up before it is known whether there is one, as each thing that is waited for takes its time.
+    uvec2 listed = vitrailTileList[vitrailClass * tiles + min(place, tiles - 1u)];
+    uint all = vitrailTileClasses.of[vitrailClass].count;
+    uint count = place < all ? listed.y : 0u;
+    if (count == 0u) return;
+    vitrailBlendTile(listed.x, count);
+    place += gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+    if (place >= all) return;
+    barrier(); // before the next tile's take the place of what this one's share
+  }
 }
 
 #endif

@@ -193,6 +193,7 @@ struct VitrailRasterTotals {
   uint wrongVertex;
   uint inTiles;
   uint medium;
+  uint ofClass[VITRAIL_RASTER_CLASSES]; // tiles
   VitrailRasterStart start;
 };
 
@@ -204,7 +205,7 @@ static_assert(sizeof(VitrailRasterStart) == 72);
 static_assert(offsetof(VitrailRasterFrame, clipPlanes) == VITRAIL_RASTER_FRAME_WORDS * sizeof(uint));
 static_assert(sizeof(VitrailRasterTileClasses) == 128);
 static_assert(sizeof(VitrailRasterControl) == 92);
-static_assert(sizeof(VitrailRasterTotals) == 128);
+static_assert(sizeof(VitrailRasterTotals) == 152);
 } // namespace vitrail::raster
 #endif
 

@@ -6,6 +6,7 @@
 
 layout(local_size_x = 1) in;
 
+layout(VITRAIL_RASTER_BOUND(17), std430) readonly buffer VitrailTileClassBlock { VitrailRasterTileClasses classes; };
 layout(VITRAIL_RASTER_BOUND(30), std430) buffer TotalBlock { VitrailRasterTotals totals; };
 
 // Of two numbers of two words the greater.
@@ -36,6 +37,9 @@ void main() {
   totals.chunks = max(totals.chunks, vitrailRasterControl.chunks.count);
   totals.mostFragments = max(totals.mostFragments, vitrailRasterControl.mostFragments);
   totals.wrongVertex = max(totals.wrongVertex, vitrailRasterControl.wrongVertex);
+  for (uint i = 0u; i < VITRAIL_RASTER_CLASSES; ++i) {
+    totals.ofClass[i] = max(totals.ofClass[i], classes.of[i].count);
+  }
   totals.cutPixels += vitrailRasterControl.cutPixels;
   totals.bands += 1u;
   totals.start = vitrailRasterStart;

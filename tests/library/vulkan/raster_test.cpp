@@ -597,6 +597,26 @@ TEST_F(RasterTest, DrawsThatAreTheSameAreNotReadAgain) {
   expectPicture(host, fewer, scene);
 }
 
+// Work groups that blend are as many as tiles of the frame before: here of few, and each goes on to many.
+TEST_F(RasterTest, MoreTilesThanInTheFrameBefore) {
+  constexpr std::uint32_t kPixels = 256;
+  for (const std::uint32_t samples : {1U, 4U}) {
+    RasterHostDesc desc;
+    desc.width = desc.height = kPixels;
+    desc.samples = samples;
+    RasterHost host(desc);
+    const RasterScene all = sceneOf(someRectangles(40, kPixels), Form::Indices, false, kPixels);
+    host.setScene(all);
+    const std::vector<float> expected = host.draw();
+    host.setScene(sceneOf({{8, 8, 16, 16, 0.5F, {1.0F, 0.5F, 0.25F, 0.5F}}}, Form::Indices, false, kPixels));
+    for (int frame = 0; frame < 3; ++frame) host.draw();
+    host.setScene(all);
+    EXPECT_TRUE(host.drawOnce() == expected) << samples << " samples";
+    EXPECT_EQ(host.stats().exact, VK_TRUE);
+    EXPECT_TRUE(host.draw() == expected) << samples << " samples";
+  }
+}
+
 // A pixel with more surfaces than registers hold, of which none hides another: their fragments are collected.
 TEST_F(RasterTest, DeepTiles) {
   constexpr std::uint32_t kLayers = 6000;
