@@ -317,11 +317,11 @@ RasterNeeds guessOf(std::uint64_t triangles) {
 RasterTables tablesOf(const VitrailVkRasterHints& hints, std::uint32_t samples, bool keepsPositions) {
   const std::uint64_t triangles =
       std::uint64_t{raster::VITRAIL_RASTER_SET_UP} * rasterTurns(samples); // of a work group
-  constexpr std::uint64_t kVertices = raster::VITRAIL_RASTER_GROUP * raster::VITRAIL_RASTER_VERTICES;
+  const std::uint64_t vertices = std::uint64_t{raster::VITRAIL_RASTER_GROUP} * rasterVertices(hints.vertices);
   const auto atLeast = [](std::uint64_t value) { return std::max<std::uint64_t>(value, 1); };
   return {.draws = atLeast(hints.draws),
           .groups = atLeast(hints.triangles / triangles + hints.draws),
-          .vertexGroups = keepsPositions ? atLeast(hints.vertices / kVertices + hints.draws) : 1,
+          .vertexGroups = keepsPositions ? atLeast(hints.vertices / vertices + hints.draws) : 1,
           .items = atLeast(hints.instances),
           .vertices = keepsPositions ? atLeast(hints.vertices) : 1};
 }
@@ -338,6 +338,7 @@ VkResult createStats(VitrailVkRaster_T& raster) {
 }
 
 VkResult build(VitrailVkRaster_T& raster, const VitrailVkRasterDesc& desc) {
+  raster.verticesOfThread = rasterVertices(desc.hints.vertices);
   VkResult result = checkDevice(*raster.context, raster);
   if (result == VK_SUCCESS) {
     result = checkFormats(*raster.context, raster,

@@ -77,6 +77,11 @@ enum class RasterSet : std::uint8_t {
   Blend,    // of blending
   Count
 };
+// Vertices for each thread that asks for positions: more where there are very many.
+constexpr std::uint32_t rasterVertices(std::uint64_t vertices) {
+  return vertices < std::uint64_t{1} << 21U ? raster::VITRAIL_RASTER_FEW_VERTICES
+                                            : raster::VITRAIL_RASTER_MANY_VERTICES;
+}
 // Turns of a work group that sets up triangles. With several samples one takes long enough.
 constexpr std::uint32_t rasterTurns(std::uint32_t samples) { return samples > 1 ? 1 : 2; }
 
@@ -162,7 +167,8 @@ struct VitrailVkRaster_T {
   std::uint32_t indexBytes = 2; // 0: there are none
   bool keepsPositions = false;
   bool shuffles = false;
-  std::uint64_t offsetAlignment = 1; // of storage buffers
+  std::uint32_t verticesOfThread = vitrail::raster::VITRAIL_RASTER_FEW_VERTICES; // that asks for positions
+  std::uint64_t offsetAlignment = 1;                                             // of storage buffers
   std::uint32_t blendModes = 0;
   std::uint32_t clipPlanes = 0; // at most, in a frame
   std::uint32_t fragments = 1;  // of a surface

@@ -25,6 +25,7 @@ struct RasterConstants {
   VkBool32 nearestIsZero = VK_FALSE;
   std::uint32_t indexBytes = 4;
   std::uint32_t turns = 2;
+  std::uint32_t vertices = 2;
 };
 constexpr std::uint32_t kConstantCount = sizeof(RasterConstants) / sizeof(std::uint32_t);
 
@@ -38,6 +39,7 @@ RasterConstants constantsOf(const VitrailVkRaster_T& raster) {
   constants.nearestIsZero = raster.nearestIsZero ? VK_TRUE : VK_FALSE;
   constants.indexBytes = raster.indexBytes;
   constants.turns = rasterTurns(raster.samples);
+  constants.vertices = raster.verticesOfThread;
   return constants;
 }
 

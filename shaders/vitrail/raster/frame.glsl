@@ -20,6 +20,7 @@ layout(constant_id = 1717) const bool VITRAIL_RASTER_ONLY_TRIANGLES = false;
 layout(constant_id = 1718) const bool VITRAIL_RASTER_NEAREST_IS_ZERO = false;
 layout(constant_id = 1719) const uint VITRAIL_RASTER_INDEX_BYTES = 4u; // 2, 4, or 0: there are none
 layout(constant_id = 1720) const uint VITRAIL_RASTER_TURNS = 2u; // of a work group that sets up triangles
+layout(constant_id = 1721) const uint VITRAIL_RASTER_VERTICES = 2u; // for each thread that asks for positions
 
 // What a stage does with them. A host's stages say what they only read: compilers then know that it stays as it is.
 #define VITRAIL_TILES_ARE

@@ -16,8 +16,10 @@ struct vec4 {
 };
 #endif
 
-const uint VITRAIL_RASTER_GROUP = 128u;     // threads of a work group of most passes
-const uint VITRAIL_RASTER_VERTICES = 2u;    // vertices for each of those that ask for positions
+const uint VITRAIL_RASTER_GROUP = 128u; // threads of a work group of most passes
+// Vertices for each of those that ask for positions; and where there are very many, as each work group takes its time.
+const uint VITRAIL_RASTER_FEW_VERTICES = 2u;
+const uint VITRAIL_RASTER_MANY_VERTICES = 8u;
 const uint VITRAIL_RASTER_SET_UP = 128u;    // of one that sets up triangles, each one of them a turn
 const uint VITRAIL_RASTER_FEW_MEDIUM = 16u; // medium triangles for a work group, at least, up to so many work groups
 const uint VITRAIL_RASTER_MEDIUM = 1024u;
