@@ -597,6 +597,28 @@ TEST_F(RasterTest, DrawsThatAreTheSameAreNotReadAgain) {
   expectPicture(host, fewer, scene);
 }
 
+// Where there are to be millions, a thread asks for more of them: also of few all are asked for.
+TEST_F(RasterTest, ManyVertices) {
+  constexpr std::uint32_t kQuads = 700; // 2,800 vertices
+  RasterScene scene = sceneOf(someRectangles(kQuads, 64), Form::Indices, false, 64);
+  scene.draws.resize(1); // all in one
+  scene.draws[0].count = static_cast<std::uint32_t>(scene.indices.size());
+  scene.draws[0].vertexCount = static_cast<std::uint32_t>(scene.vertices.size());
+  std::vector<float> expected;
+  for (const std::uint64_t vertices : {std::uint64_t{0}, std::uint64_t{1} << 21U}) {
+    RasterHostDesc desc;
+    desc.width = desc.height = 64;
+    desc.hints.vertices = vertices;
+    RasterHost host(desc);
+    host.setScene(scene);
+    const std::vector<float> drawn = host.draw();
+    EXPECT_EQ(host.stats().vertices, scene.vertices.size());
+    if (vertices == 0) expected = drawn;
+    EXPECT_TRUE(drawn == expected);
+  }
+  EXPECT_GT(std::accumulate(expected.begin(), expected.end(), 0.0F), 1.0F);
+}
+
 // Work groups that blend are as many as tiles of the frame before: here of few, and each goes on to many.
 TEST_F(RasterTest, MoreTilesThanInTheFrameBefore) {
   constexpr std::uint32_t kPixels = 256;
