@@ -70,7 +70,7 @@
 #endif
 
 // main() names it, below, so that nothing takes it out of the module.
-layout(constant_id = 1730) const uint VITRAIL_RASTER_COMPILED =
+layout(constant_id = 1731) const uint VITRAIL_RASTER_COMPILED =
     uint(VITRAIL_RASTER_STAGE) << VITRAIL_RASTER_COMPILED_STAGE | uint(VITRAIL_SET) << VITRAIL_RASTER_COMPILED_SET |
     uint(VITRAIL_CLIP_PLANES) << VITRAIL_RASTER_COMPILED_PLANES |
     uint(VITRAIL_RASTER_FRAGMENTS) << VITRAIL_RASTER_COMPILED_FRAGMENTS |

@@ -54,7 +54,7 @@ const float VITRAIL_RASTER_STOP = 0.35f;     // of 1/255: what may be left out o
 
 // What a stage was compiled for: where its numbers begin in the word that the library reads in its SPIR-V, the default
 // of a specialization constant (raster.glsl).
-const uint VITRAIL_RASTER_COMPILED_ID = 1730u;
+const uint VITRAIL_RASTER_COMPILED_ID = 1731u;
 const uint VITRAIL_RASTER_COMPILED_STAGE = 0u;      // 3 bits
 const uint VITRAIL_RASTER_COMPILED_SET = 3u;        // 4 bits
 const uint VITRAIL_RASTER_COMPILED_PLANES = 7u;     // 4 bits
