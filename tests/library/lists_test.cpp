@@ -155,6 +155,28 @@ TEST_P(ListsTest, WithoutDualSourceBlendingColouredFiltersAreCounted) {
   for (unsigned c = 0; c < 3; ++c) EXPECT_NEAR(result.pixels[2][c], expected.pixels[2][c], 1e-6);
 }
 
+// Filters brighter than 1 multiply light beyond what a float holds. What is dark behind them is dark.
+TEST_P(ListsTest, LightBeyondAllFloatsStaysANumber) {
+  HostDesc desc;
+  desc.resolve = VITRAIL_RESOLVE_COMPUTE;
+  desc.nodes = VITRAIL_NODE_HDR;
+  desc.behind = {0.25F, 0.25F, 0.25F, 1.0F};
+  std::vector<Point> points;
+  for (const std::uint32_t count : {3U, 12U, 40U}) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const float depth = 0.1F + 0.01F * static_cast<float>(i);
+      points.push_back({count % 8, 0, depth, {65504.0F, 65504.0F, 65504.0F, 1.0F}, VITRAIL_BLEND_MULTIPLY});
+    }
+    points.push_back({count % 8, 0, 0.9F, {0.0F, 0.0F, 0.0F, 1.0F}, VITRAIL_BLEND_MULTIPLY});
+  }
+  desc.capacity = static_cast<std::uint32_t>(points.size());
+  const PointResult result = draw(desc, points);
+  EXPECT_EQ(result.stats.complete, 1U);
+  for (const std::size_t x : {3, 4, 0}) {
+    for (unsigned c = 0; c < 3; ++c) EXPECT_EQ(result.pixels[x][c], 0.0F) << x;
+  }
+}
+
 // Of two pixels with 30 fragments each has at least 10 of 40 nodes. Whichever compute kernel blends the frame counts
 // both, a fragment resolve neither.
 TEST_P(ListsTest, DeepPixelsOfAFrameThatOverflowsAreCounted) {

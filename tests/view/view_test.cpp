@@ -525,7 +525,7 @@ TEST(ViewMethodsTest, PicturesStayOnTheDeviceAndGrow) {
 TEST(ViewMethodsTest, WhatTheBudgetDoesNotHoldIsDrawnInTilesAtRest) {
   const TemporaryFolder folder;
   View view(folder,
-            {"--scene", "planes", "--count", "6", "--device", "llvmpipe", "--validate", "--memory-budget", "7"});
+            {"--scene", "planes", "--count", "12", "--device", "llvmpipe", "--validate", "--memory-budget", "13"});
   const Json first = view.shown();
   ASSERT_FALSE(first.is_null());
   EXPECT_FALSE(first["complete"]);

@@ -90,9 +90,10 @@ uint vitrailDistance(float depth) { return 0x3f800000u - floatBitsToUint(min(max
 
 // Takes `more` of something that is counted in two words: the number of the first. Where the lower one comes round,
 // there is more than any buffer holds, and the frame is drawn again.
-#define VITRAIL_TAKE_PLACES(low, high, more, first) \
+#define VITRAIL_TAKE_PLACES(low, high, more, first) { \
   first = atomicAdd(low, more); \
-  if (first + (more) < first) atomicAdd(high, 1u);
+  if (first + (more) < first) atomicAdd(high, 1u); \
+}
 
 // Whether a tile's records lie side by side, in as many places as a first turn of setting up has counted: pages.glsl.
 bool vitrailIsCounted() { return vitrailRaster.pageBits == VITRAIL_RASTER_COUNTED; }

@@ -116,6 +116,7 @@ void vitrailPutFragment(inout VitrailPixelLight light, vec4 color, uint blend, u
   if ((visible & (1u << i)) != 0u) { \
     through += VITRAIL_THROUGH(light, i).rgb; \
     light.through[i] *= pair.transmittance; \
+    if (VITRAIL_THROUGH_VARIES) light.through[i] = min(light.through[i], 1e37); /* as lists: never infinite */ \
   }
   VITRAIL_EACH_SAMPLE(VITRAIL_PUT_SAMPLE)
   light.color += VITRAIL_SHARE * through * pair.color;

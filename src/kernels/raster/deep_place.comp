@@ -22,9 +22,9 @@ void main() {
   uint pixel = deep * VITRAIL_RASTER_PIXELS + thread;
   uint count = vitrailDeepPixels[pixel].x;
   uint chunkCount = (count + VITRAIL_RASTER_CHUNK - 1u) / VITRAIL_RASTER_CHUNK;
-  // The sum of a tile may come round.
-  if (count > 0xffffffffu / VITRAIL_RASTER_PIXELS) atomicAdd(vitrailRasterControl.fragmentsHigh, 1u);
-  uint place = atomicAdd(groupFragments, count);
+  uint place;
+  // The sum of a tile may come round, too.
+  VITRAIL_TAKE_PLACES(groupFragments, vitrailRasterControl.fragmentsHigh, count, place)
   uint chunk = atomicAdd(groupChunks, chunkCount);
   atomicMax(groupMost, count);
   barrier();

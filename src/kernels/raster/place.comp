@@ -17,7 +17,9 @@ void main() {
   barrier();
   uint tile = vitrailFlatGroup() * 256u + thread;
   uint count = tile < vitrailRaster.tilesX * vitrailRaster.tilesY ? vitrailCountIn(tile) : 0u;
-  uint place = count > 0u ? atomicAdd(groupRecords, count) : 0u;
+  uint place = 0u;
+  // The sum of a work group's tiles may come round, too.
+  if (count > 0u) VITRAIL_TAKE_PLACES(groupRecords, vitrailRasterControl.recordsHigh, count, place)
   barrier();
   if (thread == 0u) {
     VITRAIL_TAKE_PLACES(vitrailRasterControl.records, vitrailRasterControl.recordsHigh, groupRecords, groupFirst)

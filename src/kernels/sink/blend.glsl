@@ -49,7 +49,8 @@ VitrailSink vitrailBegin() {
 
 void vitrailCompose(inout VitrailPair front, VitrailPair behind) {
   front.color += front.transmittance.rgb * behind.color;
-  front.transmittance *= behind.transmittance;
+  // Colours above 1 may multiply light beyond what a float holds, and what is infinite makes a NaN of darkness.
+  front.transmittance = min(front.transmittance * behind.transmittance, 1e37);
 }
 
 // Puts a fragment behind what is there.

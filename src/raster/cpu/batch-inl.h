@@ -318,10 +318,10 @@ HWY_INLINE F depthAt(const Batch& batch, std::uint32_t t, const I& position, con
 // Of a careful one depth at a sample of the block's pixels, from the weights there: a pixel's centre may lie so far
 // outside that a step from its depth would round more than is promised.
 HWY_NOINLINE inline F carefulDepthAt(const Batch& batch, std::uint32_t t, const I& position, const SamplePlace& place) {
-  const D x =
-      exactly(position & set(0xffff)) * setDouble(kSubpixels) + setDouble(place.x * (kSubpixels / 16) - kSubpixels / 2);
-  const D y = exactly(shiftRight<16>(position)) * setDouble(kSubpixels) +
-              setDouble(place.y * (kSubpixels / 16) - kSubpixels / 2);
+  constexpr double kStep = kSubpixels / 16.0; // of sample places, which are from the pixel's corner on
+  constexpr double kHalf = kSubpixels / 2.0;
+  const D x = exactly(position & set(0xffff)) * setDouble(kSubpixels) + setDouble(place.x * kStep - kHalf);
+  const D y = exactly(shiftRight<16>(position)) * setDouble(kSubpixels) + setDouble(place.y * kStep - kHalf);
   F weights[2];
   for (std::size_t k = 0; k < 2; ++k) {
     const D e = setDouble(batch.exactC[k][t]) + (setDouble(batch.a[k + 1][t]) * x + setDouble(batch.b[k + 1][t]) * y);

@@ -85,8 +85,9 @@ inline bool TileWorker::orderLarge(const Frame& frame) {
   constexpr std::size_t kDeep = std::size_t{16} * kBlocks;
   constexpr std::size_t kLarge = 16; // blocks of a triangle
   if (rowsBefore_ < std::max(kDeep, kLarge * trianglesBefore_)) return false;
-  const double middleX = (tile_.x + kTileSide / 2) * double{kSubpixels};
-  const double middleY = (tile_.y + kTileSide / 2) * double{kSubpixels};
+  constexpr double kHalf = 0.5 * kTileSide;
+  const double middleX = (tile_.x + kHalf) * kSubpixels;
+  const double middleY = (tile_.y + kHalf) * kSubpixels;
   const double away = frame.info.depthOrder == VITRAIL_DEPTH_NEAREST_IS_ONE ? -1.0 : 1.0;
   farther_.clear();
   for (const std::uint32_t number : numbers_) {

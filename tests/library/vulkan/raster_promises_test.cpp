@@ -421,6 +421,27 @@ TEST_F(RasterPromisesTest, ColoursThatAreNone) {
   }
 }
 
+// Filters brighter than 1 multiply light beyond what a float holds. What is dark behind them is dark.
+TEST_F(RasterPromisesTest, LightBeyondAllFloatsStaysANumber) {
+  for (const std::uint32_t samples : oneAndSeveral()) {
+    if (samples > 2) continue;
+    RasterHostDesc desc;
+    desc.samples = samples;
+    RasterHost host(desc);
+    for (const std::uint32_t count : {3U, 12U, 40U}) {
+      std::vector<Sheet> sheets;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        sheets.push_back(
+            {0.1F + 0.01F * static_cast<float>(i), {65504.0F, 65504.0F, 65504.0F, 1.0F}, VITRAIL_BLEND_MULTIPLY});
+      }
+      sheets.push_back({0.9F, {0.0F, 0.0F, 0.0F, 1.0F}, VITRAIL_BLEND_MULTIPLY});
+      host.setScene(sheetsOf(sheets, {0.25F, 0.5F, 0.75F, 1.0F}));
+      host.draw();
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(host.at(3, 3).at(c), 0.0F) << samples << " samples, " << count;
+    }
+  }
+}
+
 // However a triangle is clipped, or two at an edge, no pixel has it twice.
 TEST_F(RasterPromisesTest, ClippedTrianglesCoverOnce) {
   constexpr std::uint32_t kPixels = 128;
