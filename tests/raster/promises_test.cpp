@@ -248,6 +248,15 @@ void shadeNumbers(void* user, VitrailCpuFragments* f) {
   }
 }
 
+VitrailCpuDraw drawOfNumbers(const std::vector<Position>& corners, VitrailCpuSurface surface, std::uint64_t& wrong) {
+  VitrailCpuDraw draw = drawOf(corners);
+  draw.surface = surface;
+  draw.shade = shadeNumbers;
+  draw.shadeUser = &wrong;
+  draw.shadeFlags = VITRAIL_CPU_SHADE_DERIVATIVES | VITRAIL_CPU_SHADE_DISCARD;
+  return draw;
+}
+
 // The smallest w that can be drawn and the largest, in one triangle, whose corners may lie in the middles of pixels.
 TEST(ShadeTest, WeightsAreNumbersWhateverTheCornersAre) {
   Random random(70);
@@ -264,11 +273,7 @@ TEST(ShadeTest, WeightsAreNumbersWhateverTheCornersAre) {
         }
         for (const VitrailCpuSurface surface : {VITRAIL_CPU_TRANSPARENT, VITRAIL_CPU_OPAQUE}) {
           std::uint64_t wrong = 0;
-          VitrailCpuDraw draw = drawOf(corners);
-          draw.surface = surface;
-          draw.shade = shadeNumbers;
-          draw.shadeUser = &wrong;
-          draw.shadeFlags = VITRAIL_CPU_SHADE_DERIVATIVES | VITRAIL_CPU_SHADE_DISCARD;
+          const VitrailCpuDraw draw = drawOfNumbers(corners, surface, wrong);
           Picture picture(32, 32);
           VitrailCpuFrame frame = picture.frame();
           frame.samples = samples;
@@ -285,11 +290,7 @@ TEST(ShadeTest, LanesBesideAnOpaqueTriangleAreNumbers) {
   const std::vector<Position> corners = {inPixels(16, 16, 0.5, 0.5, 0.5F, 1.0F), inPixels(16, 16, 1.5, 0.5, 0.5F, 2.0F),
                                          inPixels(16, 16, 0.5, 4.5, 0.5F, 1.0F)};
   std::uint64_t wrong = 0;
-  VitrailCpuDraw draw = drawOf(corners);
-  draw.surface = VITRAIL_CPU_OPAQUE;
-  draw.shade = shadeNumbers;
-  draw.shadeUser = &wrong;
-  draw.shadeFlags = VITRAIL_CPU_SHADE_DERIVATIVES | VITRAIL_CPU_SHADE_DISCARD;
+  const VitrailCpuDraw draw = drawOfNumbers(corners, VITRAIL_CPU_OPAQUE, wrong);
   Picture picture(16, 16);
   Raster raster;
   ASSERT_EQ(raster.render(picture.frame(), {&draw, 1}), VITRAIL_SUCCESS);

@@ -168,6 +168,8 @@ TEST_F(LostTest, AnyCallOfAFrameMayBeTheLast) {
   open();
   for (const VitrailResolve resolve : {VITRAIL_RESOLVE_COMPUTE, VITRAIL_RESOLVE_FRAGMENT}) {
     for (const LostFence fence : {LostFence::Failed, LostFence::Signaled, LostFence::AsEver}) {
+      // With one resolve every kind of fence, with the other one kind: each call that is lost needs a context of its
+      // own.
       if (resolve == VITRAIL_RESOLVE_FRAGMENT && fence != LostFence::AsEver) continue;
       std::vector<TappedCall> calls; // of a frame that is not lost
       for (std::size_t last = 0; last == 0 || last <= calls.size(); ++last) {

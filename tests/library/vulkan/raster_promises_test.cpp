@@ -397,7 +397,7 @@ TEST_F(RasterPromisesTest, ColoursThatAreNone) {
   constexpr float kInfinite = std::numeric_limits<float>::infinity();
   const std::array<float, 9> values{0.0F, 1.0F, -1.0F, 2.0F, 0.5F, kNan, kInfinite, -kInfinite, 1e-40F};
   for (const std::uint32_t samples : oneAndSeveral()) {
-    if (samples > 2) continue;
+    if (samples > 2) continue; // each needs pipelines
     for (const std::uint32_t modes : {0U, 1U << VITRAIL_BLEND_OVER}) {
       RasterHostDesc desc;
       desc.samples = samples;
@@ -424,7 +424,7 @@ TEST_F(RasterPromisesTest, ColoursThatAreNone) {
 // Filters brighter than 1 multiply light beyond what a float holds. What is dark behind them is dark.
 TEST_F(RasterPromisesTest, LightBeyondAllFloatsStaysANumber) {
   for (const std::uint32_t samples : oneAndSeveral()) {
-    if (samples > 2) continue;
+    if (samples > 2) continue; // each needs pipelines
     RasterHostDesc desc;
     desc.samples = samples;
     RasterHost host(desc);
