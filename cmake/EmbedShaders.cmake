@@ -1,6 +1,7 @@
 # Compiles GLSL with glslc and makes each shader a header with one array of SPIR-V words, so that programs need no files
 # beside them.
 find_program(VITRAIL_GLSLC glslc HINTS $ENV{VULKAN_SDK}/Bin REQUIRED)
+set(VITRAIL_SHADER_OPTIMIZE -O CACHE STRING "glslc's flag for shaders that say none: -O, -Os, -O0")
 
 # embed_shader(TARGETS target... NAME name SOURCE file NAMESPACE ns [INCLUDES dir...] [DEFINES def...] [OPTIMIZE flag]
 #              [ENVIRONMENT env] [HLSL_STAGE stage])
@@ -14,7 +15,7 @@ function(embed_shader)
   string(REPLACE "." "_" symbol ${arg_NAME})
   get_filename_component(source ${arg_SOURCE} ABSOLUTE)
   if(NOT arg_OPTIMIZE)
-    set(arg_OPTIMIZE -O)
+    set(arg_OPTIMIZE ${VITRAIL_SHADER_OPTIMIZE})
   endif()
   if(NOT arg_ENVIRONMENT)
     set(arg_ENVIRONMENT vulkan1.2) # what every supported device takes

@@ -50,18 +50,26 @@ install_packages() {
   rm -f "$log"
 }
 
-# build PRESET: configures where needed and builds; silent unless it fails.
+# build PRESET [NAME=VALUE...]: configures where needed, also where CMake's cache has other values than these, and builds;
+# silent unless it fails.
 build() {
-  local folder="$root/build/$1" log
+  local preset=$1 folder="$root/build/$1" log setting
+  shift
   mkdir -p "$folder"
   log="$folder/build.log"
   : >"$log"
   # CMake does not notice changed presets by itself.
   if [ ! -f "$folder/build.ninja" ] || [ "$root/CMakePresets.json" -nt "$folder/build.ninja" ]; then
-    (cd "$root" && cmake --preset "$1") >"$log" 2>&1 || { cat "$log" >&2; die "cmake could not configure preset $1"; }
+    (cd "$root" && cmake --preset "$preset" "${@/#/-D}") >"$log" 2>&1 ||
+      { cat "$log" >&2; die "cmake could not configure preset $preset"; }
     touch "$folder/build.ninja"
   fi
-  (cd "$root" && cmake --build --preset "$1") >>"$log" 2>&1 || { tail -n 60 "$log" >&2; die "the build of preset $1 failed"; }
+  for setting; do
+    [ "$(sed -n "s/^${setting%%=*}:[^=]*=//p" "$folder/CMakeCache.txt")" != "${setting#*=}" ] || continue
+    cmake "-D$setting" "$folder" >"$log" 2>&1 || { cat "$log" >&2; die "cmake could not configure preset $preset"; }
+  done
+  (cd "$root" && cmake --build --preset "$preset") >>"$log" 2>&1 ||
+    { tail -n 60 "$log" >&2; die "the build of preset $preset failed"; }
 }
 
 # Microsoft's HLSL compilers, which the npm package webgpu carries, into build/direct3d/compilers.

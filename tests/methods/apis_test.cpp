@@ -9,6 +9,7 @@
 #include "../../tool/scene/builtin/builtin.h"
 #include "../../tool/scene/builtin/shapes.h"
 #include "../reference/test_scenes.h"
+#include "../thorough.h"
 #include "fixture.h"
 
 namespace vitrail::tool::test {
@@ -79,7 +80,7 @@ class ApisTest : public GpuTest {
   }
 };
 
-// Every scene by every method that OpenGL has.
+// Every scene by lists, and one, or if thorough each, by every method that OpenGL has.
 class ScenesApisTest : public ApisTest, public ::testing::WithParamInterface<std::string> {};
 
 TEST_P(ScenesApisTest, PicturesAreTheSame) {
@@ -91,6 +92,7 @@ TEST_P(ScenesApisTest, PicturesAreTheSame) {
   const RenderOptions picture = usualOptions(scene, 160, 90);
   for (const std::string_view name : methodNames()) {
     if (traitsOf(name).makeGl == nullptr) continue;
+    if (name != kListMethod && GetParam() != "mannequins" && !tests::isThorough()) continue;
     MethodOptions method;
     method.name = name;
     expectSame(GetParam(), scene, picture, method);
@@ -102,10 +104,12 @@ INSTANTIATE_TEST_SUITE_P(Apis, ScenesApisTest,
                                            "flames"),
                          [](const auto& scene) { return scene.param; });
 
-// Every node format, resolve, list build and kind of multisampling.
+// Every node format, resolve, list build and kind of multisampling, or, if not thorough, every second one.
 TEST_F(ApisTest, WaysToDrawListsAreTheSame) {
   const Scene scene = makeBuiltinScene("mannequins", {});
+  std::size_t number = 0;
   for (const MethodOptions& method : methodVariety(gpu())) {
+    if (number++ % 2 == 1 && !tests::isThorough()) continue;
     if ((gl().limits().sampleCounts & method.samples) == 0) continue;
     expectSame("mannequins", scene, usualOptions(scene, 112, 63), method);
   }
@@ -129,7 +133,8 @@ TEST_F(ApisTest, TilesAreTheSame) {
   }
 }
 
-// A resolve of the host's own, with one sample and with several, from outside and from inside of what absorbs.
+// A resolve of the host's own, with one sample and, if thorough, with several, whose kernels take CPU drivers long; from
+// outside and from inside of what absorbs.
 TEST_F(ApisTest, VolumesAreTheSame) {
   Scene scene;
   scene.meshes.push_back(uvSphere(24, 12));
@@ -152,6 +157,7 @@ TEST_F(ApisTest, VolumesAreTheSame) {
   for (const View& view : {straightView(), reference::wideView()}) {
     picture.view = view;
     for (const std::uint32_t samples : {1U, 4U}) {
+      if (samples > 1 && !tests::isThorough()) continue;
       MethodOptions method;
       method.samples = samples;
       expectSame("volumes", scene, picture, method);

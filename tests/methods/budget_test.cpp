@@ -5,6 +5,7 @@
 
 #include "../../tool/scene/builtin/builtin.h"
 #include "../reference/test_scenes.h"
+#include "../thorough.h"
 #include "fixture.h"
 
 namespace vitrail::tool::test {
@@ -19,14 +20,15 @@ constexpr std::uint64_t kTooLittle = kMebibyte / 4; // for all of the scenes bel
 
 class BudgetTest : public GpuTest {
  protected:
-  // Draws a scene without a budget and with ever larger ones, until one tile holds it.
+  // Draws a scene without a budget and with ever larger ones, until one tile holds it: if thorough four times as large
+  // each time, else sixteen times.
   void expectSameBits(const Scene& scene, const RenderOptions& options, const MethodOptions& method = {}) {
     SCOPED_TRACE(describe(method));
     StillRenderer renderer(gpu(), scene, {}, DrawOrder::Forward, method);
     const RenderResult whole = renderer.render(options);
     EXPECT_EQ(whole.report.tiles, 1U);
     std::uint32_t tiles = 2;
-    for (std::uint64_t budget = kTooLittle; tiles > 1; budget *= 4) {
+    for (std::uint64_t budget = kTooLittle; tiles > 1; budget *= tests::isThorough() ? 4 : 16) {
       RenderOptions bounded = options;
       bounded.memoryBudget = budget;
       const RenderResult result = renderer.render(bounded);
@@ -37,7 +39,7 @@ class BudgetTest : public GpuTest {
       EXPECT_LE(result.report.totalBytes, budget + 4096); // statistics come on top
       EXPECT_TRUE(budget > kTooLittle || result.report.tiles > 1);
       tiles = result.report.tiles;
-      ASSERT_LT(budget, 1024 * kMebibyte);
+      ASSERT_LT(budget, 4096 * kMebibyte);
     }
   }
 };
@@ -91,16 +93,17 @@ RenderOptions paneOptions(std::uint32_t width, std::uint32_t height) {
   return options;
 }
 
-// 34 million fragments, 400 MiB of nodes.
+// 8 million fragments, 100 MiB of nodes; if thorough four times as many.
 TEST_F(BudgetTest, ALargePictureOfEightLayersIsDrawnInTiles) {
   const Scene scene = panes(8);
   const RenderResult small = renderOnce(gpu(), scene, paneOptions(4, 4));
-  RenderOptions options = paneOptions(4096, 1024);
-  options.memoryBudget = 64 * kMebibyte;
+  const std::uint32_t side = tests::isThorough() ? 2048 : 1024;
+  RenderOptions options = paneOptions(2 * side, side / 2);
+  options.memoryBudget = std::uint64_t{16} * side * side;
   const RenderResult large = renderOnce(gpu(), scene, options);
   EXPECT_TRUE(large.report.complete);
   EXPECT_GT(large.report.tiles, 4U);
-  EXPECT_EQ(large.report.fragmentsStored, 8ULL * 4096 * 1024);
+  EXPECT_EQ(large.report.fragmentsStored, 8ULL * side * side);
   EXPECT_EQ(large.report.layersMax, 8U);
   std::size_t different = 0;
   for (std::size_t i = 0; i < large.picture.rgba.size(); ++i) {

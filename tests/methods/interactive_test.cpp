@@ -11,6 +11,7 @@
 #include "../../tool/render/interactive.h"
 #include "../../tool/scene/builtin/builtin.h"
 #include "../reference/test_scenes.h"
+#include "../thorough.h"
 #include "fixture.h"
 
 namespace vitrail::tool::test {
@@ -51,7 +52,8 @@ class InteractiveTest : public GpuTest {
 
 TEST_F(InteractiveTest, PicturesInFlightAreThoseOfTheStillRenderer) {
   const Scene scene = makeBuiltinScene("spheres", {16, 1});
-  const std::vector<RenderOptions> views = turned(scene, 96, 54);
+  std::vector<RenderOptions> views = turned(scene, 96, 54);
+  if (!tests::isThorough()) views.resize(3);
   for (const MethodOptions& method : methodVariety(gpu())) {
     if (!InteractiveRenderer::draws(method)) continue;
     SCOPED_TRACE(describe(method));

@@ -15,7 +15,7 @@ constexpr std::uint32_t kOrderHeight = 180;
 // Fewer tubes than usual keep the hairball quick; its lists are still deep.
 Scene sceneOf(const std::string& name) {
   BuiltinOptions options;
-  if (name == "hairball") options.count = 1000;
+  if (name == "hairball") options.count = 600;
   return makeBuiltinScene(name, options);
 }
 

@@ -13,6 +13,7 @@
 #include "../../tool/methods/methods.h"
 #include "../../tool/scene/builtin/builtin.h"
 #include "../reference/test_scenes.h"
+#include "../thorough.h"
 #include "fixture.h"
 
 namespace vitrail::tool::test {
@@ -358,6 +359,7 @@ Scene onePlane(std::uint32_t count) {
 
 TEST_F(TilesTest, SurfacesInOnePlaneHaveAnOrderOfTheirOwn) {
   for (const std::uint32_t count : {3U, 10U, 40U, 80U}) {
+    if (count == 80 && !tests::isThorough()) continue;
     SCOPED_TRACE(std::to_string(count) + " panes");
     RenderOptions picture;
     picture.width = 48;
@@ -442,13 +444,17 @@ TEST_F(TilesTest, ManyFramesAreOne) {
        {std::pair(&hairball, usualOptions(hairball, 48, 32)), std::pair(&plane, planePicture)}) {
     const std::unique_ptr<Renderer> renderer = rendererOf(gpu(), *scene, {}, DrawOrder::Forward, methodNamed("tiles"));
     const Picture first = renderer->render(picture).picture;
-    for (int frame = 1; frame < (onCpu() ? 20 : 50); ++frame) { // few threads leave little to chance
+    const int frames = onCpu() ? 8 : 50; // few threads leave little to chance
+    for (int frame = 1; frame < (tests::isThorough() ? 5 * frames : frames); ++frame) {
       ASSERT_TRUE(renderer->render(picture).picture.rgba == first.rgba) << "frame " << frame;
     }
   }
 }
 
 // ---- Memory
+
+// What tests draw that need pipelines of their own: an unlit scene has smaller ones.
+std::string lightlyShaded() { return tests::isThorough() ? "spheres" : "planes"; }
 
 TEST_F(TilesTest, BudgetsDoNotChangeABit) {
   BuiltinOptions options;
@@ -458,7 +464,7 @@ TEST_F(TilesTest, BudgetsDoNotChangeABit) {
   const Scene deep = sheets(onCpu() ? 3000 : 5000, 0.001953125F);
   RenderOptions deepPicture;
   deepPicture.width = 8;
-  deepPicture.height = 24;
+  deepPicture.height = tests::isThorough() ? 24 : 16;
   deepPicture.view = straightView();
   for (const auto& [scene, whole, part] :
        {std::tuple(&spheres, usualOptions(spheres, 128, 72), 64), std::tuple(&deep, deepPicture, 2)}) {
@@ -492,7 +498,7 @@ TEST_F(TilesTest, VerticesThatHaveNoRoomInClipSpaceAreRight) {
   constexpr std::size_t kVertices = (std::size_t{1} << 20U) + 1; // of 16 bytes and 8 objects: more than 128 MiB
   BuiltinOptions options;
   options.count = 8;
-  Scene scene = makeBuiltinScene("spheres", options);
+  Scene scene = makeBuiltinScene(lightlyShaded(), options);
   constexpr std::uint64_t kBytes = 8 * kVertices * 16;
   const VkDeviceSize range = gpu().properties().limits.maxStorageBufferRange;
   if (range >= kBytes && gpu().localMemory() / 16 >= kBytes) GTEST_SKIP() << "there is room for so many";
@@ -547,7 +553,7 @@ TEST_F(TilesTest, SeveralSamplesAreThoseOfLists) {
 TEST_F(TilesTest, ClipPlanesCutAsElsewhere) {
   BuiltinOptions options;
   options.count = 8;
-  Scene scene = makeBuiltinScene("spheres", options);
+  Scene scene = makeBuiltinScene(lightlyShaded(), options);
   scene.clipPlanes.emplace_back(0.3F, 1.0F, 0.2F, 0.05F);
   scene.clipPlanes.emplace_back(-1.0F, 0.1F, 0.0F, 0.3F);
   const RenderOptions picture = usualOptions(scene, 120, 90);

@@ -53,9 +53,9 @@ double secondsOf(Submitter& submitter, Timers& timers, const Record& record) {
   return timers.milliseconds()[0].second * 1e-3;
 }
 
-double shortestRun(Submitter& submitter, Timers& timers, const Record& record) {
+double shortestRun(Submitter& submitter, Timers& timers, const Record& record, int repeats) {
   double shortest = secondsOf(submitter, timers, record);
-  for (int i = 1; i < kRepeats; ++i) shortest = std::min(shortest, secondsOf(submitter, timers, record));
+  for (int i = 1; i < repeats; ++i) shortest = std::min(shortest, secondsOf(submitter, timers, record));
   return shortest;
 }
 
@@ -83,16 +83,19 @@ double measureBandwidth(Gpu& gpu) {
                      {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT});
   });
-  const double byShader = shortestRun(submitter, timers, [&](VkCommandBuffer commands) {
+  const auto copyByShader = [&](VkCommandBuffer commands) {
     const VkDescriptorSet bound = set.set();
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout.get(), 0, 1, &bound, 0, nullptr);
     vkCmdDispatch(commands, kGroups, 1, 1);
-  });
-  const double byCopy = shortestRun(submitter, timers, [&](VkCommandBuffer commands) {
+  };
+  const auto copy = [&](VkCommandBuffer commands) {
     const VkBufferCopy region{0, 0, bytes};
     vkCmdCopyBuffer(commands, source.get(), destination.get(), 1, &region);
-  });
+  };
+  const bool isCpu = gpu.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const double byShader = shortestRun(submitter, timers, copyByShader, isCpu ? 1 : kRepeats); // slow, there
+  const double byCopy = shortestRun(submitter, timers, copy, kRepeats);
   return 2.0 * static_cast<double>(bytes) / std::min(byShader, byCopy);
 }
 

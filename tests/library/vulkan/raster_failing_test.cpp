@@ -234,7 +234,6 @@ RasterHostDesc hostOf(const Context& context) {
   RasterHostDesc desc;
   desc.context = &context;
   desc.width = desc.height = kBandedSide;
-  desc.indexType = VK_INDEX_TYPE_UINT32;
   return desc;
 }
 

@@ -16,12 +16,14 @@ namespace vitrail::tests::vulkan {
 
 using Vec4 = std::array<float, 4>;
 
+// Each combination of these has pipelines of its own, which take CPU drivers seconds to compile: tests leave them as they
+// are but where they are about them.
 struct RasterHostDesc {
   std::uint32_t width = 32;
   std::uint32_t height = 32;
   std::uint32_t samples = 1;
   VitrailDepthOrder depthOrder = VITRAIL_DEPTH_NEAREST_IS_ZERO;
-  VkIndexType indexType = VK_INDEX_TYPE_UINT16;
+  VkIndexType indexType = VK_INDEX_TYPE_UINT32;
   bool keepsPositions = true;
   std::uint32_t blendModes = 0;
   bool shadesTwice = false; // with one sample

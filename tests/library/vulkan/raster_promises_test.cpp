@@ -447,7 +447,6 @@ TEST_F(RasterPromisesTest, ClippedTrianglesCoverOnce) {
   constexpr std::uint32_t kPixels = 128;
   RasterHostDesc desc;
   desc.width = desc.height = kPixels;
-  desc.blendModes = 1U << VITRAIL_BLEND_OVER;
   RasterHost host(desc);
   std::mt19937 random(77);
   const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
@@ -582,7 +581,6 @@ TEST_F(RasterPromisesTest, AnyBudget) {
     desc.width = 8 + static_cast<std::uint32_t>(random() % 120);
     desc.height = 8 + static_cast<std::uint32_t>(random() % 120);
     desc.samples = i % 3 == 2 ? oneAndSeveral().back() : 1;
-    desc.indexType = VK_INDEX_TYPE_UINT32;
     desc.keepsPositions = i % 2 == 0;
     RasterScene scene = sheetsOf({{0.5F, {0.5F, 0.25F, 1.0F, 0.02F}}}, {});
     const auto triangles = static_cast<std::uint32_t>(std::exp2(3.0 + 9.0 * unit()));
