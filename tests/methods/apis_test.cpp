@@ -133,8 +133,8 @@ TEST_F(ApisTest, TilesAreTheSame) {
   }
 }
 
-// A resolve of the host's own, with one sample and, if thorough, with several, whose kernels take CPU drivers long; from
-// outside and from inside of what absorbs.
+// A resolve of the host's own, with one sample and, if thorough, with several, whose kernels take CPU drivers long;
+// from outside and from inside of what absorbs.
 TEST_F(ApisTest, VolumesAreTheSame) {
   Scene scene;
   scene.meshes.push_back(uvSphere(24, 12));

@@ -16,8 +16,8 @@ namespace vitrail::tests::vulkan {
 
 using Vec4 = std::array<float, 4>;
 
-// Each combination of these has pipelines of its own, which take CPU drivers seconds to compile: tests leave them as they
-// are but where they are about them.
+// Each combination of these has pipelines of its own, which take CPU drivers seconds to compile: tests leave them as
+// they are but where they are about them.
 struct RasterHostDesc {
   std::uint32_t width = 32;
   std::uint32_t height = 32;

@@ -785,7 +785,7 @@ TEST_F(RasterTest, PositionsThatAreNone) {
   for (const bool keeps : {true, false}) {
     RasterHostDesc desc;
     desc.keepsPositions = keeps;
-      RasterHost host(desc);
+    RasterHost host(desc);
     const RasterScene scene = sceneOf(rectangles, Form::Indices);
     RasterScene more = scene;
     const auto add = [&](const Vec4& a, const Vec4& b, const Vec4& c) {
