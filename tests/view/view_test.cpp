@@ -20,6 +20,7 @@
 #include "commands/method_choice.h"
 #include "gpu/device.h"
 
+#include "../thorough.h"
 #include "../tool/png_reader.h"
 #include "../tool/vitrail.h"
 #include "desk.h"
@@ -190,6 +191,12 @@ class ViewTest : public testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(Devices, ViewTest, testing::Values("cpu", "llvmpipe"),
                          [](const auto& device) { return device.param; });
 
+// What the window does itself, whatever draws: on the processor, if thorough on Mesa's driver, too.
+class WindowTest : public ViewTest {};
+INSTANTIATE_TEST_SUITE_P(Devices, WindowTest,
+                         testing::ValuesIn(tests::isThorough() ? Words{"cpu", "llvmpipe"} : Words{"cpu"}),
+                         [](const auto& device) { return device.param; });
+
 TEST_P(ViewTest, ShowsWhatRenderDraws) {
   View view(folder_, with({"--scene", "spheres", "--count", "64"}));
   EXPECT_EQ(view.happened("opened")["text"], "spheres");
@@ -201,7 +208,7 @@ TEST_P(ViewTest, ShowsWhatRenderDraws) {
   view.expectClosesWell();
 }
 
-TEST_P(ViewTest, TheCameraIsMovedByMouseAndKeys) {
+TEST_P(WindowTest, TheCameraIsMovedByMouseAndKeys) {
   View view(folder_, with({"--scene", "interlocked"}));
   std::set<std::string> commands{view.settled()["command"]};
   const auto expectAnother = [&](const char* how) {
@@ -229,7 +236,7 @@ TEST_P(ViewTest, TheCameraIsMovedByMouseAndKeys) {
   view.expectClosesWell();
 }
 
-TEST_P(ViewTest, RotatesUntilItIsToldToStop) {
+TEST_P(WindowTest, RotatesUntilItIsToldToStop) {
   View view(folder_, with({"--scene", "interlocked"}));
   const Json first = view.settled();
   view.desk.key("space");
@@ -310,7 +317,7 @@ TEST_P(ViewTest, AClickListsTheLayersUnderIt) {
   view.expectClosesWell();
 }
 
-TEST_P(ViewTest, ShowsAPartOfTheModel) {
+TEST_P(WindowTest, ShowsAPartOfTheModel) {
   View view(folder_,
             with({"--scene", "interlocked", "--hide", "pane 0", "--fade", "ring 1=0.3", "--clip-plane=0,-1,0,-0.3"}));
   const Json shown = view.settled();
@@ -320,7 +327,7 @@ TEST_P(ViewTest, ShowsAPartOfTheModel) {
 }
 
 // The plane that cuts is dragged in the picture, by a handle.
-TEST_P(ViewTest, TheCutIsDragged) {
+TEST_P(WindowTest, TheCutIsDragged) {
   View view(folder_, with({"--scene", "interlocked", "--clip-plane=0,-1,0,-0.3", "--orbit", "20,10"}));
   view.settled();
   view.desk.resize(1100, 700); // the handle is beside the panel
@@ -349,7 +356,7 @@ TEST_P(ViewTest, TheCutIsDragged) {
   view.expectClosesWell();
 }
 
-TEST_P(ViewTest, OpensWhatIsDropped) {
+TEST_P(WindowTest, OpensWhatIsDropped) {
   View view(folder_, with({"--scene", "interlocked"}));
   const Json first = view.settled();
   std::ofstream(folder_.file("bad.glb")) << "no model";
@@ -369,7 +376,7 @@ TEST_P(ViewTest, OpensWhatIsDropped) {
   view.expectClosesWell();
 }
 
-TEST_P(ViewTest, SavesAndCopiesWhatItShows) {
+TEST_P(WindowTest, SavesAndCopiesWhatItShows) {
   View view(folder_, with({"--scene", "interlocked", "--opacity", "0.4", "--background", "#123456"}));
   view.settled();
   view.desk.key("Up");
