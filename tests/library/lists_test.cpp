@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../thorough.h"
 #include "expected.h"
 
 namespace vitrail::tests {
@@ -46,8 +47,12 @@ void expectLikeReference(const PointResult& result, const Expected& expected, do
 }
 
 TEST_P(ListsTest, EveryListLengthMatchesTheReferenceInEveryOrder) {
+  std::size_t number = 0;
   for (const Way& way : everyWay(features(), 1)) {
     for (const VitrailDepthOrder depthOrder : {VITRAIL_DEPTH_NEAREST_IS_ZERO, VITRAIL_DEPTH_NEAREST_IS_ONE}) {
+      // Each has kernels of its own: if not thorough, every way has one of them, in turns.
+      const std::size_t place = number++;
+      if (place / 2 % 2 != place % 2 && !isThorough()) continue;
       SCOPED_TRACE(way.name);
       HostDesc desc;
       desc.width = 16;

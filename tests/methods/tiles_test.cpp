@@ -260,6 +260,7 @@ TEST_F(TilesTest, PixelsOfAnyDepthAreRight) {
   };
   for (const Depth& depth : {Depth{24, 0.0625F, 21}, Depth{300, 0.0078125F, 13}, Depth{1100, 0.001953125F, 6},
                              Depth{5000, 0.00048828125F, 3}, Depth{100000, 0.0000152587890625F, 3}}) {
+    if ((depth.count == 1100 || depth.count == 5000) && !tests::isThorough()) continue;
     SCOPED_TRACE(std::to_string(depth.count) + " sheets");
     RenderOptions picture;
     picture.width = picture.height = depth.side;
@@ -270,7 +271,8 @@ TEST_F(TilesTest, PixelsOfAnyDepthAreRight) {
 
 // Each covers one pixel of the tile, all at depths of their own.
 TEST_F(TilesTest, ATileWithAMillionTrianglesIsRight) {
-  const std::uint32_t count = onCpu() ? 1U << 18U : 1U << 20U; // takes CPU drivers long
+  const std::uint32_t onCpus = tests::isThorough() ? 1U << 18U : 1U << 16U; // takes their drivers long
+  const std::uint32_t count = onCpu() ? onCpus : 1U << 20U;
   constexpr float kAlpha = 1.0F / 32768.0F;
   Scene scene;
   Mesh mesh;
@@ -359,7 +361,7 @@ Scene onePlane(std::uint32_t count) {
 
 TEST_F(TilesTest, SurfacesInOnePlaneHaveAnOrderOfTheirOwn) {
   for (const std::uint32_t count : {3U, 10U, 40U, 80U}) {
-    if (count == 80 && !tests::isThorough()) continue;
+    if ((count == 10 || count == 80) && !tests::isThorough()) continue;
     SCOPED_TRACE(std::to_string(count) + " panes");
     RenderOptions picture;
     picture.width = 48;
@@ -418,6 +420,7 @@ TEST_F(TilesTest, SurfacesInOnePlaneAmongManyTriangles) {
 
 TEST_F(TilesTest, EverySceneIsTheSameInEveryOrder) {
   for (const std::string name : {"mannequins", "hairball", "smoke"}) {
+    if (name == "mannequins" && !tests::isThorough()) continue; // the hairball is lit, too
     SCOPED_TRACE(name);
     BuiltinOptions options;
     if (name == "hairball") options.count = 600;

@@ -401,8 +401,9 @@ TEST_P(ViewTest, TakesWhateverInputThereIs) {
   const std::vector<std::string> keys = {
       "1",     "3",  "7",    "f",     "r",     "space",  "Tab", "s", "bracketleft", "bracketright", "Left",
       "Right", "Up", "Down", "equal", "minus", "Escape", "x",   "m"};
-  const auto seconds = std::chrono::seconds(
-      std::getenv("VITRAIL_TEST_SECONDS") != nullptr ? std::atoi(std::getenv("VITRAIL_TEST_SECONDS")) : 8);
+  const auto seconds = std::chrono::seconds(std::getenv("VITRAIL_TEST_SECONDS") != nullptr
+                                                ? std::atoi(std::getenv("VITRAIL_TEST_SECONDS"))
+                                                : (tests::isThorough() ? 8 : 4));
   for (const auto end = Clock::now() + seconds; Clock::now() < end;) {
     switch (below(5)) {
       case 0:
