@@ -30,6 +30,9 @@ const uint VITRAIL_ORDER_LAST = (1u << VITRAIL_ORDER_SHIFT) - 1u;
 shared uint vitrailKeptOrder[(VITRAIL_RASTER_KEEP >> VITRAIL_ORDER_SHIFT) * VITRAIL_RASTER_PIXELS];
 shared uint vitrailGoesOn[2]; // in turns
 shared uint vitrailTooShort;
+// The tile and how many records it has: looked up where they are asked for again, so that no register has to hold them
+// meanwhile.
+shared uvec2 vitrailTileNow;
 
 uint vitrailTile; // which it is
 uint vitrailAlikeFirst; // of the fragments that are blended
@@ -73,6 +76,7 @@ bool vitrailIsBefore(uint a, uint b) {
 }
 
 uint vitrailNumberBits; // of keys, which hold as much of the depth as there is room for above the record's number
+uint vitrailNumberBitsOf(uint count) { return max(uint(findMSB(max(count, 2u) * 2u - 1u)), 2u); } // depths have 30
 uint vitrailDepthPart(uint key) { return key >> vitrailNumberBits; }
 
 // Takes one of a batch's fragments that cover the pixel, or none where there is none any more.
@@ -243,24 +247,23 @@ void vitrailBlendTile(uint tile, uint count) {
   bool inside = vitrailIsInside(pixel);
   if (!inside) pixel = ivec2(0);
   VitrailPixelLight light = vitrailLightBehind(pixel);
-  float farthest = vitrailFarthestDepth(pixel);
-  vitrailNumberBits = max(uint(findMSB(max(count, 2u) * 2u - 1u)), 2u); // keys of depths have 30
-  bool isEmpty = true;
+  vitrailNumberBits = vitrailNumberBitsOf(count);
   bool ended = !inside;
   bool isFirst = true;
   uint from = 0u;
   if (vitrailThread == 0u) {
+    vitrailTileNow = uvec2(tile, count);
     vitrailTooShort = 0u;
     vitrailGoesOn[0] = 0u;
   }
-  uint batches = (count + VITRAIL_RASTER_PIXELS - 1u) / VITRAIL_RASTER_PIXELS;
-  uint turns = max(vitrailRaster.mostVisits / batches, 1u);
-  for (uint i = 0u; i < turns; ++i) {
-    uint turn = i & 1u;
-    uint left = vitrailFindNearest(count, from, corner, farthest, ended, isFirst);
+  uint turns = 0u; // that are done
+  do {
+    uint turn = turns & 1u;
+    // Asked for in each turn: registers are dearer.
+    uint end = vitrailFindNearest(count, from, corner, vitrailFarthestDepth(pixel), ended, isFirst);
     isFirst = false;
     // All of a depth that some were left of come in the next turn.
-    uint end = left == VITRAIL_NO_FRAGMENT ? VITRAIL_NO_FRAGMENT : vitrailDepthPart(left) << vitrailNumberBits;
+    if (end != VITRAIL_NO_FRAGMENT) end = vitrailDepthPart(end) << vitrailNumberBits;
     uint kept = 0u;
     uint ties = 0u;
     uint numbers = (1u << vitrailNumberBits) - 1u;
@@ -292,7 +295,6 @@ void vitrailBlendTile(uint tile, uint count) {
     for (; k < kept && !ended && (ties >> k & 1u) == 0u; ++k) {
       vitrailAlikeFirst = k;
       vitrailBlendAlike(light, pixel, vitrailThread, 1u);
-      isEmpty = false;
       if (vitrailHasEnough(light)) ended = true;
     }
     uint singles = 0u; // at one depth, more than whose order their colours decide
@@ -305,12 +307,11 @@ void vitrailBlendTile(uint tile, uint count) {
       }
       vitrailAlikeFirst = k;
       vitrailBlendAlike(light, pixel, vitrailThread, alike);
-      isEmpty = false;
       k += alike;
       if (vitrailHasEnough(light)) ended = true;
     }
     if (k < kept && !ended) vitrailTooShort = 1u; // as above
-    if (left == VITRAIL_NO_FRAGMENT) ended = true;
+    if (end == VITRAIL_NO_FRAGMENT) ended = true;
     if (!ended && kept == 0u) { // more than there is room for have one depth
       vitrailTooShort = 1u;
       ended = true;
@@ -321,17 +322,24 @@ void vitrailBlendTile(uint tile, uint count) {
     if (vitrailGoesOn[turn] == 0u) break;
     if (vitrailThread == 0u) vitrailGoesOn[turn ^ 1u] = 0u;
     barrier();
-  }
+    tile = vitrailTileNow.x;
+    count = vitrailTileNow.y;
+    corner = vitrailFirstPixel(tile);
+    vitrailNumberBits = vitrailNumberBitsOf(count);
+    ++turns;
+  } while (turns < vitrailRaster.mostVisits / ((count + VITRAIL_RASTER_PIXELS - 1u) / VITRAIL_RASTER_PIXELS));
   if (!ended) vitrailTooShort = 1u; // too many turns, or as above
   barrier();
   if (vitrailTooShort != 0u) {
-    if (vitrailThread == 0u) vitrailAddDeep(tile, count);
+    if (vitrailThread == 0u) vitrailAddDeep(vitrailTileNow.x, vitrailTileNow.y);
     return;
   }
 #ifdef VITRAIL_MULTISAMPLED
-  if (inside) vitrailBlendOver(pixel, light); // else nobody writes the pixel
+  // Else nobody writes the pixel.
+  if (vitrailIsInside(vitrailFirstPixel(vitrailTileNow.x) + vitrailInTile)) vitrailBlendOver(pixel, light);
 #else
-  if (inside && !isEmpty) vitrailBlendOver(pixel, light);
+  bool isEmpty = light.through[0] == vec4(1.0) && light.color == vec3(0.0); // as where there is no pixel
+  if (!isEmpty) vitrailBlendOver(pixel, light);
 #endif
 }
 
