@@ -74,14 +74,14 @@ vec2 vitrailPixels(VitrailViewport viewport, vec4 p, out float depth) {
   return pixels;
 }
 
-// Pixels to subpixels: to the nearest, ties to even.
-ivec2 vitrailSnap(vec2 pixels) {
+// Pixels to subpixels, which are whole numbers: to the nearest, ties to even.
+vec2 vitrailSnap(vec2 pixels) {
   const float most = 2.0 * 32767.0;
-  return ivec2(roundEven(clamp(pixels, vec2(-most), vec2(most)) * 256.0));
+  return roundEven(clamp(pixels, vec2(-most), vec2(most)) * 256.0);
 }
 
 // The same of what needs no clipping: it is within these bounds.
-ivec2 vitrailSnapInside(vec2 pixels) { return ivec2(roundEven(pixels * 256.0)); }
+vec2 vitrailSnapInside(vec2 pixels) { return roundEven(pixels * 256.0); }
 
 // The corner between one that is inside a plane and one that is outside, always from the inside: both triangles at an
 // edge get the same one.

@@ -76,9 +76,12 @@ bool vitrailIsLittle(ivec2 p0, ivec2 p1, ivec2 p2) {
   return max(extent.x, extent.y) < VITRAIL_MOST_LITTLE;
 }
 
-int vitrailLittleArea(ivec2 p0, ivec2 p1, ivec2 p2) {
-  ivec2 a = p1 - p0;
-  ivec2 b = p2 - p0;
+// Where they are even nearer to each other, floats hold products and their sums exactly: whole numbers below 2^24.
+const float VITRAIL_MOST_SMALL = 2560.0;
+
+float vitrailSmallArea(vec2 p0, vec2 p1, vec2 p2) {
+  vec2 a = p1 - p0;
+  vec2 b = p2 - p0;
   return a.x * b.y - a.y * b.x;
 }
 
@@ -131,38 +134,61 @@ struct VitrailRows {
 
 // The triangle's corners in such an order that the first edge begins what is inside of a row, and the second ends it,
 // or is level: the last corner is the uppermost.
-void vitrailTurnCorners(inout ivec2 p0, inout ivec2 p1, inout ivec2 p2) {
-  ivec2 a = p0;
-  ivec2 b = p1;
-  if (p2.y <= p0.y && p2.y < p1.y) return;
-  if (p0.y <= p1.y && p0.y < p2.y) {
-    p0 = b;
-    p1 = p2;
-    p2 = a;
-  } else {
-    p0 = p2;
-    p1 = a;
-    p2 = b;
-  }
+#define VITRAIL_TURN_CORNERS(corner_) \
+void vitrailTurnCorners(inout corner_ p0, inout corner_ p1, inout corner_ p2) { \
+  corner_ a = p0; \
+  corner_ b = p1; \
+  if (p2.y <= p0.y && p2.y < p1.y) return; \
+  if (p0.y <= p1.y && p0.y < p2.y) { \
+    p0 = b; \
+    p1 = p2; \
+    p2 = a; \
+  } else { \
+    p0 = p2; \
+    p1 = a; \
+    p2 = b; \
+  } \
 }
+VITRAIL_TURN_CORNERS(ivec2)
+VITRAIL_TURN_CORNERS(vec2)
+#undef VITRAIL_TURN_CORNERS
 
-// Of a little triangle whose corners are in that order; `pixel` is the first, whose corner is among the triangle's or a
-// tile away.
-VitrailRows vitrailRows(ivec2 p0, ivec2 p1, ivec2 p2, ivec2 pixel) {
-  VitrailEdges e = vitrailEdges(p0, p1, p2);
+// Of a triangle whose corners are in that order.
+VitrailRows vitrailRows(vec3 corner, vec3 right, vec3 down) {
   VitrailRows rows;
-  rows.corner = vec3(vitrailLittleEdgesAt(e, p0, p1, p2, pixel * VITRAIL_SUBPIXELS) >> 4);
-  rows.right = vec3(e.right);
-  rows.down = vec3(e.down);
+  rows.corner = corner;
+  rows.right = right;
+  rows.down = down;
   const float most = 65536.0; // of a level edge: all of a row is inside or nothing
-  vec3 way = -1.0 / (128.0 * rows.right);
-  if (e.right.y == 0) way.y = most;
-  if (e.right.z == 0) way.z = most;
-  bool begins = e.right.z > 0;
+  vec3 way = -1.0 / (128.0 * right);
+  if (right.y == 0.0) way.y = most;
+  if (right.z == 0.0) way.z = most;
+  bool begins = right.z > 0.0;
   vec3 half_ = 0.5 * way + 0.125;
   rows.scale = vec4(way.xy, begins ? vec2(way.z, 0.0) : vec2(0.0, way.z));
   rows.bias = vec4(half_.xy, begins ? vec2(half_.z, 1.0) : vec2(0.0, half_.z));
   return rows;
+}
+
+// Of a little one; `pixel` is the first, whose corner is among the triangle's or a tile away.
+VitrailRows vitrailLittleRows(ivec2 p0, ivec2 p1, ivec2 p2, ivec2 pixel) {
+  VitrailEdges e = vitrailEdges(p0, p1, p2);
+  vec3 corner = vec3(vitrailLittleEdgesAt(e, p0, p1, p2, pixel * VITRAIL_SUBPIXELS) >> 4);
+  return vitrailRows(corner, vec3(e.right), vec3(e.down));
+}
+
+// Of one whose corners are less than VITRAIL_MOST_SMALL apart; `place` is the corner of the first pixel, which is among
+// the triangle's or half a pixel away. The same edges, in floats: converting whole numbers takes longer than they do.
+VitrailRows vitrailSmallRows(vec2 p0, vec2 p1, vec2 p2, vec2 place) {
+  vec3 right = vec3(p1.y - p2.y, p2.y - p0.y, p0.y - p1.y);
+  vec3 down = vec3(p2.x - p1.x, p0.x - p2.x, p1.x - p0.x);
+  vec3 x = vec3(place.x - p1.x, place.x - p2.x, place.x - p0.x);
+  vec3 y = vec3(place.y - p1.y, place.y - p2.y, place.y - p0.y);
+  vec3 edges = right * x + down * y;
+  for (int i = 0; i < 3; ++i) {
+    if (!(right[i] > 0.0 || (right[i] == 0.0 && down[i] > 0.0))) edges[i] -= 1.0; // bias
+  }
+  return vitrailRows(floor(edges * 0.0625), right, down);
 }
 
 // Of eighths from 0 to 8 the whole ones. The sum has 20 bits behind the point, whichever way it is rounded, and is made
@@ -175,7 +201,7 @@ uint vitrailWholeOf(float eighths) { return (floatBitsToUint(fma(eighths, 8.0, 8
     vec4 ends = clamp(fma(at.xyzz, rows.scale, rows.bias), 0.0, 1.0); \
     uint first = vitrailWholeOf(max(ends.x, ends.z)); \
     uint count = vitrailWholeOf(min(ends.y, ends.w)); \
-    covered |= (0xffu << first & ((1u << count) - 1u)) << (8 * y); \
+    covered += (0xffu << first & ((1u << count) - 1u)) << (8 * y); \
     at += rows.down * 16.0; \
   } \
   return covered;
@@ -221,12 +247,12 @@ struct VitrailPlane {
 
 // `area` is vitrailArea(), not 0. A triangle so thin that its plane would be nothing but rounding is as deep as its
 // corners in the mean.
-VitrailPlane vitrailPlane(ivec2 p0, ivec2 p1, ivec2 p2, vec3 depths, float area) {
-  vec2 a = vec2(p1 - p0);
-  vec2 b = vec2(p2 - p0);
+VitrailPlane vitrailPlane(vec2 p0, vec2 p1, vec2 p2, vec3 depths, float area) {
+  vec2 a = p1 - p0;
+  vec2 b = p2 - p0;
   vec2 rise = depths.yz - depths.x;
   VitrailPlane plane;
-  plane.place = vec2(p0);
+  plane.place = p0;
   float longest = max(max(abs(a.x) + abs(a.y), abs(b.x) + abs(b.y)), abs(a.x - b.x) + abs(a.y - b.y));
   if (4.0 * abs(area) < longest) {
     plane.depth = vec3((depths.x + depths.y + depths.z) / 3.0, 0.0, 0.0);

@@ -18,54 +18,65 @@ shared uvec2 vitrailGroupMedium[VITRAIL_RASTER_SET_UP * VITRAIL_RASTER_TURNS];
 shared uint vitrailGroupMediums;
 shared uint vitrailGroupFirstMedium;
 
-// To higher bits, or lower ones where `bits` is negative.
-uvec2 vitrailShifted(uvec2 mask, int bits) {
-  if (bits >= 32) return uvec2(0u, mask.x << (bits - 32));
-  if (bits >= 0) return uvec2(mask.x << bits, mask.y << bits | mask.x >> 1 >> (31 - bits));
-  if (bits > -32) return uvec2(mask.x >> -bits | mask.y << 1 << (31 + bits), mask.y >> -bits);
-  return uvec2(bits > -64 ? mask.y >> (-bits - 32) : 0u, 0u);
+// The four tiles in which 8 x 8 pixels may lie: the one that holds the first pixel, the one to the right (bit 0 of a
+// part's number), below (bit 1) and both.
+struct VitrailParts {
+  ivec2 first;  // pixel, in its tile
+  uint columns; // of a tile's pixels those in the left tiles, in four rows
+  uvec2 rows;   // those in the lower tiles
+};
+
+VitrailParts vitrailPartsAt(ivec2 first) {
+  VitrailParts parts;
+  parts.first = first & (VITRAIL_TILE_SIDE - 1);
+  parts.columns = (0xffu << parts.first.x & 0xffu) * 0x01010101u;
+  uint bits = 8u * uint(parts.first.y);
+  parts.rows = uvec2(bits >= 32u ? 0xffffffffu : (1u << bits) - 1u, bits > 32u ? (1u << (bits - 32u)) - 1u : 0u);
+  return parts;
 }
 
-// Which pixels of a tile are covered of 8 x 8, of which `first` is the first: of the tile that holds this one, the one
-// to the right (bit 0 of `part`), below (bit 1) or both.
-uvec2 vitrailCutAtTiles(uvec2 mask, ivec2 first, uint part) {
-  ivec2 in_ = first & (VITRAIL_TILE_SIDE - 1);
-  uint columns = (0xffu >> in_.x) * 0x01010101u; // that are in the left tile
-  mask &= (part & 1u) != 0u ? ~columns : columns;
-  ivec2 tile = ivec2(part & 1u, part >> 1) * VITRAIL_TILE_SIDE;
-  return vitrailShifted(mask, 8 * (in_.y - tile.y) + in_.x - tile.x); // what is in other rows falls off at either end
+// Which pixels of tiles are covered of 8 x 8, of all four tiles together: each is in another place of its tile, which is
+// where it gets by going round in rows and columns.
+uvec2 vitrailInTiles(VitrailParts parts, uvec2 mask) {
+  if (parts.first.y >= 4) mask = mask.yx;
+  uint bits = 8u * (uint(parts.first.y) & 3u);
+  mask = mask << bits | mask.yx >> 1 >> (31u - bits);
+  uint columns = uint(parts.first.x);
+  return (mask << columns & parts.columns) | (mask >> (8u - columns) & ~parts.columns);
 }
 
-// In which of the four tiles it covers something, a bit for each part.
-uint vitrailPartsOf(uvec2 mask, ivec2 first) {
-  ivec2 in_ = first & (VITRAIL_TILE_SIDE - 1);
-  uint left = (0xffu >> in_.x) * 0x01010101u;
-  int rows = VITRAIL_TILE_SIDE - in_.y; // in the upper tile
-  uvec2 upper = uvec2(rows >= 4 ? 0xffffffffu : (1u << (8 * rows)) - 1u,
-                      rows >= 8 ? 0xffffffffu : (1u << (8 * max(rows - 4, 0))) - 1u);
-  uvec2 above = mask & upper;
-  uvec2 below = mask & ~upper;
-  uint a = above.x | above.y;
-  uint b = below.x | below.y;
-  return ((a & left) != 0u ? 1u : 0u) | ((a & ~left) != 0u ? 2u : 0u) | ((b & left) != 0u ? 4u : 0u) |
-         ((b & ~left) != 0u ? 8u : 0u);
+uvec2 vitrailOfPart(VitrailParts parts, uvec2 inTiles, uint part) {
+  uvec2 rows = (part & 2u) != 0u ? parts.rows : ~parts.rows;
+  return inTiles & rows & ((part & 1u) != 0u ? ~parts.columns : parts.columns);
+}
+
+// In which of the four something is covered, a bit for each.
+uint vitrailPartsWith(VitrailParts parts, uvec2 inTiles) {
+  uvec2 left = inTiles & parts.columns;
+  uvec2 right = inTiles & ~parts.columns;
+  uvec4 any_ = uvec4((left.x & ~parts.rows.x) | (left.y & ~parts.rows.y),
+                     (right.x & ~parts.rows.x) | (right.y & ~parts.rows.y),
+                     (left.x & parts.rows.x) | (left.y & parts.rows.y),
+                     (right.x & parts.rows.x) | (right.y & parts.rows.y));
+  return (any_.x != 0u ? 1u : 0u) | (any_.y != 0u ? 2u : 0u) | (any_.z != 0u ? 4u : 0u) | (any_.w != 0u ? 8u : 0u);
 }
 
 // Makes the records of a small triangle.
 void vitrailSetUpSmall(VitrailTriangle t, uint draw, ivec2 first, ivec2 last) {
-  int area = vitrailLittleArea(t.p0, t.p1, t.p2);
+  float area = vitrailSmallArea(t.p0, t.p1, t.p2);
   bool front;
-  if (area == 0 || !vitrailSideOf(draw, area > 0, front)) return;
-  ivec2 p0 = t.p0;
-  ivec2 p1 = area > 0 ? t.p1 : t.p2;
-  ivec2 p2 = area > 0 ? t.p2 : t.p1;
+  if (area == 0.0 || !vitrailSideOf(draw, area > 0.0, front)) return;
+  vec2 p0 = t.p0;
+  vec2 p1 = area > 0.0 ? t.p1 : t.p2;
+  vec2 p2 = area > 0.0 ? t.p2 : t.p1;
   vitrailTurnCorners(p0, p1, p2);
-  VitrailRows rows = vitrailRows(p0, p1, p2, first);
+  VitrailRows rows = vitrailSmallRows(p0, p1, p2, vec2(first) * float(VITRAIL_SUBPIXELS));
   int count = last.y - first.y + 1;
   uvec2 window = uvec2(0xffffffffu);
   if (any(greaterThan(first + VITRAIL_TILE_SIDE, ivec2(vitrailRaster.width, vitrailRaster.bottom)))) {
     window = vitrailTileWindow(ivec2(0), last - first + 1);
   }
+  VitrailParts parts = vitrailPartsAt(first);
   uvec2 samples[VITRAIL_RASTER_SAMPLES_KEPT];
   uvec2 covered = uvec2(0u);
 #define VITRAIL_COVER_SAMPLE(i) \
@@ -73,21 +84,22 @@ void vitrailSetUpSmall(VitrailTriangle t, uint draw, ivec2 first, ivec2 last) {
   if (i < VITRAIL_RASTER_SAMPLES) { \
     samples[i] = window & (VITRAIL_RASTER_SAMPLES == 1u ? vitrailFewRowCoverage(rows, count) \
                                                         : vitrailRowCoverage(rows, vitrailSamplePlace(i), count)); \
+    samples[i] = vitrailInTiles(parts, samples[i]); \
     covered |= samples[i]; \
   }
   VITRAIL_EACH_SAMPLE(VITRAIL_COVER_SAMPLE)
   if ((covered.x | covered.y) == 0u) return;
-  VitrailSource source = vitrailSourceOf(t, front, float(area));
-  uint parts = vitrailPartsOf(covered, first);
-  while (parts != 0u) {
-    uint part = uint(findLSB(parts));
-    parts &= parts - 1u;
+  VitrailSource source = vitrailSourceOf(t, front, area);
+  uint left = vitrailPartsWith(parts, covered);
+  while (left != 0u) {
+    uint part = uint(findLSB(left));
+    left &= left - 1u;
     ivec2 tile = (first >> 3) + ivec2(part & 1u, part >> 1);
-    uint place = vitrailMakeRecord(tile, vitrailCutAtTiles(covered, first, part), source);
+    uint place = vitrailMakeRecord(tile, vitrailOfPart(parts, covered, part), source);
 #ifdef VITRAIL_MULTISAMPLED
     if (place >= vitrailRaster.recordCapacity) continue; // the frame is drawn again
     uvec2 inTile[VITRAIL_RASTER_SAMPLES_KEPT];
-#define VITRAIL_CUT_SAMPLE(i) inTile[i] = vitrailCutAtTiles(samples[i], first, part);
+#define VITRAIL_CUT_SAMPLE(i) inTile[i] = vitrailOfPart(parts, samples[i], part);
     VITRAIL_EACH_SAMPLE(VITRAIL_CUT_SAMPLE)
     vitrailKeepSamples(place, inTile);
 #endif
@@ -113,17 +125,18 @@ bool vitrailSetUp(uint draw, uint corners, uvec2 source, uvec3 indices) {
   }
   ivec2 first, last, low, high;
   vitrailBoundsOf(t, first, last);
+  if (any(greaterThan(first, last))) return false;
+  vec2 extent = max(t.p0, max(t.p1, t.p2)) - min(t.p0, min(t.p1, t.p2));
+  if (all(lessThan(last - first, ivec2(VITRAIL_TILE_SIDE))) && max(extent.x, extent.y) < VITRAIL_MOST_SMALL) {
+    vitrailSetUpSmall(t, draw, first, last);
+    return false;
+  }
   uint count = vitrailCandidates(first, last, ivec2(0), ivec2(0x7fffffff), low, high);
   if (count > VITRAIL_RASTER_LARGE) {
     vitrailPutAsideLarge(source);
     return false;
   }
-  if (count == 0u) return false;
-  if (all(lessThan(last - first, ivec2(VITRAIL_TILE_SIDE))) && vitrailIsLittle(t.p0, t.p1, t.p2)) {
-    vitrailSetUpSmall(t, draw, first, last);
-    return false;
-  }
-  return true;
+  return count > 0u;
 }
 
 // Room in the list of all groups' medium triangles, for those of this one.
@@ -145,23 +158,32 @@ void main() {
   uint firstOfDraw = vitrailDrawPlaces[draw].lookup.x;
   uint count = size.x * size.y;
   uint first = (group - size.z) * (VITRAIL_RASTER_SET_UP * VITRAIL_RASTER_TURNS);
+  // One division for all turns: whole numbers are divided in many steps.
+  uint firstInstance = first < size.x ? 0u : first / size.x;
+  uint firstInInstance = first - firstInstance * size.x;
   uvec2 nextSource = uvec2(0u);
   uvec3 nextIndices = uvec3(0u);
-#define VITRAIL_LOAD_NEXT(number_) \
-  if ((number_) < count) { \
-    uint number = number_; \
-    uint instance = number < size.x ? 0u : number / size.x; \
-    nextSource = uvec2(vitrailNameOf(firstOfDraw, number - instance * size.x), size.w + instance); \
+#define VITRAIL_LOAD_NEXT(offset) \
+  if (first + (offset) < count) { \
+    uint number = firstInInstance + (offset); \
+    uint instance = firstInstance; \
+    if (number >= size.x) { /* in few groups, but of small meshes */ \
+      uint more = number / size.x; \
+      instance += more; \
+      number -= more * size.x; \
+    } \
+    nextSource = uvec2(vitrailNameOf(firstOfDraw, number), size.w + instance); \
     nextIndices = vitrailIndicesAt(draw, corners, nextSource.x); \
   }
-  VITRAIL_LOAD_NEXT(first + thread)
-  for (uint i = 0u; i < VITRAIL_RASTER_TURNS && first < count; ++i) {
+  VITRAIL_LOAD_NEXT(thread)
+  uint offset = thread;
+  for (uint i = 0u; i < VITRAIL_RASTER_TURNS && first + (offset - thread) < count; ++i) {
     uvec2 source = nextSource;
     uvec3 indices = nextIndices;
-    bool isThere = first + thread < count;
-    first += VITRAIL_RASTER_SET_UP;
+    bool isThere = first + offset < count;
+    offset += VITRAIL_RASTER_SET_UP;
     if (i + 1u < VITRAIL_RASTER_TURNS) { // they are there when this turn ends
-      VITRAIL_LOAD_NEXT(first + thread)
+      VITRAIL_LOAD_NEXT(offset)
     }
     if (isThere && vitrailSetUp(draw, corners, source, indices)) {
       vitrailGroupMedium[atomicAdd(vitrailGroupMediums, 1u)] = source;

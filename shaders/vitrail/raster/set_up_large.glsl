@@ -24,7 +24,7 @@ shared uint vitrailGroupPieces;
 // Puts a triangle where all threads find it.
 void vitrailShareTriangle(uint i, VitrailTriangle t, VitrailSource source, ivec2 low, ivec2 high) {
   vitrailGroupCorners[i] = ivec4(t.p0, t.p1);
-  vitrailGroupTiles[i] = ivec4(t.p2, low.x | low.y << 16, high.x - low.x);
+  vitrailGroupTiles[i] = ivec4(ivec2(t.p2), low.x | low.y << 16, high.x - low.x);
   vitrailGroupPlanes[i] = vec4(source.plane.depth, source.nearest);
   vitrailGroupSources[i] = uvec2(source.name, source.item);
 }
@@ -74,7 +74,7 @@ void vitrailCoverCandidate(uint i) {
 #endif
   if (vitrailIsLittle(p0, p1, p2)) {
     vitrailTurnCorners(p0, p1, p2);
-    VitrailRows rows = vitrailRows(p0, p1, p2, pixel);
+    VitrailRows rows = vitrailLittleRows(p0, p1, p2, pixel);
     for (uint k = 0u; k < VITRAIL_RASTER_SAMPLES; ++k) {
       VITRAIL_TAKE_COVERED(k, vitrailRowCoverage(rows, vitrailSamplePlace(k), VITRAIL_TILE_SIDE))
     }

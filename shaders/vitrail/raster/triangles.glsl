@@ -10,9 +10,9 @@
 #include "surface.glsl"
 
 struct VitrailTriangle {
-  ivec2 p0;
-  ivec2 p1;
-  ivec2 p2;
+  vec2 p0; // in subpixels: whole numbers
+  vec2 p1;
+  vec2 p2;
   vec3 depths;
   uint name; // of the primitive
   uint item;
@@ -79,10 +79,10 @@ bool vitrailPolygonNeedsClipping(VitrailViewport viewport, VitrailPolygon polygo
 
 // The pixels from `first` to `last` of which a triangle may cover something, within the band.
 void vitrailBoundsOf(VitrailTriangle t, out ivec2 first, out ivec2 last) {
-  const int middle = VITRAIL_RASTER_SAMPLES == 1u ? VITRAIL_SUBPIXELS / 2 : 0; // samples are anywhere
-  const int behind = VITRAIL_RASTER_SAMPLES == 1u ? VITRAIL_SUBPIXELS / 2 - 1 : 0;
-  first = (min(t.p0, min(t.p1, t.p2)) + behind) >> 8;
-  last = (max(t.p0, max(t.p1, t.p2)) - middle) >> 8;
+  const float middle = VITRAIL_RASTER_SAMPLES == 1u ? 128.0 : 0.0; // samples are anywhere
+  const float behind = VITRAIL_RASTER_SAMPLES == 1u ? 127.0 : 0.0;
+  first = ivec2(floor((min(t.p0, min(t.p1, t.p2)) + behind) * (1.0 / 256.0)));
+  last = ivec2(floor((max(t.p0, max(t.p1, t.p2)) - middle) * (1.0 / 256.0)));
   first = max(first, ivec2(0, int(vitrailRaster.top)));
   last = min(last, ivec2(vitrailRaster.width, vitrailRaster.bottom) - 1);
 }
@@ -124,8 +124,9 @@ VitrailSource vitrailSourceOf(VitrailTriangle t, bool front, float area) {
 }
 
 // How far out of the picture a corner is, in subpixels.
-int vitrailWayToPicture(ivec2 p) {
-  ivec2 way = max(max(-p, p - ivec2(vitrailRaster.width, vitrailRaster.height) * VITRAIL_SUBPIXELS), ivec2(0));
+float vitrailWayToPicture(vec2 p) {
+  vec2 size = vec2(vitrailRaster.width, vitrailRaster.height) * float(VITRAIL_SUBPIXELS);
+  vec2 way = max(max(-p, p - size), vec2(0.0));
   return max(way.x, way.y);
 }
 
@@ -133,11 +134,11 @@ int vitrailWayToPicture(ivec2 p) {
 // its slopes are rounded by counts as often as there are pixels from there on, and a clipped triangle's corners may be
 // 32,766 pixels away.
 void vitrailBeginInPicture(inout VitrailTriangle t) {
-  int way0 = vitrailWayToPicture(t.p0);
-  if (way0 == 0) return; // most
-  int way1 = vitrailWayToPicture(t.p1);
-  int way2 = vitrailWayToPicture(t.p2);
-  ivec2 p0 = t.p0;
+  float way0 = vitrailWayToPicture(t.p0);
+  if (way0 == 0.0) return; // most
+  float way1 = vitrailWayToPicture(t.p1);
+  float way2 = vitrailWayToPicture(t.p2);
+  vec2 p0 = t.p0;
   if (way1 < way0 && way1 <= way2) {
     t.p0 = t.p1;
     t.p1 = t.p2;
@@ -154,12 +155,12 @@ void vitrailBeginInPicture(inout VitrailTriangle t) {
 // False: it covers nothing, or is culled. Otherwise its corners run clockwise in the picture.
 bool vitrailOrientTriangle(inout VitrailTriangle t, uint draw, out VitrailSource source) {
   vitrailBeginInPicture(t);
-  float area = vitrailArea(t.p0, t.p1, t.p2);
+  float area = vitrailArea(ivec2(t.p0), ivec2(t.p1), ivec2(t.p2));
   bool front;
   if (area == 0.0 || !vitrailSideOf(draw, area > 0.0, front)) return false;
   source = vitrailSourceOf(t, front, area);
   if (area < 0.0) {
-    ivec2 other = t.p1;
+    vec2 other = t.p1;
     t.p1 = t.p2;
     t.p2 = other;
   }
