@@ -36,15 +36,19 @@ void vitrailLoadBatch(uint place, bool any_, uint record, ivec2 corner) {
 
 // With VITRAIL_RASTER_SHUFFLES threads are side by side in subgroups of at least 32 that can hand each other words.
 // Turns 32 words of a subgroup by the diagonal: bit i of word k is bit k of word i (Warren, "Hacker's Delight", 7-3).
-uint vitrailTransposed(uint word) {
+// Twice: x and y for themselves. What of the other word falls off at one end and comes in again at the other is not kept.
+uvec2 vitrailTransposed(uvec2 words) {
   uint lane = vitrailThread & 31u;
   uint low = 0xffffu;
   for (uint step = 16u; step != 0u; step >>= 1) {
-    uint other = subgroupShuffleXor(word, step);
-    word = (lane & step) == 0u ? (word & low) | (other & low) << step : (other >> step & low) | (word & ~low);
+    bool isLow = (lane & step) == 0u;
+    uint keep = isLow ? low : ~low;
+    uint left = isLow ? step : 32u - step;
+    uvec2 other = subgroupShuffleXor(words, step);
+    words = (words & keep) | ((other << left | other >> (32u - left)) & ~keep);
     low ^= low << (step >> 1);
   }
-  return word;
+  return words;
 }
 
 // Whether a fragment of a batch is behind the opaque surfaces at all samples, of which the farthest is given.
@@ -58,8 +62,7 @@ uvec2 vitrailCovering(uint begin, uint count) {
   uint first = (vitrailThread >> 5) * VITRAIL_BATCHED + begin;
   if (VITRAIL_RASTER_SHUFFLES) {
     uint lane = vitrailThread & 31u;
-    return uvec2(vitrailTransposed(vitrailBatchMasks[first + lane]),
-                 vitrailTransposed(vitrailBatchMasks[first + 32u + lane]));
+    return vitrailTransposed(uvec2(vitrailBatchMasks[first + lane], vitrailBatchMasks[first + 32u + lane]));
   }
   uint bit = vitrailThread & 31u;
   uvec2 bits = uvec2(0u);

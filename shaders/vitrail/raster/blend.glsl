@@ -75,9 +75,12 @@ bool vitrailIsBefore(uint a, uint b) {
   return keyA < keyB || (keyA == keyB && vitrailSourceBefore(vitrailRecordAt(a), vitrailRecordAt(b)));
 }
 
-uint vitrailNumberBits; // of keys, which hold as much of the depth as there is room for above the record's number
-uint vitrailNumberBitsOf(uint count) { return max(uint(findMSB(max(count, 2u) * 2u - 1u)), 2u); } // depths have 30
-uint vitrailDepthPart(uint key) { return key >> vitrailNumberBits; }
+// Keys hold as much of the depth as there is room for above the record's number: the bits of that.
+uint vitrailNumbers;
+uint vitrailNumbersOf(uint count) { return (1u << max(uint(findMSB(max(count, 2u) * 2u - 1u)), 2u)) - 1u; }
+uint vitrailKeyOf(float depth, uint number) { // from 0 to 1
+  return ((0xfe000000u - 4u * floatBitsToUint(depth)) & ~vitrailNumbers) | number;
+}
 
 // Takes one of a batch's fragments that cover the pixel, or none where there is none any more.
 #define VITRAIL_TAKE_KEY(i) { \
@@ -86,17 +89,18 @@ uint vitrailDepthPart(uint key) { return key >> vitrailNumberBits; }
     more = uvec2(0u); \
     begin = VITRAIL_RASTER_PIXELS; \
   } \
-  bool isLow = bits.x != 0u; \
-  uint word = isLow ? bits.x : bits.y; \
-  uint number = uint(findLSB(word)) + (isLow ? 0u : 32u); \
-  bool isThere = word != 0u; \
-  word &= word - 1u; \
-  if (isLow) bits.x = word; else bits.y = word; \
-  if (VITRAIL_RASTER_BATCHES > 1u) number += begin; \
-  uint inBatch = number & (VITRAIL_BATCHED - 1u); \
-  float depth = vitrailDepthOn(vitrailBatchPlanes[inBatch], vitrailInTile); \
-  uint key = (vitrailDistance(depth) >> (vitrailNumberBits - 2u)) << vitrailNumberBits | (base + number); \
-  bool isHidden = vitrailIsHidden(inBatch, depth, farthest); /* asked in any case: a branch takes longer */ \
+  if (bits.x == 0u) { \
+    bits.x = bits.y; \
+    bits.y = 0u; \
+    begin |= 32u; \
+  } \
+  bool isThere = bits.x != 0u; \
+  uint highest = uint(findMSB(bits.x)) & 31u; \
+  bits.x &= ~(1u << highest); \
+  uint number = begin | highest; \
+  float depth = vitrailDepthOn(vitrailBatchPlanes[number], vitrailInTile); \
+  uint key = vitrailKeyOf(depth, base | number); \
+  bool isHidden = vitrailIsHidden(number, depth, farthest); /* asked in any case: a branch takes longer */ \
   if (key < from || isHidden) isThere = false; \
   vitrailNewKeys[i] = isThere ? key : VITRAIL_NO_FRAGMENT; \
 }
@@ -247,7 +251,7 @@ void vitrailBlendTile(uint tile, uint count) {
   bool inside = vitrailIsInside(pixel);
   if (!inside) pixel = ivec2(0);
   VitrailPixelLight light = vitrailLightBehind(pixel);
-  vitrailNumberBits = vitrailNumberBitsOf(count);
+  vitrailNumbers = vitrailNumbersOf(count);
   bool ended = !inside;
   bool isFirst = true;
   uint from = 0u;
@@ -263,28 +267,26 @@ void vitrailBlendTile(uint tile, uint count) {
     uint end = vitrailFindNearest(count, from, corner, vitrailFarthestDepth(pixel), ended, isFirst);
     isFirst = false;
     // All of a depth that some were left of come in the next turn.
-    if (end != VITRAIL_NO_FRAGMENT) end = vitrailDepthPart(end) << vitrailNumberBits;
+    if (end != VITRAIL_NO_FRAGMENT) end &= ~vitrailNumbers;
     uint kept = 0u;
     uint ties = 0u;
-    uint numbers = (1u << vitrailNumberBits) - 1u;
 #define VITRAIL_AFTER(i) (i + 1 < int(VITRAIL_RASTER_MOST_KEPT) ? i + 1 : i)
 #define VITRAIL_COUNT_KEPT(i) \
     if (vitrailNearestKeys[i] < end) ++kept; \
     if (i + 1 < VITRAIL_RASTER_KEEP) { \
-      uint other = vitrailNearestKeys[VITRAIL_AFTER(i)]; \
-      uint differ = vitrailDepthPart(vitrailNearestKeys[i] ^ other); \
-      ties |= (other != VITRAIL_NO_FRAGMENT && differ == 0u ? 1u : 0u) << i; \
+      uint differ = vitrailNearestKeys[i] ^ vitrailNearestKeys[VITRAIL_AFTER(i)]; /* 0: there are none any more */ \
+      if (differ - 1u < vitrailNumbers) ties |= 1u << i; \
     }
     VITRAIL_EACH_KEPT(VITRAIL_COUNT_KEPT)
 #define VITRAIL_STORE_KEPT(i) \
     if (VITRAIL_RASTER_BATCHES == 0u) { \
       if ((i & 3) == 0) \
         vitrailKeptOrder[i / 4 * VITRAIL_RASTER_PIXELS + vitrailThread] = \
-            (vitrailNearestKeys[i] & numbers) | (vitrailNearestKeys[i | 1] & numbers) << 8 | \
-            (vitrailNearestKeys[i | 2] & numbers) << 16 | (vitrailNearestKeys[i | 3] & numbers) << 24; \
+            (vitrailNearestKeys[i] & vitrailNumbers) | (vitrailNearestKeys[i | 1] & vitrailNumbers) << 8 | \
+            (vitrailNearestKeys[i | 2] & vitrailNumbers) << 16 | (vitrailNearestKeys[i | 3] & vitrailNumbers) << 24; \
     } else if ((i & 1) == 0) \
       vitrailKeptOrder[i / 2 * VITRAIL_RASTER_PIXELS + vitrailThread] = \
-          (vitrailNearestKeys[i] & numbers) | (vitrailNearestKeys[i | 1] & numbers) << 16;
+          (vitrailNearestKeys[i] & vitrailNumbers) | (vitrailNearestKeys[i | 1] & vitrailNumbers) << 16;
     VITRAIL_EACH_KEPT(VITRAIL_STORE_KEPT)
 #ifdef VITRAIL_MULTISAMPLED
     if (ties != 0u) vitrailPartTies(ties, kept);
@@ -325,7 +327,7 @@ void vitrailBlendTile(uint tile, uint count) {
     tile = vitrailTileNow.x;
     count = vitrailTileNow.y;
     corner = vitrailFirstPixel(tile);
-    vitrailNumberBits = vitrailNumberBitsOf(count);
+    vitrailNumbers = vitrailNumbersOf(count);
     ++turns;
   } while (turns < vitrailRaster.mostVisits / ((count + VITRAIL_RASTER_PIXELS - 1u) / VITRAIL_RASTER_PIXELS));
   if (!ended) vitrailTooShort = 1u; // too many turns, or as above

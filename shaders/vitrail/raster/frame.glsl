@@ -114,7 +114,7 @@ bool vitrailHasRecords() {
          vitrailRasterControl.astray <= vitrailRaster.recordCapacity / VITRAIL_RASTER_ASTRAY_SHARE;
 }
 
-// What fragments are sorted by: a depth on a record's plane in a pixel of its tile.
+// What fragments are sorted by: a depth on a record's plane in a pixel of its tile, from 0 to 1.
 float vitrailDepthOn(vec4 plane, ivec2 inTile) {
   return max(min(fma(plane.y, float(inTile.x), fma(plane.z, float(inTile.y), plane.x)), plane.w), 0.0);
 }

@@ -100,7 +100,7 @@ struct VitrailSource {
   uint name; // of the primitive, and in the highest bit whether its front shows
   uint item;
   VitrailPlane plane;
-  float nearest; // of its corners
+  float nearest; // of its corners, 1 at most
 };
 
 // Which side shows of one whose corners run clockwise in the picture, or not. False: that is culled.
@@ -119,7 +119,7 @@ VitrailSource vitrailSourceOf(VitrailTriangle t, bool front, float area) {
   source.name = t.name | (front ? 0x80000000u : 0u);
   source.item = t.item;
   source.plane = vitrailPlane(t.p0, t.p1, t.p2, t.depths, area);
-  source.nearest = max(t.depths.x, max(t.depths.y, t.depths.z));
+  source.nearest = min(max(t.depths.x, max(t.depths.y, t.depths.z)), 1.0);
   return source;
 }
 
@@ -226,7 +226,7 @@ uint vitrailMakeRecord(ivec2 tile, uvec2 covered, VitrailSource source) {
   float steps = float(VITRAIL_TILE_SIDE - 1);
   // At the middle of a pixel of which another part is covered a plane may be nearer than any corner.
   float nearest = depth.x + (max(depth.y, 0.0) + max(depth.z, 0.0)) * steps;
-  if (VITRAIL_RASTER_SAMPLES == 1u) nearest = min(source.nearest, nearest);
+  nearest = min(nearest, VITRAIL_RASTER_SAMPLES == 1u ? source.nearest : 1.0);
   vitrailRecords[place] = uvec4(covered, source.name, source.item);
   vitrailRecords[vitrailRaster.recordCapacity + place] = floatBitsToUint(vec4(depth, nearest));
   return place;
