@@ -61,8 +61,16 @@ void vitrailSharePages(uint count) {
 
 uint vitrailRecordAt(uint number) { return vitrailPageStarts[vitrailPageOf(number)] + number; }
 uint vitrailAlikeRecord(uint i) { return vitrailRecordAt(vitrailOrderAt(vitrailAlikeFirst + i)); }
-VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel) {
-  return vitrailSurfaceOf(vitrailRecords[vitrailAlikeRecord(i)].zw, pixel);
+// The source of a fragment that is blended alone is asked for while the one before is shaded. Not where all records of
+// a tile came at once: there it takes a register more than it saves time.
+const bool VITRAIL_ASKS_AHEAD = VITRAIL_RASTER_BATCHES > 0u;
+uvec2 vitrailSourceAt(uint i) { return vitrailRecords[vitrailRecordAt(vitrailOrderAt(i))].zw; }
+uvec2 vitrailSourceAhead(uint i) { return VITRAIL_ASKS_AHEAD ? vitrailSourceAt(i) : uvec2(0u); }
+
+uvec2 vitrailAloneSource;
+VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel, bool alone) {
+  if (VITRAIL_ASKS_AHEAD && alone) return vitrailSurfaceOf(vitrailAloneSource, pixel);
+  return vitrailSurfaceOf(vitrailSourceAt(vitrailAlikeFirst + i), pixel);
 }
 
 uint vitrailExactKey(uint number) {
@@ -294,8 +302,11 @@ void vitrailBlendTile(uint tile, uint count) {
     if (ties != 0u) vitrailSettle(ties, kept);
     uint k = 0u;
     // Up to the first that has the depth of another, which most pixels have not.
+    uvec2 next = kept > 0u ? vitrailSourceAhead(0u) : uvec2(0u);
     for (; k < kept && !ended && (ties >> k & 1u) == 0u; ++k) {
       vitrailAlikeFirst = k;
+      vitrailAloneSource = next;
+      if (k + 1u < kept) next = vitrailSourceAhead(k + 1u);
       vitrailBlendAlike(light, pixel, vitrailThread, 1u);
       if (vitrailHasEnough(light)) ended = true;
     }
@@ -308,6 +319,7 @@ void vitrailBlendTile(uint tile, uint count) {
         alike = 1u;
       }
       vitrailAlikeFirst = k;
+      vitrailAloneSource = vitrailSourceAhead(k);
       vitrailBlendAlike(light, pixel, vitrailThread, alike);
       k += alike;
       if (vitrailHasEnough(light)) ended = true;

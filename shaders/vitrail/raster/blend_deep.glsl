@@ -27,7 +27,7 @@ uint vitrailAlikeFirst; // of the surfaces that are blended
 
 uvec2 vitrailFragmentAt(uint i) { return vitrailInSorted != 0u ? vitrailSortedFragments[i] : vitrailDeepFragments[i]; }
 uint vitrailAlikeRecord(uint i) { return vitrailFragmentAt(vitrailAlikeFirst + i).y; }
-VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel) {
+VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel, bool alone) {
   return vitrailSurfaceOf(vitrailRecords[vitrailAlikeRecord(i)].zw, pixel);
 }
 

@@ -156,7 +156,7 @@ bool vitrailLessKey(uvec3 a, uvec3 b) {
 // The i-th surface of those that have one depth, which the including shader has at hand: its record, and it, to be
 // shaded.
 uint vitrailAlikeRecord(uint i);
-VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel);
+VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel, bool alone);
 
 // Blends them: one, or up to VITRAIL_RASTER_TIES in the order of what they are. Then each turn through all finds the
 // next fragment, of which a surface has two at most, and shades it again: what would be kept of it takes registers, and
@@ -171,7 +171,7 @@ void vitrailBlendAlike(inout VitrailPixelLight light, ivec2 pixel, uint thread, 
     uint visible = 1u;
     if (VITRAIL_RASTER_SAMPLES > 1u) visible = vitrailVisibleSamples(light, vitrailAlikeRecord(i), pixel, thread);
     if (visible != 0u) {
-      VitrailFragments f = vitrailFragmentsOf(vitrailAlikeSurface(i, pixel));
+      VitrailFragments f = vitrailFragmentsOf(vitrailAlikeSurface(i, pixel, alike == 1u));
       // No loop: arrays stay in registers where their indices are constants.
 #define VITRAIL_TAKE_FRAGMENT(k) \
   if (f.count > k) { \
