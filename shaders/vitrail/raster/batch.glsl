@@ -36,7 +36,7 @@ void vitrailLoadBatch(uint place, bool any_, uint record, ivec2 corner) {
 
 // With VITRAIL_RASTER_SHUFFLES threads are side by side in subgroups of at least 32 that can hand each other words.
 // Turns 32 words of a subgroup by the diagonal: bit i of word k is bit k of word i (Warren, "Hacker's Delight", 7-3).
-// Twice: x and y for themselves. What of the other word falls off at one end and comes in again at the other is not kept.
+// Two words of each thread, each for itself. What comes in again at the other end of a word is not kept.
 uvec2 vitrailTransposed(uvec2 words) {
   uint lane = vitrailThread & 31u;
   uint low = 0xffffu;

@@ -61,6 +61,7 @@ void vitrailSharePages(uint count) {
 
 uint vitrailRecordAt(uint number) { return vitrailPageStarts[vitrailPageOf(number)] + number; }
 uint vitrailAlikeRecord(uint i) { return vitrailRecordAt(vitrailOrderAt(vitrailAlikeFirst + i)); }
+
 // The source of a fragment that is blended alone is asked for while the one before is shaded. Not where all records of
 // a tile came at once: there it takes a register more than it saves time.
 const bool VITRAIL_ASKS_AHEAD = VITRAIL_RASTER_BATCHES > 0u;
@@ -83,10 +84,12 @@ bool vitrailIsBefore(uint a, uint b) {
   return keyA < keyB || (keyA == keyB && vitrailSourceBefore(vitrailRecordAt(a), vitrailRecordAt(b)));
 }
 
-// Keys hold as much of the depth as there is room for above the record's number: the bits of that.
+// The bits of a key that hold the record's number in the tile: two at least. Above them is as much of the depth as has
+// room.
 uint vitrailNumbers;
 uint vitrailNumbersOf(uint count) { return (1u << max(uint(findMSB(max(count, 2u) * 2u - 1u)), 2u)) - 1u; }
-uint vitrailKeyOf(float depth, uint number) { // from 0 to 1
+// Of a depth from 0 to 1: vitrailDistance(), which has 30 bits, from the highest bit on.
+uint vitrailKeyOf(float depth, uint number) {
   return ((0xfe000000u - 4u * floatBitsToUint(depth)) & ~vitrailNumbers) | number;
 }
 
@@ -352,7 +355,7 @@ void vitrailBlendTile(uint tile, uint count) {
   // Else nobody writes the pixel.
   if (vitrailIsInside(vitrailFirstPixel(vitrailTileNow.x) + vitrailInTile)) vitrailBlendOver(pixel, light);
 #else
-  bool isEmpty = light.through[0] == vec4(1.0) && light.color == vec3(0.0); // as where there is no pixel
+  bool isEmpty = VITRAIL_THROUGH(light, 0) == vec4(1.0) && light.color == vec3(0.0); // as where there is no pixel
   if (!isEmpty) vitrailBlendOver(pixel, light);
 #endif
 }

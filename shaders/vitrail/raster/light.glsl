@@ -154,7 +154,7 @@ bool vitrailLessKey(uvec3 a, uvec3 b) {
 }
 
 // The i-th surface of those that have one depth, which the including shader has at hand: its record, and it, to be
-// shaded.
+// shaded. `alone`: it is the only one.
 uint vitrailAlikeRecord(uint i);
 VitrailSurface vitrailAlikeSurface(uint i, ivec2 pixel, bool alone);
 

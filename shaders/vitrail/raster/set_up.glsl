@@ -35,8 +35,8 @@ VitrailParts vitrailPartsAt(ivec2 first) {
   return parts;
 }
 
-// Which pixels of tiles are covered of 8 x 8, of all four tiles together: each is in another place of its tile, which is
-// where it gets by going round in rows and columns.
+// Which pixels of tiles are covered of 8 x 8, of all four tiles together. No two have one place in their tiles, which
+// are reached by going round in rows and columns.
 uvec2 vitrailInTiles(VitrailParts parts, uvec2 mask) {
   if (parts.first.y >= 4) mask = mask.yx;
   uint bits = 8u * (uint(parts.first.y) & 3u);
