@@ -1,5 +1,5 @@
 // Which pixels a triangle covers, by the rules of graphics hardware: what src/raster/rules.h says in C++, in 32-bit
-// integers, a tile of 8 x 8 pixels at a time. Pure functions: no resources.
+// integers and floats that hold whole numbers, a tile of 8 x 8 pixels at a time. Pure functions: no resources.
 //
 // Corners are in 1/256 pixel, y down, at most 2^23 from the picture's corner (the guard band). An edge function is
 // exact where it is small; where it is not, its sign is.
