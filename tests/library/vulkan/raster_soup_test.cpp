@@ -21,6 +21,7 @@ struct SoupKind {
   bool keepsPositions = true;
   std::uint32_t blendModes = 15;
   bool solids = false;
+  bool longEdges = false; // through the middles of pixels, of triangles that are far larger than a picture of 8 x 8
 };
 
 // One triangle in subpixels, its corners clockwise in the picture; depths of which 1 is nearest.
@@ -61,6 +62,7 @@ class Soup {
   std::uint32_t below(std::uint32_t end) { return static_cast<std::uint32_t>(random_() % end); }
   void addDraw(std::uint32_t triangles);
   void addPrimitive(std::uint32_t corners);
+  void addLongTriangle();
   void addTriangle(const std::array<std::array<float, 2>, 3>& pixels, std::array<double, 3> depths, bool isSolid);
   void addReference(const std::array<Vec4, 3>& clip, std::uint32_t corners);
 
@@ -111,7 +113,28 @@ void Soup::addDraw(std::uint32_t triangles) {
   for (std::uint32_t i = 0; i < triangles; ++i) addPrimitive(corners);
 }
 
+// Edge functions that are 0 at a middle, of products far beyond what floats hold exactly.
+void Soup::addLongTriangle() {
+  const auto middle = [&](std::uint32_t end) { return 256.0 * below(end) + 128.0; };
+  const double through[2] = {middle(extent_.width), middle(extent_.height)};
+  const double way[2] = {below(4001) - 2000.0, below(4001) - 2000.0};
+  const double steps[3] = {1.0 + below(3000), -1.0 - below(3000), 0.0};
+  const double depth = unit() * 0.9 + 0.05;
+  std::array<Vec4, 3> clip{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    double subpixels[2] = {through[0] + steps[i] * way[0], through[1] + steps[i] * way[1]};
+    if (i == 2) {
+      for (double& at : subpixels) at = below(12'000'001) - 6e6;
+    }
+    clip.at(i) = {static_cast<float>(subpixels[0] / 128.0 / extent_.width - 1.0),
+                  static_cast<float>(subpixels[1] / 128.0 / extent_.height - 1.0), static_cast<float>(depth), 1.0F};
+    scene_.vertices.push_back(clip.at(i));
+  }
+  addReference(clip, 3);
+}
+
 void Soup::addPrimitive(std::uint32_t corners) {
+  if (kind_.longEdges) return addLongTriangle();
   const double size = std::exp2(unit() * 9.0 - 1.0); // pixels
   const double x = (unit() * 1.4 - 0.2) * extent_.width;
   const double y = (unit() * 1.4 - 0.2) * extent_.height;
@@ -303,9 +326,10 @@ void drawSoups(const SoupKind& kind, std::uint32_t count) {
   const bool isCpu = backend().device().isCpu();
   const int allowed = isCpu ? 0 : 4;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const VkExtent2D extent = i % 3 == 0 ? kMost
-                                         : VkExtent2D{1 + static_cast<std::uint32_t>(random() % kMost.width),
-                                                      1 + static_cast<std::uint32_t>(random() % kMost.height)};
+    const VkExtent2D extent = kind.longEdges ? VkExtent2D{8, 8}
+                              : i % 3 == 0   ? kMost
+                                             : VkExtent2D{1 + static_cast<std::uint32_t>(random() % kMost.width),
+                                                        1 + static_cast<std::uint32_t>(random() % kMost.height)};
     SCOPED_TRACE(testing::Message() << "soup " << i << ", " << extent.width << 'x' << extent.height << ", samples "
                                     << kind.samples);
     const VkExtent2D small{std::min(extent.width, 12U), std::min(extent.height, 9U)};
@@ -531,6 +555,8 @@ TEST_F(RasterSoupTest, SeveralSamples) {
   for (const std::uint32_t samples : backend().features().multisampled)
     drawSoups({.samples = samples, .solids = isThorough()}, samples == 4 ? fewerSoups() : (soups() + 2) / 3);
 }
+
+TEST_F(RasterSoupTest, EdgesOfVeryLargeTriangles) { drawSoups({.longEdges = true}, 8); }
 
 TEST_F(RasterSoupTest, ClippedTriangles) {
   drawClipped(VITRAIL_DEPTH_NEAREST_IS_ZERO, 2 * soups());
