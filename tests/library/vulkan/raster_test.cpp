@@ -345,6 +345,44 @@ TEST_F(RasterTest, NumbersAreTheDraws) {
   EXPECT_EQ(host.at(31, 31), (Vec4{1.0F / 256.0F, 4.0F / 256.0F, 1.0F / 256.0F, 1.0F}));
 }
 
+// A work group that sets up triangles has those of a part of an instance, or of many.
+TEST_F(RasterTest, InstancesOfMeshesOfAnySize) {
+  constexpr std::uint32_t kPixels = 1024; // in a row, a triangle each
+  RasterHostDesc desc;
+  desc.width = kPixels;
+  desc.height = 1;
+  RasterHost host(desc);
+  for (const std::uint32_t triangles : {1U, 3U, 100U, 128U, 300U, 512U}) {
+    SCOPED_TRACE(triangles);
+    const std::uint32_t instances = kPixels / triangles;
+    RasterScene scene;
+    scene.colors = {{1.0F, 1.0F, 1.0F, 1.0F}};
+    VitrailVkRasterDraw draw{};
+    draw.count = draw.vertexCount = 3 * triangles;
+    draw.instanceCount = instances;
+    draw.word = 4U << 16U;
+    scene.draws = {draw};
+    const auto across = [](float pixels) { return pixels * 2.0F / kPixels; };
+    for (std::uint32_t i = 0; i < triangles; ++i) { // around the middles of pixels
+      const auto left = static_cast<float>(i);
+      scene.vertices.push_back({across(left + 0.25F) - 1.0F, -0.5F, 0.5F, 1.0F});
+      scene.vertices.push_back({across(left + 0.75F) - 1.0F, -0.5F, 0.5F, 1.0F});
+      scene.vertices.push_back({across(left + 0.5F) - 1.0F, 0.5F, 0.5F, 1.0F});
+    }
+    for (std::uint32_t i = 0; i < draw.count; ++i) scene.indices.push_back(i);
+    for (std::uint32_t i = 0; i < instances; ++i) {
+      scene.shifts.push_back({across(static_cast<float>(i * triangles)), 0.0F, 0.0F, 0.0F});
+    }
+    host.setScene(scene);
+    host.draw();
+    for (std::uint32_t i = 0; i < instances * triangles; ++i) {
+      const Vec4 numbers{static_cast<float>(i % triangles) / 256.0F, static_cast<float>(i / triangles) / 256.0F, 0.0F,
+                         1.0F};
+      ASSERT_EQ(host.at(i, 0), numbers) << "pixel " << i;
+    }
+  }
+}
+
 TEST_F(RasterTest, AlphaZeroIsNotThere) {
   RasterHost host({});
   RasterScene scene = showing(6);
