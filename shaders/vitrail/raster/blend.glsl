@@ -304,8 +304,8 @@ void vitrailBlendTile(uint tile, uint count) {
 #endif
     if (ties != 0u) vitrailSettle(ties, kept);
     uint k = 0u;
-    // Up to the first that has the depth of another, which most pixels have not.
     uvec2 next = kept > 0u ? vitrailSourceAhead(0u) : uvec2(0u);
+    // Up to the first that has the depth of another, which most pixels have not.
     for (; k < kept && !ended && (ties >> k & 1u) == 0u; ++k) {
       vitrailAlikeFirst = k;
       vitrailAloneSource = next;
@@ -339,9 +339,8 @@ void vitrailBlendTile(uint tile, uint count) {
     if (vitrailGoesOn[turn] == 0u) break;
     if (vitrailThread == 0u) vitrailGoesOn[turn ^ 1u] = 0u;
     barrier();
-    tile = vitrailTileNow.x;
     count = vitrailTileNow.y;
-    corner = vitrailFirstPixel(tile);
+    corner = vitrailFirstPixel(vitrailTileNow.x);
     vitrailNumbers = vitrailNumbersOf(count);
     ++turns;
   } while (turns < vitrailRaster.mostVisits / ((count + VITRAIL_RASTER_PIXELS - 1u) / VITRAIL_RASTER_PIXELS));
@@ -352,7 +351,7 @@ void vitrailBlendTile(uint tile, uint count) {
     return;
   }
 #ifdef VITRAIL_MULTISAMPLED
-  // Else nobody writes the pixel.
+  // Also where nothing shows: nobody else writes the pixel.
   if (vitrailIsInside(vitrailFirstPixel(vitrailTileNow.x) + vitrailInTile)) vitrailBlendOver(pixel, light);
 #else
   bool isEmpty = VITRAIL_THROUGH(light, 0) == vec4(1.0) && light.color == vec3(0.0); // as where there is no pixel

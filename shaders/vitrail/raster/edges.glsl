@@ -76,7 +76,8 @@ bool vitrailIsLittle(ivec2 p0, ivec2 p1, ivec2 p2) {
   return max(extent.x, extent.y) < VITRAIL_MOST_LITTLE;
 }
 
-// Where they are even nearer to each other, floats hold products and their sums exactly: whole numbers below 2^24.
+// Where they are even nearer to each other, floats hold edge functions exactly, also a pixel away: two products of such
+// distances are together a whole number below 2^24.
 const float VITRAIL_MOST_SMALL = 2560.0;
 
 float vitrailSmallArea(vec2 p0, vec2 p1, vec2 p2) {
@@ -178,7 +179,7 @@ VitrailRows vitrailLittleRows(ivec2 p0, ivec2 p1, ivec2 p2, ivec2 pixel) {
 }
 
 // Of one whose corners are less than VITRAIL_MOST_SMALL apart; `place` is the corner of the first pixel, which is among
-// the triangle's or half a pixel away. The same edges, in floats: converting whole numbers takes longer than they do.
+// the triangle's or a pixel away. The same edges, in floats: converting whole numbers takes longer than they do.
 VitrailRows vitrailSmallRows(vec2 p0, vec2 p1, vec2 p2, vec2 place) {
   vec3 right = vec3(p1.y - p2.y, p2.y - p0.y, p0.y - p1.y);
   vec3 down = vec3(p2.x - p1.x, p0.x - p2.x, p1.x - p0.x);

@@ -163,11 +163,11 @@ void main() {
   uint firstInInstance = first - firstInstance * size.x;
   uvec2 nextSource = uvec2(0u);
   uvec3 nextIndices = uvec3(0u);
-#define VITRAIL_LOAD_NEXT(offset) \
-  if (first + (offset) < count) { \
-    uint number = firstInInstance + (offset); \
+#define VITRAIL_LOAD_NEXT(offset_) \
+  if (first + (offset_) < count) { \
+    uint number = firstInInstance + (offset_); \
     uint instance = firstInstance; \
-    if (number >= size.x) { /* in few groups, but of small meshes */ \
+    if (number >= size.x) { /* of large meshes in few groups */ \
       uint more = number / size.x; \
       instance += more; \
       number -= more * size.x; \
@@ -176,14 +176,13 @@ void main() {
     nextIndices = vitrailIndicesAt(draw, corners, nextSource.x); \
   }
   VITRAIL_LOAD_NEXT(thread)
-  uint offset = thread;
-  for (uint i = 0u; i < VITRAIL_RASTER_TURNS && first + (offset - thread) < count; ++i) {
+  for (uint i = 0u; i < VITRAIL_RASTER_TURNS && first + i * VITRAIL_RASTER_SET_UP < count; ++i) {
     uvec2 source = nextSource;
     uvec3 indices = nextIndices;
+    uint offset = i * VITRAIL_RASTER_SET_UP + thread;
     bool isThere = first + offset < count;
-    offset += VITRAIL_RASTER_SET_UP;
     if (i + 1u < VITRAIL_RASTER_TURNS) { // they are there when this turn ends
-      VITRAIL_LOAD_NEXT(offset)
+      VITRAIL_LOAD_NEXT(offset + VITRAIL_RASTER_SET_UP)
     }
     if (isThere && vitrailSetUp(draw, corners, source, indices)) {
       vitrailGroupMedium[atomicAdd(vitrailGroupMediums, 1u)] = source;

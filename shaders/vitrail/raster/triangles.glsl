@@ -79,10 +79,11 @@ bool vitrailPolygonNeedsClipping(VitrailViewport viewport, VitrailPolygon polygo
 
 // The pixels from `first` to `last` of which a triangle may cover something, within the band.
 void vitrailBoundsOf(VitrailTriangle t, out ivec2 first, out ivec2 last) {
-  const float middle = VITRAIL_RASTER_SAMPLES == 1u ? 128.0 : 0.0; // samples are anywhere
-  const float behind = VITRAIL_RASTER_SAMPLES == 1u ? 127.0 : 0.0;
-  first = ivec2(floor((min(t.p0, min(t.p1, t.p2)) + behind) * (1.0 / 256.0)));
-  last = ivec2(floor((max(t.p0, max(t.p1, t.p2)) - middle) * (1.0 / 256.0)));
+  const float subpixel = 1.0 / float(VITRAIL_SUBPIXELS); // times that, as a quotient may be rounded
+  const float middle = VITRAIL_RASTER_SAMPLES == 1u ? float(VITRAIL_SUBPIXELS / 2) : 0.0; // samples are anywhere
+  const float behind = VITRAIL_RASTER_SAMPLES == 1u ? float(VITRAIL_SUBPIXELS / 2 - 1) : 0.0;
+  first = ivec2(floor((min(t.p0, min(t.p1, t.p2)) + behind) * subpixel));
+  last = ivec2(floor((max(t.p0, max(t.p1, t.p2)) - middle) * subpixel));
   first = max(first, ivec2(0, int(vitrailRaster.top)));
   last = min(last, ivec2(vitrailRaster.width, vitrailRaster.bottom) - 1);
 }
